@@ -112,7 +112,7 @@ void print_end(const Context& c, const std::string& file, const recorder::Record
 }
 
 /// About a completed file that has gaps.
-Exit tell_losses(const Context& c, const recorder::WriteProgress& p)
+Exit report_losses(const Context& c, const recorder::WriteProgress& p)
 {
     if (p.dropped.messages == 0) return Exit::Done;
     c.console.say("plabctl: " + std::to_string(p.dropped.messages) + " messages are not in the file: " +
@@ -153,7 +153,7 @@ Exit run_record(Context& c, RecordOptions o)
     print_end(c, file, **recorder, progress);
     if (closed)
     {
-        const Exit lost = tell_losses(c, progress);
+        const Exit lost = report_losses(c, progress);
         return lost == Exit::Done && c.stopped() ? Exit::Interrupted : lost;
     }
     for (const Error& e : closed.errors()) c.console.say("plabctl: " + printable(e.text()));

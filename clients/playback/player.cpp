@@ -175,13 +175,13 @@ Result<void> Player::step(Clock::time_point now)
     if (!has_begun_ && readers() < wanted_readers_)
     {
         show_scene();
-        tell_status(now, false);
+        report_status(now, false);
         return {};
     }
     if (!has_begun_) begin(now);
     send_due(now);
     look_at_readers();
-    tell_status(now, false);
+    report_status(now, false);
     return {};
 }
 
@@ -219,13 +219,13 @@ void Player::wait(Clock::time_point latest)
 void Player::pause(bool paused, Clock::time_point now)
 {
     pace_.pause(paused, now);
-    tell_status(now, true);
+    report_status(now, true);
 }
 
 void Player::set_rate(double rate, Clock::time_point now)
 {
     pace_.set_rate(rate, now);
-    tell_status(now, true);
+    report_status(now, true);
 }
 
 void Player::seek(std::uint64_t time, Clock::time_point now)
@@ -235,7 +235,7 @@ void Player::seek(std::uint64_t time, Clock::time_point now)
     if (target < position_) return jump_back(target, now);
     pace_.seek(target, now);
     jump(target);
-    tell_status(now, true);
+    report_status(now, true);
 }
 
 void Player::jump_back(std::uint64_t time, Clock::time_point now)
@@ -244,7 +244,7 @@ void Player::jump_back(std::uint64_t time, Clock::time_point now)
     // Run numbers continue to increase: clients have not seen a run of this number.
     changes_.run_shift = highest_run_ + 1 - std::min(run_at(time), highest_run_ + 1);
     jump(time);
-    tell_status(now, true);
+    report_status(now, true);
 }
 
 std::uint64_t Player::run_at(std::uint64_t time) const
@@ -260,7 +260,7 @@ std::uint64_t Player::run_at(std::uint64_t time) const
     return std::max(of_status, of_frame);
 }
 
-void Player::tell_status(Clock::time_point now, bool at_once)
+void Player::report_status(Clock::time_point now, bool at_once)
 {
     if (!at_once && now - published_at_ < kHeartbeat) return;
     const double gone = link::Seconds(now - published_at_).count();

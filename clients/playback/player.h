@@ -91,7 +91,7 @@ private:
     void note_place(recording::Peek& peek, recording::ByteView bytes);
     void look_at_readers();
     bool has_newcomers(const std::string& topic);
-    void tell_status(Clock::time_point now, bool at_once);
+    void report_status(Clock::time_point now, bool at_once);
     Track* track_of(const std::string& topic);
 
     recording::Reader reader_;

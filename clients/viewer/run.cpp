@@ -81,7 +81,7 @@ Outcome take_shots(const ViewerOptions& options, Feed& feed, Painter& painter)
 }
 
 /// Facts that the pictures do not show by themselves.
-void tell_doubts(const ViewerOptions& options, const Sequence& sequence, std::uint64_t given_up, program::Progress& progress)
+void report_doubts(const ViewerOptions& options, const Sequence& sequence, std::uint64_t given_up, program::Progress& progress)
 {
     if (sequence.runs() > 1) say(progress, "the scene was loaded or reset meanwhile: times restart in the frames");
     if (given_up > 0)
@@ -140,7 +140,7 @@ Outcome make_sequence(const ViewerOptions& options, Source& source, Feed& feed, 
     const Outcome outcome = stop() ? interrupted(options, sequence) : judge(sequence, feed);
     if (sequence.drawn() > 0)
         if (auto finished = sink.finish(); !finished) return failed(finished.error());
-    tell_doubts(options, sequence, source.given_up(), progress);
+    report_doubts(options, sequence, source.given_up(), progress);
     progress.clear();
     std::fprintf(stderr, "%llu frames, %.1f s\n", static_cast<unsigned long long>(sequence.drawn()),
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());

@@ -111,10 +111,10 @@ void Problem::add_shafts(const Island& island, const Shafts& shafts)
     }
 }
 
-std::uint32_t Problem::mover_of(Ref who) const
+std::uint32_t Problem::mover_of(Ref participant) const
 {
-    if (who.facet == Facet::Body && who.index < mover_of_body_.size()) return mover_of_body_[who.index];
-    if (who.facet == Facet::Shaft && who.index < mover_of_shaft_.size()) return mover_of_shaft_[who.index];
+    if (participant.facet == Facet::Body && participant.index < mover_of_body_.size()) return mover_of_body_[participant.index];
+    if (participant.facet == Facet::Shaft && participant.index < mover_of_shaft_.size()) return mover_of_shaft_[participant.index];
     return kNoIndex;
 }
 
@@ -141,7 +141,7 @@ void Problem::add_line(const ConstraintRow& row, std::uint32_t index)
     line.impulse = row.impulse;
     for (std::uint32_t k = 0; k < row.count; ++k)
     {
-        const std::uint32_t mover = mover_of(row.blocks[k].who);
+        const std::uint32_t mover = mover_of(row.blocks[k].participant);
         if (mover == kNoIndex) continue;
         const Mover& m = movers[mover];
         const Vec3 &linear = row.blocks[k].linear, &angular = row.blocks[k].angular;
@@ -195,17 +195,17 @@ void Problem::read_speeds(const Bodies& bodies, const Shafts& shafts)
         for (std::uint32_t k = 0; k < row.count; ++k)
         {
             const RowBlock& block = row.blocks[k];
-            if (!block.who.valid()) continue;
+            if (!block.participant.valid()) continue;
             bool moves = false;
             for (std::uint32_t i = 0; i < line.count; ++i)
-                moves = moves || (anchors[line.mover[i]].host == block.who.index &&
-                                  anchors[line.mover[i]].shaft == (block.who.facet == Facet::Shaft));
+                moves = moves || (anchors[line.mover[i]].host == block.participant.index &&
+                                  anchors[line.mover[i]].shaft == (block.participant.facet == Facet::Shaft));
             if (moves) continue;
-            if (block.who.facet == Facet::Body)
-                line.given +=
-                    dot(block.linear, bodies.velocity[block.who.index]) + dot(block.angular, bodies.angular_velocity[block.who.index]);
-            else if (block.who.facet == Facet::Shaft)
-                line.given += block.angular.x * shafts.speed[block.who.index];
+            if (block.participant.facet == Facet::Body)
+                line.given += dot(block.linear, bodies.velocity[block.participant.index]) +
+                              dot(block.angular, bodies.angular_velocity[block.participant.index]);
+            else if (block.participant.facet == Facet::Shaft)
+                line.given += block.angular.x * shafts.speed[block.participant.index];
         }
     }
 }

@@ -119,7 +119,7 @@ private:
     void set_mobility(Point& p) const;
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);
-    std::uint32_t mover_of(Ref who) const;
+    std::uint32_t mover_of(Ref participant) const;
     bool is_isotropic_at(std::uint32_t mover) const { return mover == kNoIndex || anchors[mover].isotropic; }
 
     std::vector<std::uint32_t> mover_of_body_, mover_of_shaft_;  ///< by row in Bodies or Shafts

@@ -7,7 +7,7 @@
 /// Once an overlap at the end of the bracket is known, it uses cubic Hermite interpolation of the gaps and their rates at both
 /// ends, restricted to the bracket, and halves the bracket wherever halving would have come further (as in Oliveira, Takahashi,
 /// ACM TOMS 47 (2020): the worst case is that of bisection). The host checks that nothing touched before the zero; if it cannot,
-/// it goes on with safe steps.
+/// it continues with safe steps.
 #pragma once
 
 #include "plab/collision.h"

@@ -76,8 +76,8 @@ private:
     bool is_cut() const { return stop_ && options_.until >= 0 && !is_at_end(); }
     bool serve();
     void step();
-    void tell_rate(Clock::time_point now);
-    void tell_given_up();
+    void report_rate(Clock::time_point now);
+    void report_given_up();
     bool save();
     bool finish();
 
@@ -144,7 +144,7 @@ void Run::step()
 {
     if (!s_.step())
     {
-        if (s_.gave_up()) tell_given_up();
+        if (s_.gave_up()) report_given_up();
         return;
     }
     if (options_.hashes) std::printf("%" PRId64 " %016" PRIx64 "\n", s_.tick(), s_.state_hash());
@@ -155,7 +155,7 @@ void Run::step()
     table_.show(s_);
 }
 
-void Run::tell_rate(Clock::time_point now)
+void Run::report_rate(Clock::time_point now)
 {
     const bool changed = s_.paused() != shown_paused_ || service_.answered() != shown_answers_;
     if (!changed && now - status_ < kStatus) return;
@@ -168,7 +168,7 @@ void Run::tell_rate(Clock::time_point now)
 }
 
 /// The run ends at the state before the step; if a shutdown request caused this, it is answered.
-void Run::tell_given_up()
+void Run::report_given_up()
 {
     const publish::Busy busy = publish::words_of(s_.progress().look(), simulation::now_ns());
     spdlog::error("{}: abandoned, because the run is to end; the state is that of t = {:.9g} s, before the step", publish::text_of(busy),
@@ -223,7 +223,7 @@ int Run::go()
     {
         if (serve()) continue;
         const auto now = Clock::now();
-        tell_rate(now);
+        report_rate(now);
         if (s_.paused())
         {
             pacer_.stand_still();

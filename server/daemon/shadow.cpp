@@ -153,8 +153,9 @@ nlohmann::json json_of(const Outcome& o, const Future& without, const Future& wi
         for (const simulation::TransferredField& f : swap.fields)
             fields.push_back({{"field", f.field}, {"transfer", simulation::name_of(f.transfer)}});
     }
-    return {{"component", choice.id}, {"from", from},     {"to", choice.type},          {"step", o.from},       {"time", o.begin},
-            {"steps", o.steps},       {"fields", fields}, {"without", future(without)}, {"with", future(with)}, {"course", trajectory}};
+    return {
+        {"component", choice.id}, {"from", from},     {"to", choice.type},          {"step", o.from},       {"time", o.begin},
+        {"steps", o.steps},       {"fields", fields}, {"without", future(without)}, {"with", future(with)}, {"differences", trajectory}};
 }
 
 void print(const Outcome& o, const Future& without, const Future& with, const ShadowChoice& choice)

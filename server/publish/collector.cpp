@@ -82,16 +82,16 @@ void Collector::collect(const simulation::Simulation& s, const simulation::Chang
     {
         const Nanoseconds now = monotonic_now();
         begin_run(s);
-        tell_moment(s);
+        report_moment(s);
         const bool requested = !stepped || changes.everything || !changes.touched.empty();
         catalogue_.follow(s, changes, stepped ? s.tick() - 1 : s.tick());
         if (scripted_.due(now)) catalogue_.release_scripted(s);
-        tell_catalogue(s, now);
+        report_catalogue(s, now);
         // The final state of a paused scene must be sent, however soon after the last frame.
-        tell_states(s, now, s.paused() ? When::Now : When::InTurn);
-        tell_events(s, counts);
-        tell_metrics(s, now, requested ? When::Now : When::InTurn);
-        if (stepped) tell_hash(s);
+        report_states(s, now, s.paused() ? When::Now : When::InTurn);
+        report_events(s, counts);
+        report_metrics(s, now, requested ? When::Now : When::InTurn);
+        if (stepped) report_hash(s);
     }
     next_collision_ += counts.collisions, next_event_ += counts.others;
 }
@@ -100,18 +100,18 @@ void Collector::idle(const simulation::Simulation& s)
 {
     if (watchers_.empty()) return;
     const Nanoseconds now = monotonic_now();
-    tell_moment(s);
-    tell_catalogue(s, now);
-    tell_states(s, now, When::ForNewcomers);
-    tell_metrics(s, now, When::ForNewcomers);
+    report_moment(s);
+    report_catalogue(s, now);
+    report_states(s, now, When::ForNewcomers);
+    report_metrics(s, now, When::ForNewcomers);
 }
 
-void Collector::tell_moment(const simulation::Simulation& s)
+void Collector::report_moment(const simulation::Simulation& s)
 {
     for (const Watcher& w : watchers_) w.observer->moment(s.run(), s.time());
 }
 
-void Collector::tell_catalogue(const simulation::Simulation& s, Nanoseconds now)
+void Collector::report_catalogue(const simulation::Simulation& s, Nanoseconds now)
 {
     const bool news = catalogue_.news();
     for (Watcher& w : watchers_)
@@ -125,7 +125,7 @@ void Collector::tell_catalogue(const simulation::Simulation& s, Nanoseconds now)
     catalogue_.clear();
 }
 
-void Collector::tell_states(const simulation::Simulation& s, Nanoseconds now, When when)
+void Collector::report_states(const simulation::Simulation& s, Nanoseconds now, When when)
 {
     bool wanted = false, for_all = when == When::Now;
     for (Watcher& w : watchers_)
@@ -149,7 +149,7 @@ void Collector::tell_states(const simulation::Simulation& s, Nanoseconds now, Wh
     }
 }
 
-void Collector::tell_hash(const simulation::Simulation& s)
+void Collector::report_hash(const simulation::Simulation& s)
 {
     const auto wants = [](const Watcher& w) { return w.observer->wants(Stream::Hashes); };
     if (std::none_of(watchers_.begin(), watchers_.end(), wants)) return;
@@ -198,7 +198,7 @@ void Collector::snapshot(const SnapshotRecord& snapshot)
         if (w.observer->wants(Stream::Snapshots)) w.observer->snapshot(SnapshotRecord(snapshot));
 }
 
-void Collector::tell_events(const simulation::Simulation& s, const Counts& counts)
+void Collector::report_events(const simulation::Simulation& s, const Counts& counts)
 {
     const Tick step = s.tick() - 1;
     for (const Watcher& w : watchers_)
@@ -208,7 +208,7 @@ void Collector::tell_events(const simulation::Simulation& s, const Counts& count
     }
 }
 
-void Collector::tell_metrics(const simulation::Simulation& s, Nanoseconds now, When when)
+void Collector::report_metrics(const simulation::Simulation& s, Nanoseconds now, When when)
 {
     bool wanted = false, own_turn = false;
     metrics_asked_ = metrics_asked_ || when == When::Now;
@@ -233,7 +233,7 @@ void Collector::tell_metrics(const simulation::Simulation& s, Nanoseconds now, W
 void Collector::note(const simulation::Simulation& s, EventRecord event)
 {
     Batch<EventRecord> batch;
-    tell_moment(s);
+    report_moment(s);
     batch.run = s.run(), batch.first = next_event_++, batch.step = s.tick();
     event.time = s.time();
     batch.entries.push_back(std::move(event));

@@ -81,12 +81,12 @@ private:
     static bool fresh(const Observer& observer, Stream stream, Wish& wish);
     static bool in_turn(const Observer& observer, Stream stream, double time, double& next, bool servers_turn);
 
-    void tell_moment(const simulation::Simulation& simulation);
-    void tell_catalogue(const simulation::Simulation& simulation, Nanoseconds now);
-    void tell_states(const simulation::Simulation& simulation, Nanoseconds now, When when);
-    void tell_events(const simulation::Simulation& simulation, const Counts& counts);
-    void tell_metrics(const simulation::Simulation& simulation, Nanoseconds now, When when);
-    void tell_hash(const simulation::Simulation& simulation);
+    void report_moment(const simulation::Simulation& simulation);
+    void report_catalogue(const simulation::Simulation& simulation, Nanoseconds now);
+    void report_states(const simulation::Simulation& simulation, Nanoseconds now, When when);
+    void report_events(const simulation::Simulation& simulation, const Counts& counts);
+    void report_metrics(const simulation::Simulation& simulation, Nanoseconds now, When when);
+    void report_hash(const simulation::Simulation& simulation);
     void begin_run(const simulation::Simulation& simulation);
 
     CollectorOptions options_;

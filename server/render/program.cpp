@@ -5,7 +5,7 @@ namespace plab::render
 namespace
 {
 
-/// Deletes the shader's name when it goes; the program keeps what it needs.
+/// Deletes the shader's name in its destructor; the program keeps what it needs.
 class Shader
 {
 public:

@@ -61,7 +61,7 @@ Result<void> Simulation::restore(const std::string& name)
 
 Result<void> Simulation::rewind(double time)
 {
-    auto back = history_.way_back(run_, time);
+    auto back = history_.plan_rewind(run_, time);
     if (!back) return back.errors();
     // A snapshot could not bring the present back on error: restoring it begins a new run with a new number, and the requests that wait in
     // the present run would be refused.

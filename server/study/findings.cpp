@@ -32,7 +32,7 @@ std::string digits_of(const Point& p)
 bool usable(const Point& p) { return p.record.ok() && std::isfinite(p.error()) && p.cpu_per_second() > 0; }
 
 /// The best algorithms, and the cost of each accuracy.
-void tell_front(const StudyResult& r, std::vector<std::string>& out)
+void report_front(const StudyResult& r, std::vector<std::string>& out)
 {
     const std::vector<std::size_t> front = plot::pareto_front(r);
     if (front.empty()) return;
@@ -68,7 +68,7 @@ void tell_front(const StudyResult& r, std::vector<std::string>& out)
 }
 
 /// Algorithms that are never on the Pareto front.
-void tell_losers(const StudyResult& r, std::vector<std::string>& out)
+void report_losers(const StudyResult& r, std::vector<std::string>& out)
 {
     const std::vector<std::size_t> front = plot::pareto_front(r);
     std::vector<std::string> losers;
@@ -89,7 +89,7 @@ void tell_losers(const StudyResult& r, std::vector<std::string>& out)
 }
 
 /// Observed orders, from neighbouring step lengths well above round-off and the reference's uncertainty.
-void tell_orders(const StudyResult& r, std::vector<std::string>& out)
+void report_orders(const StudyResult& r, std::vector<std::string>& out)
 {
     double floor = 1e-12;
     for (const Distance& u : r.reference.uncertainty)
@@ -108,7 +108,7 @@ void tell_orders(const StudyResult& r, std::vector<std::string>& out)
     if (!line.empty()) out.push_back("Observed order of convergence, from the two shortest steps above round-off: " + line + ".");
 }
 
-void tell_failures(const StudyResult& r, std::vector<std::string>& out)
+void report_failures(const StudyResult& r, std::vector<std::string>& out)
 {
     std::map<std::string, std::vector<std::string>> by_outcome;
     std::map<std::string, std::string> why;  // of the first
@@ -138,7 +138,7 @@ void tell_failures(const StudyResult& r, std::vector<std::string>& out)
     if (missed > 0) out.push_back("Impacts of the reference that were missed: " + who + ".");
 }
 
-void tell_energy(const StudyResult& r, std::vector<std::string>& out)
+void report_energy(const StudyResult& r, std::vector<std::string>& out)
 {
     const Point *best = nullptr, *worst = nullptr;
     int count = 0;
@@ -158,7 +158,7 @@ void tell_energy(const StudyResult& r, std::vector<std::string>& out)
     out.push_back("Unexplained energy, relative to the largest energy of the run: " + range + ".");
 }
 
-void tell_limits(const StudyResult& r, std::vector<std::string>& out)
+void report_limits(const StudyResult& r, std::vector<std::string>& out)
 {
     int hidden = 0;
     std::string noisy;
@@ -180,12 +180,12 @@ void tell_limits(const StudyResult& r, std::vector<std::string>& out)
 std::vector<std::string> findings(const StudyResult& r)
 {
     std::vector<std::string> out;
-    tell_front(r, out);
-    tell_losers(r, out);
-    tell_orders(r, out);
-    tell_energy(r, out);
-    tell_failures(r, out);
-    tell_limits(r, out);
+    report_front(r, out);
+    report_losers(r, out);
+    report_orders(r, out);
+    report_energy(r, out);
+    report_failures(r, out);
+    report_limits(r, out);
     return out;
 }
 

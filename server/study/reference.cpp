@@ -18,7 +18,7 @@ constexpr double kRoundOff = 2e-14;
 /// Lower orders do not belong to any method: they come from an event or a jump, and may change with the next halving.
 constexpr double kLeastOrder = 0.9;
 /// With slower convergence, differences do not show the remaining distance.
-constexpr double kSlowestTold = 0.2;
+constexpr double kSlowestConvergence = 0.2;
 
 /// y4 + share (y4 - y2); attitudes along the geodesic.
 void extrapolate(const Quantity& q, std::span<const double> y2, std::span<const double> y4, double share, std::vector<double>& out)
@@ -57,8 +57,8 @@ Distance doubt(const Distance& far, const Distance& near, double seen)
 {
     const Distance most = larger(far, near);
     if (!(seen < kLeastOrder)) return most;
-    const double share = 1 / (std::pow(2.0, std::max(seen, kSlowestTold)) - 1);
-    return larger(most, times(seen > kSlowestTold ? near : most, share));
+    const double share = 1 / (std::pow(2.0, std::max(seen, kSlowestConvergence)) - 1);
+    return larger(most, times(seen > kSlowestConvergence ? near : most, share));
 }
 
 void add_quantity(Reference& out, const Quantity& q, const TimeSeries& y1, const TimeSeries& y2, const TimeSeries& y4)

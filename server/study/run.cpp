@@ -16,7 +16,7 @@ namespace
 
 constexpr int kSamples = 200;
 /// The budget is checked at this interval: a check costs less than a thousandth of the cheapest step.
-constexpr Tick kStepsPerLook = 16;
+constexpr Tick kStepsPerCheck = 16;
 
 /// Steps are warm after a tenth of the run and at least this many, from the start and from each swap: buffers have grown then.
 constexpr Tick kFewestToWarm = 20;
@@ -98,7 +98,7 @@ private:
         if (!out_.ok()) return;
         check();
         if (options_.is_stopped()) return fail(Outcome::Interrupted, "interrupted");
-        if (s_.tick() % kStepsPerLook == 0 && thread_cpu_seconds() - begin > options_.budget)
+        if (s_.tick() % kStepsPerCheck == 0 && thread_cpu_seconds() - begin > options_.budget)
             fail(Outcome::TooSlow, "stopped after " + number_text(options_.budget) + " s of CPU time");
     }
     /// How many swaps were answered before this step.
@@ -216,7 +216,7 @@ Timing time_run(model::TypeSource& types, const model::SceneSpec& scene, const R
     const double begin = thread_cpu_seconds();
     while (s.tick() < last && out.outcome == Outcome::Completed)
     {
-        const Tick stop = std::min(last, s.tick() + kStepsPerLook);
+        const Tick stop = std::min(last, s.tick() + kStepsPerCheck);
         while (s.tick() < stop && out.outcome == Outcome::Completed)
         {
             if (!s.step() || lost(s)) out.outcome = lost(s) ? Outcome::NotFinite : Outcome::Frozen;

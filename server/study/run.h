@@ -1,9 +1,9 @@
 /// One run of one scene and all that a study wants to know about it: in this process, on the calling thread.
 ///
-///   record_run   steps once and notes everything: courses of quantities, energy, events, outputs, allocations, hash
-///   time_run     steps once and notes nothing but CPU time
+///   record_run   steps once and records everything: time series of quantities, energy, events, outputs, allocations, hash
+///   time_run     steps once and records only CPU time
 ///
-/// Neither fails: a scene that is refused, a run that blows up or is too slow is a record that says so.
+/// Neither fails: a scene that is refused, or a run that diverges or is too slow, gives a record with that outcome.
 #pragma once
 
 #include "model/type_registry.h"

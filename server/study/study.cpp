@@ -56,7 +56,7 @@ private:
     RunOptions options_of(std::size_t run) const;
     RunOptions timed_part(std::size_t run) const;
     void judge(Point& point);
-    void tell(const std::string& what, double share);
+    void report_progress(const std::string& what, double share);
     Result<void> go_on(const std::string& what) const;
 
     model::TypeSource& types_;
@@ -69,7 +69,7 @@ private:
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-void Run::tell(const std::string& what, double share)
+void Run::report_progress(const std::string& what, double share)
 {
     if (!plan_.progress) return;
     const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
@@ -236,7 +236,7 @@ Result<void> Run::make_auto()
         auto swaps = swaps_of(planned_, algorithm->scene, types_);
         if (!swaps) return reason("in the reference: " + swaps.error().reason);
         options.swaps = swaps.take();
-        tell("reference " + std::to_string(i + 1) + " of 3: " + algorithm->name, 0);
+        report_progress("reference " + std::to_string(i + 1) + " of 3: " + algorithm->name, 0);
         runs.push_back(record_run(types_, algorithm->scene, options));
         if (auto on = go_on("making the reference, run " + std::to_string(i + 1) + " of 3"); !on) return on;
     }
@@ -284,8 +284,8 @@ Result<void> Run::record_all()
     {
         Point point;
         point.combination = plan_.combinations[i];
-        tell("recording " + std::to_string(i + 1) + " of " + std::to_string(scenes_.size()) + ": " + point.combination.label(),
-             static_cast<double>(i) / runs);
+        report_progress("recording " + std::to_string(i + 1) + " of " + std::to_string(scenes_.size()) + ": " + point.combination.label(),
+                        static_cast<double>(i) / runs);
         if (scenes_[i])
             point.record = record_run(types_, *scenes_[i], options_of(i));
         else
@@ -323,9 +323,10 @@ Result<void> Run::time_all()
             const std::size_t i = (k + static_cast<std::size_t>(r)) % n;
             Point& point = out_.points[i];
             if (point.record.outcome == Outcome::Refused || point.record.outcome == Outcome::TooSlow) continue;
-            tell("timing, round " + std::to_string(r + 1) + " of " + std::to_string(plan_.repeat) + ": " + point.combination.label(),
-                 static_cast<double>(n + static_cast<std::size_t>(r) * n + k) /
-                     static_cast<double>(n * (static_cast<std::size_t>(plan_.repeat) + 1)));
+            report_progress(
+                "timing, round " + std::to_string(r + 1) + " of " + std::to_string(plan_.repeat) + ": " + point.combination.label(),
+                static_cast<double>(n + static_cast<std::size_t>(r) * n + k) /
+                    static_cast<double>(n * (static_cast<std::size_t>(plan_.repeat) + 1)));
             const Timing t = time_run(types_, *scenes_[i], timed_part(i));
             if (auto on = go_on("timing, round " + std::to_string(r + 1) + " of " + std::to_string(plan_.repeat)); !on) return on;
             if (t.outcome == Outcome::Completed || t.outcome == point.record.outcome) seconds[i].push_back(t.cpu);

@@ -1,4 +1,4 @@
-// What a plan comes to before it is run.
+// The size of a plan, computed before it is run.
 #include <algorithm>
 
 #include "study/study.h"

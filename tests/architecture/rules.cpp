@@ -124,7 +124,7 @@ std::map<std::string, std::set<std::string>> units_included(const std::vector<Fi
     return out;
 }
 
-/// Walks down from units that nobody has walked from; who stands on the way already closes a circle.
+/// Depth-first search from every unit not visited yet; an include of a unit that is on the current path closes a circle.
 class CircleSearch
 {
 public:
@@ -139,28 +139,28 @@ private:
     void visit(const std::string& unit)
     {
         if (!seen_.insert(unit).second) return;
-        way_.push_back(unit);
+        path_.push_back(unit);
         if (const auto found = included_.find(unit); found != included_.end())
             for (const std::string& other : found->second)
             {
-                const auto begin = std::ranges::find(way_, other);
-                if (begin == way_.end())
+                const auto begin = std::ranges::find(path_, other);
+                if (begin == path_.end())
                     visit(other);
                 else
-                    tell(begin);
+                    report_circle(begin);
             }
-        way_.pop_back();
+        path_.pop_back();
     }
-    void tell(std::vector<std::string>::const_iterator begin)
+    void report_circle(std::vector<std::string>::const_iterator begin)
     {
         std::string text;
-        for (auto unit = begin; unit != way_.end(); ++unit) text += *unit + " -> ";
+        for (auto unit = begin; unit != path_.end(); ++unit) text += *unit + " -> ";
         found_.push_back(text + *begin);
     }
 
     const std::map<std::string, std::set<std::string>>& included_;
     std::set<std::string> seen_;
-    std::vector<std::string> way_;
+    std::vector<std::string> path_;
     Complaints found_;
 };
 

@@ -1,6 +1,6 @@
-// What a step costs with each algorithm of the ladders, in small standard scenes: a Markdown table on standard output.
+// The cost of a step with each algorithm of the ladders, in small standard scenes: a Markdown table on standard output.
 //
-//   build/bin/bench_algorithms [FAMILY ...]     families as types begin: Solver Resolution Response Manager Constraint (default: all)
+//   build/bin/bench_algorithms [FAMILY ...]     beginnings of type names: Solver Resolution Response Manager Constraint (default: all)
 //   build/bin/bench_algorithms --measured       the rows of server/model/measured_costs.h, which the reference and plabctl types print
 //
 // Types come from the registry, so a new algorithm appears by itself. The figure is the least mean of five runs, microseconds per step
@@ -195,8 +195,8 @@ double median_of(std::vector<double> values)
 
 constexpr double kGivenUp = std::numeric_limits<double>::infinity();
 
-/// us per step of one run: median of at most 240 behind ten that warm up, or of as many as half a second has room for: a type whose step is
-/// dear gets few, at least one. kGivenUp: the first step took longer than model::kDearestStep.
+/// us per step of one run: median of at most 240 steps after ten that warm up, or of as many as fit into half a second: a type
+/// whose step is expensive gets few, at least one. kGivenUp: the first step took longer than model::kDearestStep.
 Result<double> cost_of_run(const std::string& text)
 {
     constexpr std::uint64_t kLongestWarming = 4'000'000'000, kLongest = 500'000'000;
@@ -301,7 +301,7 @@ void measured()
         contacts(r.name, none + "response=\"Response/Rows\" response.manager=\"" + r.name + "\"");
     for (const Algorithm& r : algorithms_of("Resolution")) contacts(r.name, "resolution=\"" + r.name + "\" response=\"Response/Rows\"");
     for (const Algorithm& r : algorithms_of("Response"))
-        if (r.name != "Response/None") contacts(r.name, none + "response=\"" + r.name + "\"");  // it answers nothing
+        if (r.name != "Response/None") contacts(r.name, none + "response=\"" + r.name + "\"");  // it has no response
     for (const Algorithm& r : algorithms_of("Solver"))
         print_measured(r.name, free_bodies(1, r.name), free_bodies(192, r.name), swinging_chain(r.name));
     for (const Algorithm& r : algorithms_of("Constraint/AngularVelocity"))
@@ -309,7 +309,7 @@ void measured()
     std::fprintf(stderr, "%.0f s of processor time\n", static_cast<double>(processor_ns()) * 1e-9);
 }
 
-/// Something that a parameter without default may be.
+/// A valid value for a parameter without default.
 std::string some_value(const Field& field)
 {
     for (const Rule& rule : field.rules)
@@ -317,7 +317,7 @@ std::string some_value(const Field& field)
     return field.type == FieldType::Vector ? "1 2 3" : "1";
 }
 
-/// Who a role takes: bodies or shafts in turn.
+/// Participants for a role: bodies or shafts in turn.
 std::string some_participants(const Role& role, std::size_t& next)
 {
     const bool shafts = std::count(role.facets.begin(), role.facets.end(), Facet::Body) == 0;

@@ -1,5 +1,5 @@
-// Prints the bus's figures: frames per second and CPU per frame, latencies, pause of a swap, start, what a stopped
-// observer costs. Real processes on loopback. CSV on standard output: name, unit, value. Not a test: timings are no claims.
+// Prints the bus's figures: frames per second and CPU per frame, latencies, pause of a swap, start, the cost of a stopped
+// observer. Real processes on loopback. CSV on standard output: name, unit, value. Not a test: timings are not checked.
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
@@ -131,7 +131,7 @@ struct Server
     Process process;
 };
 
-/// Bodies that move and do nothing else: what is measured is the way out, not the physics.
+/// Bodies that only move: publishing is measured, not the physics.
 std::string moving_bodies(int side)
 {
     const std::string file = scratch_file("moving_" + std::to_string(side * side) + ".xml");

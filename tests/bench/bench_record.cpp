@@ -1,10 +1,10 @@
-// What a recording costs the step thread, and how large it is: A/B in one run, interleaved.
+// The time that a recording takes on the step thread, and its size: A/B in one run, interleaved.
 //
 //   bench_record [--objects N] [--hz N] [--seconds S] [--pile] [FOLDER]
 //
 // N bodies that tumble freely under gravity, or bricks in piles, stepped at 1 kHz: once alone, once with a recorder that writes every step
-// to FOLDER (default: the present one). Processor time of the step thread: the median of pieces of 100 steps, and of what a piece with the
-// recorder took beyond the one beside it.
+// to FOLDER (default: the present one). Processor time of the step thread: the median of pieces of 100 steps, and of the additional
+// time of a piece with the recorder over its neighbour without.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -42,7 +42,7 @@ std::string begin_of(int hz)
     return "<plab version=\"1\"><scene dt=\"1/" + std::to_string(hz) + "\"/><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>";
 }
 
-/// Nothing is cheaper to step, so that a recording shows most.
+/// The cheapest scene to step, so that the cost of a recording is most visible.
 std::string free_bodies(int objects, int hz)
 {
     std::string text = begin_of(hz) + "<component id=\"s\" type=\"Shape/Box\" half_extents=\"0.1 0.2 0.3\"/>";
@@ -55,7 +55,7 @@ std::string free_bodies(int objects, int hz)
     return text + "</plab>";
 }
 
-/// Bricks that stand upon one another, ten by ten to a layer, and topple: each is turned a little against the one below.
+/// Bricks stacked on one another, ten by ten in a layer, that topple: each is rotated slightly against the one below.
 std::string pile(int objects, int hz)
 {
     std::string text = begin_of(hz) +
@@ -83,7 +83,7 @@ std::unique_ptr<simulation::Simulation> load(const std::string& scene)
     std::exit(1);
 }
 
-/// A run, and whoever watches it.
+/// A run and its observers.
 struct Run
 {
     Run(const std::string& scene, record::Recorder* recorder)
@@ -97,7 +97,7 @@ struct Run
         collector.collect(*simulation, simulation->take_changes(), stepped);
         const auto cause = watched ? collector.wants_snapshot(*simulation) : std::nullopt;
         if (!cause) return;
-        // As plabd does it: taken here, written down by a thread of its own.
+        // As in plabd: captured here, written by a thread of its own.
         if (encoding.valid()) collector.snapshot(encoding.get());
         publish::SnapshotRecord record;
         record.run = simulation->run(), record.step = simulation->tick(), record.time = simulation->time(), record.cause = *cause;
@@ -141,7 +141,7 @@ void compare(const std::string& label, const Plan& plan, const record::RecordOpt
     std::vector<double> a, b, extra;
     for (int i = 0; i < static_cast<int>(plan.seconds * plan.hz / 100); ++i)
     {
-        // In turn, each first as often as the other: what else the machine does meets both.
+        // Alternately, each first as often as the other, so that other load on the machine affects both.
         const bool first = i % 2 == 0;
         if (first) a.push_back(alone.piece());
         b.push_back(recorded.piece());

@@ -29,7 +29,7 @@ link::Session session_in(std::uint32_t domain, const std::string& server)
     return session.take();
 }
 
-/// For a failure: whether the run goes on, and what was said last.
+/// For a failure: whether the run continues, and the last messages.
 std::string state_of(Server& server)
 {
     const std::size_t before = server.process().output().size();
@@ -40,7 +40,7 @@ std::string state_of(Server& server)
            " times; last words: " + said.substr(said.size() - std::min<std::size_t>(said.size(), 3000));
 }
 
-/// What a client says when it joins: all topics, with their types.
+/// What a client announces when it joins: all topics, with their types.
 std::vector<Packet> captured(const link::Session& session)
 {
     link::Catalogue all = catalogue(session);
@@ -58,7 +58,7 @@ void attack(std::uint64_t packets, std::uint64_t seed, unsigned pause_us)
 {
     // As users have it: pLab's own configuration.
     REQUIRE(unsetenv("CYCLONEDDS_URI") == 0);
-    // A domain of its own: others' participants are not to end of this. Its ports are below those that the system gives to anybody.
+    // A domain of its own, so that other participants are not harmed. Its ports are below the system's range of ephemeral ports.
     const auto domain = static_cast<std::uint32_t>(60 + getpid() % 40);
     REQUIRE(setenv("PLAB_DOMAIN", std::to_string(domain).c_str(), 1) == 0);
     Server server(kScene, {"--hashes", "--rate", "real"});
@@ -74,7 +74,7 @@ void attack(std::uint64_t packets, std::uint64_t seed, unsigned pause_us)
         if (i % 32 == 31) std::this_thread::sleep_for(std::chrono::microseconds(32 * pause_us));
         if (i % 1000 == 0) REQUIRE(server.process().running());
     }
-    // Who behaves is served, by whatever plab-bus there is now.
+    // A well-behaved client is served by the present plab-bus.
     std::optional<link::Reply> reply;
     for (int i = 0; i < 20 && !reply; ++i)
     {

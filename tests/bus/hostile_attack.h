@@ -1,4 +1,4 @@
-/// Packets of discovery that nobody should send: plab-bus ends of some of them, the run does not.
+/// Invalid discovery packets: some of them end plab-bus, but not the run.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 namespace plab::test
 {
 
-/// Sends so many changed packets, one each `pause_us` (us), to a server that counts hashes, and compares those with a run that nobody
-/// disturbs.
+/// Sends this number of changed packets, one each `pause_us` (us), to a server that counts hashes, and compares those with an
+/// undisturbed run.
 void attack(std::uint64_t packets, std::uint64_t seed, unsigned pause_us);
 
 }  // namespace plab::test

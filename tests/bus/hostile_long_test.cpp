@@ -2,4 +2,4 @@
 
 #include "hostile_attack.h"
 
-TEST_CASE("a hundred thousand changed packets of discovery do not touch the run") { plab::test::attack(100000, 2, 400); }
+TEST_CASE("a hundred thousand changed discovery packets do not affect the run") { plab::test::attack(100000, 2, 400); }

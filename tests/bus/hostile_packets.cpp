@@ -121,7 +121,7 @@ Packet PacketMutator::next()
     return with_broken_type();
 }
 
-/// One that nobody knows yet: what it says is new.
+/// A participant that is not known yet, so its announcement is new.
 void PacketMutator::take_another_sender(Packet& p)
 {
     for (std::size_t i = 12; i < kHeader; ++i) p[i] = byte();
@@ -148,7 +148,7 @@ Packet PacketMutator::changed(Packet p)
     return p;
 }
 
-/// What stands before `begin` stays, and so do the 8 bytes after it.
+/// The bytes before `begin` are not changed, nor are the 8 bytes after it.
 void PacketMutator::change_once(Packet& p, std::size_t begin)
 {
     if (p.size() < begin + 8) return;
@@ -174,7 +174,7 @@ void PacketMutator::change_once(Packet& p, std::size_t begin)
         case 4:
             p.resize(begin + 8 + below(p.size() - begin - 8));
             break;
-        case 5:  // a piece from elsewhere
+        case 5:  // a piece of another packet
         {
             const std::size_t from = begin + 4 * below((p.size() - begin) / 4);
             std::memmove(&p[at], &p[from], std::min({4 * (1 + below(16)), p.size() - from, p.size() - at}));

@@ -1,4 +1,4 @@
-/// Packets of DDS discovery as this process sends them, and changed ones of them for others.
+/// DDS discovery packets as this process sends them, and altered ones for other processes.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@ namespace plab::test
 
 using Packet = std::vector<std::uint8_t>;
 
-/// What this process has sent to ports of discovery so far: announcements of participants, readers and writers with their types,
-/// acknowledgements. sendmsg() is watched, nothing else.
+/// What this process has sent to discovery ports so far: announcements of participants, readers and writers with their types,
+/// acknowledgements. Only sendmsg() is intercepted.
 std::vector<Packet> sent_for_discovery();
 
-/// Changed packets, as many as one likes: bytes, lengths, identifiers of parameters, ends. Half of them announce a participant
-/// with the description of a type, a broken one: Cyclone 0.10.2 aborts at some of these.
+/// Changed packets in any number: bytes, lengths, identifiers of parameters, ends are altered. Half of them announce a participant
+/// with an invalid description of a type: Cyclone 0.10.2 aborts at some of these.
 class PacketMutator
 {
 public:

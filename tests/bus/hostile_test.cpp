@@ -2,4 +2,4 @@
 
 #include "hostile_attack.h"
 
-TEST_CASE("some thousand changed packets of discovery do not touch the run") { plab::test::attack(5000, 1, 200); }
+TEST_CASE("some thousand changed discovery packets do not affect the run") { plab::test::attack(5000, 1, 200); }

@@ -1,4 +1,4 @@
-// A server in the middle of a step that takes minutes: it says so, answers what can be answered, and ends when it is told to.
+// A server in the middle of a step that takes minutes: it reports that, answers what can be answered, and ends on request.
 #include <fstream>
 
 #include "server.h"
@@ -28,7 +28,8 @@ Outcome plabctl(const Server& server, std::vector<std::string> arguments)
 
 }  // namespace
 
-TEST_CASE("while a step takes long, what it is at is told, what only reads is answered, a request can be taken back, and shutdown ends it")
+TEST_CASE(
+    "during a long step, its progress is reported, reading requests are answered, a request can be cancelled, and shutdown ends the step")
 {
     Server server(long_scene(), {"--rate", "max"});
     Outcome seen;
@@ -40,7 +41,7 @@ TEST_CASE("while a step takes long, what it is at is told, what only reads is an
         const Outcome read = plabctl(server, reading);
         CHECK_MESSAGE(read.code == 0, reading.front(), ": ", read.errors);
     }
-    // A time-out says that the request may still take effect, and how it is taken back.
+    // A time-out says that the request may still take effect, and how it is cancelled.
     const Outcome late = plabctl(server, {"set", "spring.damping=1", "--timeout", "0.5"});
     CHECK(late.code == 3);
     CHECK_MESSAGE(has(late.errors, "can take effect before its next step"), late.errors);
@@ -56,7 +57,7 @@ TEST_CASE("while a step takes long, what it is at is told, what only reads is an
     CHECK(has(server.process().errors(), "abandoned"));
 }
 
-TEST_CASE("shutdown ends a server at once, a paused one too")
+TEST_CASE("shutdown ends a server at once, also a paused one")
 {
     for (const char* option : {"--paused", "--rate=real"})
     {
@@ -68,7 +69,7 @@ TEST_CASE("shutdown ends a server at once, a paused one too")
     }
 }
 
-TEST_CASE("a request that waits is taken back by cancel, and whoever asked for it hears so")
+TEST_CASE("a waiting request is withdrawn by cancel, and its client is told")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     const link::Session session = server.session();
@@ -98,7 +99,7 @@ TEST_CASE("a request that waits is taken back by cancel, and whoever asked for i
     CHECK(has(again.errors, "no such request is waiting"));
 }
 
-TEST_CASE("one swap of plabctl exchanges all that a pattern and a list name, and says how it was proved")
+TEST_CASE("one swap of plabctl exchanges all components that a pattern and a list name, and reports how it was checked")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     const Outcome all = plabctl(server, {"swap", "axle_to_*", "gears", "--to", "Constraint/AngularVelocity/Impulse"});

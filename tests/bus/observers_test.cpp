@@ -1,4 +1,4 @@
-// Watching changes nothing: state hash and step time with observers, one of them stopped.
+// Observers change nothing: state hash and step time with observers, one of them stopped.
 #include "server.h"
 
 #include <fstream>
@@ -21,7 +21,7 @@ nlohmann::json end_of(const std::string& file)
 
 }  // namespace
 
-TEST_CASE("the state hash without observers is that with five, one of them stopped")
+TEST_CASE("the state hash without observers equals that with five, one of them stopped")
 {
     const std::string alone = scratch_file("alone.json"), watched = scratch_file("watched.json");
     REQUIRE(run({program("plabd"), kScene, "--no-bus", "--until", "8", "--out", alone}).code == 0);
@@ -119,13 +119,13 @@ TEST_CASE("a late observer of a paused server sees the scene and one frame")
     (void)frames->take([&](const plab_v2_Frame& f, const dds_sample_info_t&) { bodies = f.bodies._length, shafts = f.shafts._length; });
     CHECK(bodies == 2);
     CHECK(shafts == 6);
-    // So does a second one, though the first is still there and nothing has moved.
+    // So does a second one, although the first is still there and nothing has moved.
     auto second = session.reader<plab_v2_Frame>();
     REQUIRE(second.ok());
     CHECK(session.wait(*second, Seconds(5)));
     const link::Catalogue known = catalogue(session);
     CHECK(known.now().types.size() > 20);
-    // Known without loading its plugin, from the manifest.
+    // Known from the manifest, without loading its plugin.
     const link::Type& gravity = known.now().types.at("Field/Gravity");
     CHECK_FALSE(gravity.loaded);
     CHECK(gravity.fields.size() == 1);

@@ -1,4 +1,4 @@
-// Going back and aside on a live server: snapshots, branches, shadows, and a recorder beside a reader of the bus.
+// Earlier and alternative states of a live server: snapshots, branches, shadows, and a recorder beside a reader of the bus.
 #include "server.h"
 
 #include <csignal>
@@ -27,7 +27,7 @@ struct Place
     bool operator==(const Place&) const = default;
 };
 
-/// Where a server stands: whoever begins to read snapshots gets one of the present.
+/// The present state of a server: a new reader of snapshots gets one.
 Place place_of(const std::string& server)
 {
     link::SessionOptions options;
@@ -62,7 +62,7 @@ std::vector<std::string> with(std::vector<std::string> options, const std::vecto
     return options;
 }
 
-/// A server that stands still but when it is stepped, at step 60.
+/// A paused server that moves only when it is stepped, at step 60.
 Server at_sixty(const std::vector<std::string>& options = {})
 {
     Server server(scene_file("fan_and_balloons.xml"), with({"--paused", "--rate", "max"}, options));
@@ -70,7 +70,7 @@ Server at_sixty(const std::vector<std::string>& options = {})
     return server;
 }
 
-/// A server that plabctl started for this test: it goes with the object.
+/// A server that plabctl started for this test: it ends with the object.
 class Stranger
 {
 public:
@@ -83,7 +83,7 @@ private:
     int process_;
 };
 
-/// What `plabctl servers` shows of one of them.
+/// What `plabctl servers` shows about one of them.
 Json shown(const std::string& name)
 {
     const Json all = parse(run({program("plabctl"), "servers", "--json"}));
@@ -95,7 +95,7 @@ Json shown(const std::string& name)
 
 }  // namespace
 
-TEST_CASE("a snapshot has a name, is listed, and is gone back to, bit for bit")
+TEST_CASE("a snapshot has a name, is listed, and is restored bit for bit")
 {
     Server server = at_sixty();
     const Place before = place_of(server.name());
@@ -113,7 +113,7 @@ TEST_CASE("a snapshot has a name, is listed, and is gone back to, bit for bit")
     CHECK(control(server, {"restore", "befor"}).code == 4);
     CHECK(control(server, {"restore", "before"}).code == 0);
     CHECK(place_of(server.name()) == before);
-    // A sign is no way to say how far back.
+    // A negative number does not say how far back to go.
     for (const char* option : {"--to", "--by"})
     {
         const Outcome negative = control(server, {"rewind", option, "-0.1"});
@@ -126,7 +126,7 @@ TEST_CASE("a snapshot has a name, is listed, and is gone back to, bit for bit")
     CHECK(server.end() == 0);
 }
 
-TEST_CASE("a branch shows itself beside its server and goes on from the same state")
+TEST_CASE("a branch appears beside its server and continues from the same state")
 {
     Server server = at_sixty();
     const std::string name = unique_name("branch"), log = scratch_file("branch.log");
@@ -146,24 +146,24 @@ TEST_CASE("a branch shows itself beside its server and goes on from the same sta
     std::filesystem::remove(log);
 }
 
-TEST_CASE("a shadow says what a swap would do, and nothing has been done")
+TEST_CASE("a shadow reports what a swap would do, without doing it")
 {
     Server server = at_sixty();
     const Place before = place_of(server.name());
     const Json reported = parse(control(server, {"shadow", "contact.response", "--with", "Response/None", "--for", "0.2", "--json"}));
     CHECK(reported["steps"] == 48);
-    CHECK(reported["course"].back()["time"].get<double>() == doctest::Approx(0.45));
+    CHECK(reported["differences"].back()["time"].get<double>() == doctest::Approx(0.45));
     for (const char* future : {"without", "with"})
         for (const char* cost : {"cost_ns_per_step", "mean_cost_ns_per_step"}) CHECK(reported[future][cost].get<double>() > 0);
-    // Nobody touches yet: the two are the same, to the bit.
-    CHECK(reported["course"][0]["distance"] == 0.0);
-    CHECK(reported["course"][0]["turn"] == 0.0);
+    // There is no contact yet: the two are the same, to the bit.
+    CHECK(reported["differences"][0]["distance"] == 0.0);
+    CHECK(reported["differences"][0]["turn"] == 0.0);
     CHECK(control(server, {"shadow", "contact.response", "--with", "Field/Gravity"}).code == 1);
     CHECK(place_of(server.name()) == before);
     CHECK(server.end() == 0);
 }
 
-TEST_CASE("a snapshot goes to a file, and a run from there is the run that was left")
+TEST_CASE("a snapshot is saved to a file, and a run from there equals the original run")
 {
     const std::string file = scratch_file("keep.snapshot");
     Server server = at_sixty();
@@ -182,12 +182,12 @@ TEST_CASE("a snapshot goes to a file, and a run from there is the run that was l
     std::filesystem::remove(file);
 }
 
-TEST_CASE("a recorder and a reader of the bus each miss nothing of their own")
+TEST_CASE("a recorder and a reader of the bus each receive all of their own samples")
 {
     const std::string file = scratch_file("beside.mcap");
     std::filesystem::remove(file);
     {
-        // The recorder gets each step or every fourth, the reader what real time brings: neither is the other's.
+        // The recorder gets each step or every fourth, the reader those due in real time: the two are independent.
         Server server(scene_file("fan_and_balloons.xml"), {"--record", file, "--record-states", "60", "--states", "25"});
         const Outcome watched = control(server, {"watch", "states", "-n", "12"});
         CHECK(watched.code == 0);

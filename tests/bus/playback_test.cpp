@@ -102,11 +102,11 @@ TEST_CASE("played and recorded again, the states, events and collisions of a ser
         CHECK(first == second);
     }
     CHECK(messages_of(recorded(), "plab/states").size() > 20);
-    CHECK(messages_of(again, "plab/gone").empty());  // a goodbye is no news of the scene
+    CHECK(messages_of(again, "plab/gone").empty());  // the end of the server does not change the scene
     for (const char* topic : {"plab/objects", "plab/shapes", "plab/types"}) CHECK(messages_of(again, topic).size() > 2);
 }
 
-TEST_CASE("what was removed is gone in the file, and in its playback from then on")
+TEST_CASE("a removed component is absent from the file, and from its playback, from then on")
 {
     const std::string file = fresh("play_removed.mcap"), name = unique_name("removed");
     {
@@ -115,11 +115,11 @@ TEST_CASE("what was removed is gone in the file, and in its playback from then o
         std::this_thread::sleep_for(Milliseconds(1000));
         CHECK(control(server, {"step", "10"}).code == 0);
         REQUIRE(control(server, {"remove", "wind"}).code == 0);
-        std::this_thread::sleep_for(Milliseconds(800));  // until it is believed
+        std::this_thread::sleep_for(Milliseconds(800));  // until the disposal is accepted
         CHECK(control(server, {"step", "10"}).code == 0);
         std::this_thread::sleep_for(Milliseconds(500));
         record.signal(15);
-        CHECK_MESSAGE(record.wait(Milliseconds(5000)) == 143, record.errors());  // the file is whole, and the signal is told
+        CHECK_MESSAGE(record.wait(Milliseconds(5000)) == 143, record.errors());  // the file is complete, and the exit code shows the signal
     }
     REQUIRE(messages_of(file, "plab/gone").size() == 1);
     const Process player = play(file, name, {"--loop", "--rate", "0.01"});
@@ -133,10 +133,10 @@ TEST_CASE("what was removed is gone in the file, and in its playback from then o
     const auto has_none = [&](const link::CatalogueContents& s) { return s.interactions.size() > 3 && !has_wind(s); };
     CHECK(shows(*seen, has_wind));
     CHECK(shows(*seen, has_none));
-    CHECK(shows(*seen, has_wind));  // the next turn of the loop
+    CHECK(shows(*seen, has_wind));  // the next repetition of the loop
 }
 
-TEST_CASE("a logger hears of everything that happened, and a server that is a playback says so and refuses requests")
+TEST_CASE("a logger receives all events, and a playback server says that it is one and refuses requests")
 {
     const std::string name = unique_name("logged"), copy = fresh("play_logged.mcap");
     Process player = play(recorded(), name, {"--rate", "8", "--readers", "1"});
@@ -147,7 +147,7 @@ TEST_CASE("a logger hears of everything that happened, and a server that is a pl
     const Outcome pause = ask(name, {"pause"});
     CHECK(pause.code == 4);
     CHECK_MESSAGE(has(pause.errors, "this is a playback of "), pause.errors);
-    std::this_thread::sleep_for(Milliseconds(500));  // until the logger listens
+    std::this_thread::sleep_for(Milliseconds(500));  // until the logger has subscribed
     REQUIRE(ask(name, {"record", "-o", copy}).code == 0);
     CHECK(player.wait(Milliseconds(10000)) == 0);
     CHECK(log.wait_for("gone", Milliseconds(5000)));
@@ -184,7 +184,7 @@ TEST_CASE("a picture from the file and one of its playback are the same")
     CHECK(bytes_of(of_file) == bytes_of(of_bus));
 }
 
-TEST_CASE("a second player is refused; Ctrl-C ends a player and a recorder in order")
+TEST_CASE("a second player is refused; Ctrl-C ends a player and a recorder in an orderly way")
 {
     const std::string name = unique_name("held"), file = fresh("play_held.mcap");
     Process player = play(recorded(), name, {"--loop", "--rate", "2"});

@@ -84,7 +84,7 @@ Content read_whole(const std::string& file, bool may_have_gaps = false)
         if (channel->topic != std::string(wire::topic_of<plab_v2_Frame>().name)) continue;
         REQUIRE(decoder.decode(message.data, frame));
         REQUIRE(frame->sequence_number > sample);
-        REQUIRE(frame->step >= step);  // whoever comes gets the present step's once more
+        REQUIRE(frame->step >= step);  // a new reader gets the frame of the present step again
         sample = frame->sequence_number, step = frame->step, out.newest_ns = frame->stamp_ns;
     }
 }
@@ -94,7 +94,7 @@ std::int64_t wall_ns()
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Another reader of the same frames: what could be had by when.
+/// Another reader of the same frames: which of them were available at which time.
 class Witness
 {
 public:
@@ -106,7 +106,7 @@ public:
                 if (info.valid_data) seen_.emplace_back(wall_ns(), frame.stamp_ns);
             });
     }
-    /// When the latest frame was made that had come by then; 0: none had.
+    /// The time at which the latest frame received by then was made; 0: none was.
     std::int64_t before(std::int64_t then) const
     {
         std::int64_t out = 0;
@@ -119,7 +119,7 @@ private:
     std::vector<std::pair<std::int64_t, std::int64_t>> seen_;  ///< ns since 1970: arrived, made
 };
 
-/// A file of that process cannot grow beyond `bytes`: as on a full disk, a write comes back short, and the next one fails.
+/// A file of that process cannot grow beyond `bytes`: as on a full disk, a write is short, and the next one fails.
 void limit_files(const Process& process, rlim_t bytes)
 {
     rlimit limit{};
@@ -136,8 +136,8 @@ TEST_CASE(
 {
     constexpr int kKills = 10;
     // A chunk is 12 ms old at the most; before that a frame goes through two threads of the recorder. That takes a millisecond,
-    // but who else runs on the machine may hold them up: by 20 ms at the most, and not in half of the kills. What the bus
-    // itself takes, the test's own reader tells.
+    // but other programs on the machine may delay them: by 20 ms at the most, and not in half of the kills. The delay of the bus
+    // itself is measured by the test's own reader.
     constexpr std::int64_t kPromisedNs = 20'000'000, kHeldUpNs = 20'000'000;
     int within = 0;
     const Server server(kScene, {"--rate", "real", "--states", "all"});
@@ -176,7 +176,7 @@ TEST_CASE(
         CHECK(whole.messages == left.messages);
         CHECK(whole.newest_ns == left.newest_ns);
         const auto report = nlohmann::json::parse(recovered.output);
-        // A write that was under way is cut at the end of the file; nothing else is of no use.
+        // A write in progress is truncated at the end of the file; everything else is usable.
         CHECK(report["lost"].size() <= 1);
     }
     std::sort(ages.begin(), ages.end());
@@ -185,7 +185,7 @@ TEST_CASE(
     CHECK(ages.front() > 0);
 }
 
-TEST_CASE("who leaves topics out that a replay needs is told")
+TEST_CASE("leaving out topics that a replay needs gives a warning")
 {
     const Server server(kScene, {"--rate", "real"});
     const Outcome few = control(server, {"record", "-o", fresh("few.mcap"), "-d", "0.1", "--topics", "plab/states", "plab/hashes"});
@@ -196,7 +196,7 @@ TEST_CASE("who leaves topics out that a replay needs is told")
     CHECK_MESSAGE(!has(all.errors, "replayed"), all.errors);
 }
 
-TEST_CASE("a disk that is full: the recorder says so, ends when it is told to, and what came before can be read")
+TEST_CASE("a full disk: the recorder reports it, ends when requested, and everything before can be read")
 {
     const Server server(kScene, {"--rate", "real", "--states", "all"});
     const std::string file = fresh("full.mcap"), saved = fresh("full_saved.mcap");
@@ -226,7 +226,7 @@ TEST_CASE("a disk that is full: the recorder says so, ends when it is told to, a
     CHECK_MESSAGE(has(none.errors, "No space left on device"), none.errors);
 }
 
-TEST_CASE("a disk that takes data again: the file is whole but for its gap, and the exit code tells")
+TEST_CASE("a disk that accepts data again: the file is complete except for its gap, and the exit code shows that")
 {
     const Server server(kScene, {"--rate", "real", "--states", "all"});
     const std::string file = fresh("again.mcap");
@@ -249,7 +249,7 @@ TEST_CASE("a disk that takes data again: the file is whole but for its gap, and 
     std::uint64_t missing = 0;
     const auto summary = nlohmann::json::parse(info.output);
     for (const auto& gap : summary["gaps"]) missing += gap["messages"].get<std::uint64_t>();
-    // Gaps of both kinds: what the disk did not take, and what a busy machine lost on the bus.
+    // Gaps of both kinds: messages that the disk did not accept, and messages that a busy machine lost on the bus.
     CHECK(missing == reported["dropped"].get<std::uint64_t>() + reported["missing"].get<std::uint64_t>());
     CHECK(reported["dropped"] > 0);
 }

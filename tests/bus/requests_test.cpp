@@ -22,7 +22,7 @@ struct Client
 
 }  // namespace
 
-TEST_CASE("a swap takes effect at the step that it names, and the reply says what it did")
+TEST_CASE("a swap takes effect at the step that it names, and the reply reports its effect")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--rate", "max", "--paused"});
     Client client(server);
@@ -59,7 +59,7 @@ TEST_CASE("a swap takes effect at the step that it names, and the reply says wha
     CHECK(has(reasons(stale), "revision 1"));
 }
 
-TEST_CASE("a request that is sent again is carried out once, and its answer comes again")
+TEST_CASE("a request that is sent again is carried out once, and its answer is repeated")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     Client client(server);
@@ -107,7 +107,7 @@ TEST_CASE("several operations are one transaction: all or none")
     CHECK(shows(known, [](const link::CatalogueContents& now) { return now.objects.at("red").mass == doctest::Approx(0.05); }));
 }
 
-TEST_CASE("components come and go: the catalogue follows, and what refers to the lost is protected")
+TEST_CASE("components are added and removed: the catalogue follows, and components in use are protected")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     Client client(server);
@@ -167,7 +167,7 @@ TEST_CASE("load, reset, dt and shutdown")
     CHECK(server.process().wait(Milliseconds(5000)) == 0);
 }
 
-TEST_CASE("clients whose requests wait are told when the server ends, and it ends well")
+TEST_CASE("clients with waiting requests are told when the server ends, and it ends with success")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     Client client(server);

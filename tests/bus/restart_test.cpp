@@ -1,4 +1,4 @@
-// The loop outlives its bus: plab-bus is ended in the middle of a run.
+// The step loop outlives plab-bus, which is ended in the middle of a run.
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -31,7 +31,7 @@ int bus_of(int server)
     return 0;
 }
 
-/// Whether a process is there and more than what its parent has not waited for yet.
+/// Whether a process exists and is not a zombie.
 bool runs(int pid)
 {
     std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
@@ -56,7 +56,7 @@ std::map<std::int64_t, std::string> hashes_in(const std::string& text)
     return out;
 }
 
-/// Seconds until a frame of a later step than any before has come.
+/// Seconds until a frame of a later step than any before has arrived.
 double seconds_to_frame(const link::Session& session, wire::Reader<plab_v2_Frame>& frames)
 {
     std::int64_t last = -1;
@@ -69,7 +69,7 @@ double seconds_to_frame(const link::Session& session, wire::Reader<plab_v2_Frame
     return Seconds(Clock::now() - begin).count();
 }
 
-/// Kinds of events that have come.
+/// Kinds of events received.
 std::vector<std::string> kinds(wire::Reader<plab_v2_Events>& events)
 {
     std::vector<std::string> out;
@@ -81,8 +81,8 @@ std::vector<std::string> kinds(wire::Reader<plab_v2_Events>& events)
     return out;
 }
 
-/// Counts events of one kind, and those that are missing between the ones that came: a new plab-bus may write before a reader has found
-/// it. Numbers are without gaps, so nothing is lost unnoticed.
+/// Counts events of one kind, and those missing between the received ones: a new plab-bus may write before a reader has discovered
+/// it. Numbers are without gaps, so every loss is noticed.
 class EventCount
 {
 public:
@@ -116,7 +116,7 @@ std::string names_in(const link::CatalogueContents& snapshot)
     return out + std::to_string(snapshot.types.size());
 }
 
-/// The lease after which readers give up what a dead participant wrote, shortened. On loopback, like everybody here.
+/// The lease after which readers drop the instances of a dead participant, shortened. On loopback, like everything here.
 std::vector<std::string> with_lease(int seconds)
 {
     const char* uri = std::getenv("CYCLONEDDS_URI");
@@ -140,7 +140,7 @@ TEST_CASE("plabd maps no DDS library with the bus on: plab-bus does")
     CHECK_FALSE(runs(bus));
 }
 
-TEST_CASE("plab-bus is killed: the run goes on bit for bit, and a request that is under way takes effect once")
+TEST_CASE("plab-bus is killed: the run continues bit for bit, and a request in progress takes effect once")
 {
     const std::int64_t at = 400;
     const Outcome alone =
@@ -161,11 +161,11 @@ TEST_CASE("plab-bus is killed: the run goes on bit for bit, and a request that i
     REQUIRE(bus != 0);
     REQUIRE(kill(bus, SIGKILL) == 0);
     const auto killed = Clock::now();
-    // It is sent while nobody is there, and again until there is a reply.
+    // It is sent while there is no plab-bus, and again until there is a reply.
     const link::Reply reply = ask(*caller, link::Request{{{"swap", "gears", kSwapped}}, at, {}});
     CHECK_MESSAGE(reply.done(), reasons(reply));
     CHECK(reply.step == at);
-    // When the run is at that step, and not later: the way there and back is open long before.
+    // When the run is at that step, and not later: the connection in both directions exists long before.
     CHECK(Seconds(Clock::now() - killed).count() < static_cast<double>(at) / kStepsPerSecond);
     CHECK(another_bus(server, bus) != 0);
     std::vector<std::string> seen = kinds(*events);
@@ -177,7 +177,7 @@ TEST_CASE("plab-bus is killed: the run goes on bit for bit, and a request that i
     CHECK(hashes_in(server.process().output()) == expected);
 }
 
-TEST_CASE("however plab-bus ends, the loop loses no time, and within a second frames and replies are there again")
+TEST_CASE("however plab-bus ends, the loop loses no time, and within a second frames and replies arrive again")
 {
     Server server(kScene, {"--rate", "real"});
     const link::Session session = server.session();
@@ -227,7 +227,7 @@ TEST_CASE("however plab-bus ends, the loop loses no time, and within a second fr
     CHECK(server.end() == 0);
 }
 
-TEST_CASE("after a kill: the catalogue for late joiners and for those who were there, a reply again")
+TEST_CASE("after a kill: the catalogue for new and for existing readers, and replies")
 {
     Server server(kScene, {"--rate", "real"}, with_lease(2));
     const link::Session session = server.session();
@@ -248,7 +248,7 @@ TEST_CASE("after a kill: the catalogue for late joiners and for those who were t
     CHECK(ask(*caller, {"push", "fan", "0 0 0"}).outcome != "");
     const link::Session late = server.session();
     CHECK(names_in(catalogue(late).now()) == before);
-    // The lease of the one that was killed ends: nothing of what its successor said goes with it.
+    // The lease of the killed process ends: this does not affect what its successor published.
     std::this_thread::sleep_for(Milliseconds(3500));
     (void)early.update();
     CHECK(early.now().server.has_value());
@@ -257,7 +257,7 @@ TEST_CASE("after a kill: the catalogue for late joiners and for those who were t
     CHECK(server.end() == 0);
 }
 
-TEST_CASE("a server that is paused shows its last frame again after a kill")
+TEST_CASE("a paused server publishes its last frame again after a kill")
 {
     Server server(kScene, {"--paused"});
     const link::Session session = server.session();
@@ -278,7 +278,7 @@ TEST_CASE("a server that is paused shows its last frame again after a kill")
     CHECK(server.end() == 0);
 }
 
-TEST_CASE("one that dies again and again is started again each time, later and later, and plabd ends all the same")
+TEST_CASE("a plab-bus that dies repeatedly is restarted each time, with increasing delay, and plabd nevertheless ends")
 {
     Server server(kScene, {"--rate", "real"});
     const auto begin = Clock::now();
@@ -297,9 +297,9 @@ TEST_CASE("one that dies again and again is started again each time, later and l
     CHECK(server.end() == 0);
 }
 
-TEST_CASE("one that says nothing is ended and replaced, and plabd ends although it is stopped")
+TEST_CASE("a plab-bus that does not respond is ended and replaced, and plabd ends although plab-bus is stopped")
 {
-    // The second one to be started is no plab-bus: it neither joins nor ends.
+    // The second one to be started is not a plab-bus: it neither joins nor ends.
     const std::string script = scratch_file("silent_bus.sh"), mark = scratch_file("silent_bus.mark");
     (void)std::filesystem::remove(mark);
     std::ofstream(script) << "#!/bin/sh\nn=$(cat " << mark << " 2>/dev/null)\necho x$n > " << mark
@@ -320,7 +320,7 @@ TEST_CASE("one that says nothing is ended and replaced, and plabd ends although 
     CHECK_FALSE(runs(next));
 }
 
-TEST_CASE("plab-bus ends with plabd, however that ends, and is started by nobody else")
+TEST_CASE("plab-bus ends with plabd, however that ends, and can be started by nothing else")
 {
     Server server(kScene, {"--paused"});
     const int bus = bus_of(server.process().pid());
@@ -335,7 +335,7 @@ TEST_CASE("plab-bus ends with plabd, however that ends, and is started by nobody
     CHECK(has(alone.errors, "plab-bus is started by plabd"));
 }
 
-TEST_CASE("a signal to the whole group takes the bus away only after clients have heard the end")
+TEST_CASE("a signal to the whole process group ends plab-bus only after clients have been told of the end")
 {
     Server server(kScene, {"--paused"});
     const link::Session session = server.session();

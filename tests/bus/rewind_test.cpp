@@ -32,7 +32,7 @@ std::string journal_of(const std::string& file)
     return out;
 }
 
-/// A server with the scene's own 240 steps a second, which keeps a snapshot each second and stands still but when it is
+/// A server with the scene's own 240 steps per second, which keeps a snapshot each second and is paused except when it is
 /// stepped.
 class Stepped
 {
@@ -44,7 +44,7 @@ public:
     void step_to(std::int64_t step)
     {
         REQUIRE(control(server_, {"step", std::to_string(step - at_)}).code == 0);
-        // The reply to a step is that it was asked; this one is when it was made.
+        // The reply to a step request confirms the request; this waits until the step has been made.
         const Outcome there = control(server_, {"wait", "--step", std::to_string(step)});
         REQUIRE_MESSAGE(there.code == 0, there.errors);
         at_ = step;
@@ -85,7 +85,7 @@ Process ask_for(const Server& server, const std::vector<std::string>& words)
 
 }  // namespace
 
-TEST_CASE("a request that waited waits again in the run that was rewound to before it, and both runs are the same again")
+TEST_CASE("a waiting request waits again in a run that was rewound to before it, and both runs are reproduced")
 {
     const std::string file = scratch_file("rewound.mcap");
     std::filesystem::remove(file);
@@ -97,7 +97,7 @@ TEST_CASE("a request that waited waits again in the run that was rewound to befo
         { return shows(known, [&](const link::CatalogueContents& now) { return now.objects.at("red").mass == doctest::Approx(mass); }); };
         run.step_to(120);
         Process asks = ask_for(run.server(), {"set", "red.mass=0.03", "--at", "300"});
-        run.step_to(240);  // the snapshot of that second holds who waits
+        run.step_to(240);  // the snapshot of that second contains the waiting request
         CHECK(asks.running());
         CHECK(mass_is(0.02));
         run.step_to(360);
@@ -110,7 +110,7 @@ TEST_CASE("a request that waited waits again in the run that was rewound to befo
         CHECK(mass_is(0.02));
         run.step_to(360);
         CHECK(mass_is(0.03));
-        // Before it was asked nobody waits: that future is given up.
+        // Before the request was made nothing waits: that future is dropped.
         run.rewind_to(72);
         run.step_to(360);
         CHECK(mass_is(0.02));
@@ -125,7 +125,7 @@ TEST_CASE("a request that waited waits again in the run that was rewound to befo
     std::filesystem::remove(file);
 }
 
-TEST_CASE("a client's request that cannot be carried out a second time is that run's affair, and no failure of the server's")
+TEST_CASE("a client's request that cannot be carried out a second time concerns only that run, and is not a failure of the server")
 {
     const std::string file = scratch_file("rewound_refused.mcap");
     std::filesystem::remove(file);

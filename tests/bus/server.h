@@ -55,7 +55,7 @@ private:
     Process process_;
 };
 
-/// What the server keeps for late joiners, all of it.
+/// Everything that the server keeps for late joiners.
 inline link::Catalogue catalogue(const link::Session& session)
 {
     auto out = link::Catalogue::open(session);

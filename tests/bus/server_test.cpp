@@ -20,7 +20,7 @@ TEST_CASE("a server is ready, is found by name, and ends at SIGTERM and SIGINT w
         CHECK(known.now().objects.size() == 8);
         server.process().signal(signal);
         CHECK(server.process().wait(Milliseconds(5000)) == 0);
-        // Whoever watches sees that all of it is gone.
+        // Readers see that all instances are disposed of.
         CHECK(shows(known,
                     [](const link::CatalogueContents& now) { return now.objects.empty() && now.interactions.empty() && !now.server; }));
     }
@@ -65,11 +65,11 @@ TEST_CASE("no DDS is mapped; without the bus there is one thread, with it there 
     CHECK_FALSE(maps(server.process().pid(), "libddsc"));  // plab-bus does: restart_test.cpp
     CHECK(maps(server.process().pid(), "bus.so"));
     CHECK(threads_of(server.process().pid()) > 1);
-    // What only some scenes need: no camera, no OSMesa.
+    // Libraries that only some scenes need: without a camera, no OSMesa.
     CHECK_FALSE(maps(server.process().pid(), "OSMesa"));
 }
 
-TEST_CASE("paused: below one percent of a core, and still answering")
+TEST_CASE("a paused server uses below one percent of a core, and still answers")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     const link::Session session = server.session();
@@ -104,9 +104,9 @@ TEST_CASE("real time is kept without drift, and a rate can be changed while it r
     CHECK(measure(0) == doctest::Approx(4.0).epsilon(0.05));
 }
 
-TEST_CASE("too slow for its rate: it slips, says so, and keeps no backlog")
+TEST_CASE("a server too slow for its rate slips, reports it, and keeps no backlog")
 {
-    // 1/240 s per step at a million times real time is out of reach for anybody.
+    // 1/240 s per step at a million times real time is out of reach for any machine.
     Server server(scene_file("fan_and_balloons.xml"), {"--rate", "1000000"});
     REQUIRE(server.process().wait_for("too slow for the rate", Milliseconds(5000)));
     const link::Session session = server.session();
@@ -115,7 +115,7 @@ TEST_CASE("too slow for its rate: it slips, says so, and keeps no backlog")
     const auto servers = session.servers(Seconds(2), 1);
     REQUIRE(servers.size() == 1);
     CHECK(servers[0].slipped > 0);
-    // Back in real time it does not chase what was given up.
+    // Back in real time it does not make up for the lost time.
     const double from = ask(*caller, {"rate", "", "real"}).time;
     std::this_thread::sleep_for(Milliseconds(500));
     CHECK(ask(*caller, {"pause"}).time - from < 1.0);

@@ -1,4 +1,4 @@
-// plabctl play on a terminal: keys, the bar, and a terminal that is given back as it was.
+// plabctl play on a terminal: keys, the bar, and restoring the terminal.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr tcflag_t kLines = ICANON | ECHO;
 
-/// A program that has a terminal, at whose other end the test sits.
+/// A program on a terminal whose other end belongs to the test.
 class OnTerminal
 {
 public:
@@ -49,7 +49,7 @@ public:
     }
 
     void type(const std::string& keys) { REQUIRE(write(master_, keys.data(), keys.size()) == static_cast<ssize_t>(keys.size())); }
-    /// Until this is on the screen, after what was seen before.
+    /// Waits until this is on the screen, after what was seen before.
     bool shows(const std::string& text)
     {
         const auto end = Clock::now() + std::chrono::seconds(8);
@@ -68,7 +68,7 @@ public:
         pid_ = -1;
         return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     }
-    /// Whether it hands over whole lines, and shows what is typed.
+    /// Whether it passes on whole lines and echoes input.
     bool has_lines() const
     {
         termios now{};
@@ -107,7 +107,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("space, arrows and q do what they say, and the terminal is as it was")
+TEST_CASE("space, arrows and q work, and the terminal is restored")
 {
     MadeOptions made;
     made.steps = 1000;
@@ -131,7 +131,7 @@ TEST_CASE("space, arrows and q do what they say, and the terminal is as it was")
     CHECK(player.has_lines());
 }
 
-TEST_CASE("after Ctrl-C and after SIGTERM the terminal is as it was")
+TEST_CASE("after Ctrl-C and after SIGTERM the terminal is restored")
 {
     const std::string file = make_recording("terminal_2.mcap");
     for (const bool is_typed : {true, false})
@@ -145,7 +145,7 @@ TEST_CASE("after Ctrl-C and after SIGTERM the terminal is as it was")
     }
 }
 
-TEST_CASE("long work shows on a terminal how far it is, and Ctrl-C ends it")
+TEST_CASE("long work shows its progress on a terminal, and Ctrl-C ends it")
 {
     OnTerminal study({program("plab-study"), scene_file("studies/stack.xml"), "--vary", "dt=1/960", "--reference", "exact:rest", "--until",
                       "1000", "-o", scratch_file("terminal_study")});

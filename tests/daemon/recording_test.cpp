@@ -180,10 +180,10 @@ TEST_CASE("a run that was saved goes on as if it had never been left")
     CHECK(json["from"] == "Response/Impulse");
     CHECK(json["steps"] == 240);
     CHECK(json["without"]["cost_ns_per_step"].get<double>() > 0);
-    CHECK(json["course"].back()["time"].get<double>() == doctest::Approx(2.0));
+    CHECK(json["differences"].back()["time"].get<double>() == doctest::Approx(2.0));
     const Outcome same = plabd({"--load", file, "--shadow", "contact.response=Response/Impulse", "--for", "1", "--json"});
     REQUIRE(same.code == 0);
-    for (const auto& row : nlohmann::json::parse(same.output)["course"]) CHECK(row["distance"] == 0.0);
+    for (const auto& row : nlohmann::json::parse(same.output)["differences"]) CHECK(row["distance"] == 0.0);
 
     std::ofstream(file, std::ios::trunc) << "no snapshot";
     const Outcome damaged = plabd({"--load", file, "--no-bus", "--until", "2"});
@@ -204,7 +204,7 @@ TEST_CASE("a request that waits for its step goes with the snapshot, and takes e
     const std::vector<std::string> all = lines_of(whole.output);
     REQUIRE(all.size() == 960);
     CHECK(lines_of(rest.output) == std::vector<std::string>(all.begin() + 240, all.end()));
-    // Without them the course is another one.
+    // Without them the motion differs.
     const Outcome plain = plabd({kScene, "--no-bus", "--until", "4", "--hashes"});
     CHECK(lines_of(plain.output).back() != all.back());
     std::filesystem::remove(file);

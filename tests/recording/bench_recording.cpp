@@ -1,5 +1,5 @@
-// Prints figures of recordings: what writing costs with each compression, what is left of the bytes, what reading and
-// seeking take. CSV on standard output: name, unit, value. Not a test: timings are no claims.
+// Prints figures of recordings: the cost of writing with each compression, the compressed size, the time of reading and
+// seeking. CSV on standard output: name, unit, value. Not a test: timings are not checked.
 //
 //   bench_recording [FOLDER]    FOLDER: for the files, up to 2 GB; the current one by default. They are removed.
 #include <ctime>
@@ -67,7 +67,7 @@ WriterOptions options_of(const Setting& setting)
     return options;
 }
 
-/// A minute of frames, made beforehand, and written as fast as it goes with times as if they came at `rate`.
+/// A minute of frames, made beforehand, and written as fast as possible with times as if they came at `rate`.
 void write_frames(const std::string& path, const Setting& setting, const std::string& scene, std::size_t moving, int rate, int count)
 {
     test::WalkingFrames frames(1000, moving, 1.0 / rate);

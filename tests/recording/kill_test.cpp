@@ -1,4 +1,4 @@
-// A process that records is killed: what it had written at least 20 ms before is in the file, all else is whole.
+// A process that records is killed: everything that it wrote at least 20 ms before is in the file, which is otherwise undamaged.
 #include <doctest/doctest.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -27,11 +27,11 @@ namespace
 constexpr int kKills = 100;
 constexpr std::size_t kMostMessages = 10'000;
 
-/// What the killed process was at, in memory that outlives it.
+/// The progress of the killed process, in memory that outlives it.
 struct Diary
 {
     std::atomic<std::uint64_t> messages{0};              ///< handed to the writer
-    std::atomic<std::int64_t> alive_ns{0};               ///< when it last had nothing left to do
+    std::atomic<std::int64_t> alive_ns{0};               ///< when it was last idle
     std::array<std::int64_t, kMostMessages> written_ns;  ///< when each message was handed over
 };
 
@@ -72,7 +72,7 @@ std::int64_t ns_of(Clock::time_point t) { return t.time_since_epoch().count(); }
         diary.alive_ns.store(ns_of(now));
         if (n % 4 == 3) std::this_thread::sleep_for(1ms);
     }
-    ::_exit(1);  // nobody has killed it
+    ::_exit(1);  // it was not killed
 }
 
 /// Messages of the file, which must be 0, 1, 2, ... without a gap.
@@ -95,7 +95,7 @@ std::uint64_t count_messages(const std::string& path)
 
 }  // namespace
 
-TEST_CASE("killed at a random moment, a hundred times: at most 20 ms are lost")
+TEST_CASE("killed at a random time, a hundred times: at most 20 ms are lost")
 {
     const auto folder = std::filesystem::temp_directory_path() / ("plab_kill_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
@@ -118,7 +118,7 @@ TEST_CASE("killed at a random moment, a hundred times: at most 20 ms are lost")
 
         const std::uint64_t there = count_messages(path);
         REQUIRE(there <= diary->messages.load());
-        // By the clock of the process that was killed: how old what is lost was when it was last seen at work.
+        // By the clock of the killed process: the age of the lost messages when the process was last known to run.
         const std::int64_t lost = there == diary->messages.load() ? 0 : diary->alive_ns.load() - diary->written_ns[there];
         CHECK(lost < 20'000'000);
         longest = std::max(longest, lost);

@@ -1,7 +1,7 @@
-// A recording and what we read in it, for comparison with what others read.
+// A recording and what pLab reads from it, for comparison with what other programs read.
 //
 //   recording_pair write FILE COMPRESSION   a recording of all topics with random samples; COMPRESSION: none, lz4, zstd
-//   recording_pair dump FILE                all messages, one JSON object a line, in the order of their times
+//   recording_pair dump FILE                all messages, one JSON object per line, in the order of their times
 //
 // Numbers are quoted in the dump: JSON's own lose 64-bit integers, infinities and the sign of zero.
 #include <chrono>
@@ -33,7 +33,7 @@ struct Described
     link::DynamicTypePtr type;
 };
 
-/// What each topic's type is made of, as DDS describes it: not by the IDL text that recordings hold.
+/// The members of each topic's type, as described by DDS: not by the IDL text that recordings hold.
 Result<std::map<std::string, Described>> describe_topics()
 {
     auto participant = wire::join({});
@@ -109,7 +109,7 @@ Result<void> write(const std::string& path, const std::string& compression)
     return writer->close();
 }
 
-/// Our types' own C structs hold the same: to a sample and back gives the same bytes.
+/// pLab's own C structs hold the same: conversion to a sample and back gives the same bytes.
 Result<void> check_round_trip(const wire::Topic& topic, ByteView bytes)
 {
     std::vector<std::uint64_t> memory((topic.type->m_size + 7) / 8, 0);

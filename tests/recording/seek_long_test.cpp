@@ -1,4 +1,4 @@
-// A file of 1 GB: what opening it and going to a time take, and that what is found there is right.
+// A file of 1 GB: the time of opening it and of seeking, and that the correct messages are found.
 #include <doctest/doctest.h>
 #include <unistd.h>
 
@@ -61,7 +61,7 @@ double time_of(Work&& work)
 
 }  // namespace
 
-TEST_CASE("opening a file of 1 GB and going to any time in it take less than a second")
+TEST_CASE("opening a file of 1 GB and seeking to any time in it take less than a second")
 {
     const LargeFile file;
     Decoder decoder;
@@ -88,9 +88,9 @@ TEST_CASE("opening a file of 1 GB and going to any time in it take less than a s
             });
         CAPTURE(time);
         CHECK(seconds < 1.0);
-        MESSAGE("opened, and went to ", static_cast<double>(time) * 1e-9, " s, in ", seconds * 1e3, " ms");
+        MESSAGE("opened, and sought ", static_cast<double>(time) * 1e-9, " s, in ", seconds * 1e3, " ms");
     }
-    // Cut, it takes a scan.
+    // A truncated file needs a scan.
     std::filesystem::resize_file(file.path, std::filesystem::file_size(file.path) - 1'000'000);
     const double seconds = time_of(
         [&]
@@ -101,5 +101,5 @@ TEST_CASE("opening a file of 1 GB and going to any time in it take less than a s
             CHECK(reader->last_at("plab/states", file.end / 2)->has_value());
         });
     CHECK(seconds < 5.0);
-    MESSAGE("cut: opened, and went to its middle, in ", seconds * 1e3, " ms");
+    MESSAGE("truncated: opened, and sought its middle, in ", seconds * 1e3, " ms");
 }

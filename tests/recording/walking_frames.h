@@ -1,4 +1,4 @@
-/// Frames as a server sends them, of bodies that move smoothly: what recordings mostly hold.
+/// Frames as a server sends them, of bodies that move smoothly: the main content of recordings.
 #pragma once
 
 #include <cmath>
@@ -14,14 +14,14 @@ namespace plab::test
 class WalkingFrames
 {
 public:
-    /// `moving` of `bodies` move; the others lie where they are.
+    /// `moving` of `bodies` move; the others are at rest.
     WalkingFrames(std::size_t bodies, std::size_t moving, double dt) : bodies_(bodies), moving_(moving), dt_(dt)
     {
         for (std::size_t i = 0; i < bodies; ++i)
             bodies_[i] = {static_cast<std::uint32_t>(i), {normal(), normal(), normal()}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     }
 
-    /// The next frame; its memory is this object's.
+    /// The next frame; its memory belongs to this object.
     const plab_v2_Frame& next()
     {
         for (std::size_t i = 0; i < moving_; ++i) walk(bodies_[i]);

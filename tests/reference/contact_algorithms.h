@@ -1,7 +1,7 @@
 /// All combinations of algorithms that can answer a contact, and tables of the error bounds for each.
 ///
 /// A line of a table covers a set of algorithms; the first line that matches an algorithm applies. Each algorithm must match a
-/// line and each line an algorithm, so whoever adds an algorithm must state its bound.
+/// line and each line an algorithm, so a new algorithm requires that its bound is stated.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -86,13 +86,13 @@ struct Bound
     /// "located", "certified", "halved" (by bisections), "at ends" (None, Speculative), "*", or a resolution.
     const char* when;
     /// "*", "springs", or the beginning of a law's name: "Impulse", "Rows", "Rows/SoftStep", "Penalty".
-    const char* who;
+    const char* response;
     std::array<double, N> most;
     std::array<double, N> least = {};
 
     bool fits(const Algorithm& algorithm) const
     {
-        const std::string_view time = when, answer = who;
+        const std::string_view time = when, answer = response;
         const bool at_time = time == "*" || algorithm.is(time) || (time == "located" && algorithm.locates()) ||
                              (time == "certified" && algorithm.certifies()) ||
                              (time == "halved" && algorithm.locates() && !algorithm.certifies()) ||
@@ -122,7 +122,7 @@ void check_algorithms(const std::vector<Algorithm>& algorithms, const Bound<N> (
         }
     }
     for (std::size_t i = 0; i < Lines; ++i)
-        CHECK_MESSAGE(used[i], "no algorithm has the line ", std::string(table[i].when), " + ", std::string(table[i].who));
+        CHECK_MESSAGE(used[i], "no algorithm has the line ", std::string(table[i].when), " + ", std::string(table[i].response));
 }
 
 }  // namespace plab::test

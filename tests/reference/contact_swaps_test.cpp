@@ -140,7 +140,7 @@ TEST_CASE("H2: in flight a swap of the response moves nothing; in contact it kee
     }
 }
 
-TEST_CASE("H3: a box on springs becomes a hard one without a pop")
+TEST_CASE("H3: when the springs under a box are exchanged for a hard response, the box is not thrown up")
 {
     for (const std::string& hard : hard_types())
     {
@@ -167,7 +167,7 @@ TEST_CASE("H3: a box on springs becomes a hard one without a pop")
     }
 }
 
-TEST_CASE("H4: a hard box becomes one on springs at their equilibrium")
+TEST_CASE("H4: when a hard response is exchanged for springs, they begin at their equilibrium")
 {
     for (const std::string& hard : hard_types())
     {
@@ -196,7 +196,7 @@ TEST_CASE("H4: a hard box becomes one on springs at their equilibrium")
     }
 }
 
-TEST_CASE("a contact goes on under its name when its law is exchanged")
+TEST_CASE("a contact keeps its identifier when its law is exchanged")
 {
     Scene s(box(kSpring), "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());

@@ -74,7 +74,7 @@ TEST_CASE("C2: a sphere meets a wall at an angle: stick and slip, the same in al
         }
 }
 
-TEST_CASE("C3: the end of a rod hits an edge: a quarter of its mass answers")
+TEST_CASE("C3: the end of a rod hits an edge: the effective mass is a quarter of its mass")
 {
     // A slender rod along x, m = 1, L = 1, falls with v = 1; its end meets a small fixed sphere.
     Scene s(
@@ -118,7 +118,7 @@ TEST_CASE("C4: an elastic ball keeps its heights and its times for ten seconds a
     }
 }
 
-TEST_CASE("C5: a ball that loses speed in each bounce comes to rest at the sum of the series")
+TEST_CASE("C5: a ball that loses speed in each bounce comes to rest at the time given by the sum of the series")
 {
     for (const auto& [e, rest] : {std::pair("0.5", 1.35457092295719271), std::pair("0.9", 8.57894917872888718)})
     {
@@ -145,7 +145,7 @@ TEST_CASE("C5: a ball that loses speed in each bounce comes to rest at the sum o
 
 TEST_CASE("a ball that rolls when its bouncing ends comes to rest on the ground and rolls on")
 {
-    // The rotation of its lowest point does not accelerate its gap.
+    // The rotation of its lowest point does not contribute to the acceleration of the gap.
     Scene s(std::string(kGround) + ball("a", "mass=\"0.5\" position=\"0 0 0.6\" linear_velocity=\"1.5 0 0\"") +
                 "<component id=\"g\" type=\"Field/Gravity\" between=\"a\"/>" + contact("a ground", "LocalBisection", "0.6", "0.35"),
             "dt=\"1/240\"");
@@ -160,8 +160,8 @@ TEST_CASE("a ball that rolls when its bouncing ends comes to rest on the ground 
     CHECK(std::fabs(s.vec("a", "position").z - 0.1) < 1e-12);
 }
 
-// Along z, where the wall's normal is exact: deviations of the spheres from a straight line would grow exponentially, as they
-// should.
+// Along z, where the wall's normal is exact: deviations of the spheres from a straight line would grow exponentially, as physics
+// requires.
 TEST_CASE("C6: Galperin's balls count the digits of pi")
 {
     int k = 0;
@@ -177,7 +177,7 @@ TEST_CASE("C6: Galperin's balls count the digits of pi")
                 k < 3 ? "dt=\"1/60\"" : "dt=\"1/240\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.keep_events = true;
-        s.run(600);  // the last ones nearly move along with one another
+        s.run(600);  // the velocities of the last ones are nearly equal
         CHECK(s.count("contact.impact") == digits);
         ++k;
     }
@@ -210,7 +210,7 @@ TEST_CASE("a material pair overrides the response's own law")
     CHECK(near(s.vec("a", "linear_velocity").z, 1, 1e-13));
 }
 
-TEST_CASE("a sensor tells the time of the touch and pushes nobody")
+TEST_CASE("a sensor reports the time of the contact and exerts no force")
 {
     Scene s(kGround + ball("a", "mass=\"1\" position=\"0 0 0.6\" linear_velocity=\"0 0 -1\"") +
                 "<component id=\"contact\" type=\"CDetection/ODE\" between=\"a ground\" resolution=\"Resolution/LocalBisection\" "

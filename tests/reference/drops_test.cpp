@@ -46,9 +46,9 @@ const Method kResting[] = {{"None", "Direct"},      {"None", "SequentialImpulse"
 
 }  // namespace
 
-TEST_CASE("tumbling bodies of any shape gain no energy from contacts at the ends of steps, whoever answers them") { check_drops(11, 40); }
+TEST_CASE("tumbling bodies of any shape gain no energy from contacts at the ends of steps, with any response") { check_drops(11, 40); }
 
-TEST_CASE("the rod that tumbles on the floor at 1/240: 104 J, and never more")
+TEST_CASE("the rod that tumbles on the floor at 1/240 starts with 104 J and never has more")
 {
     Drop d;
     d.axis = {-0.9352, 0.0889, -0.7059}, d.angle = 1.3744, d.spin = {35.8005, -34.3680, -33.7218}, d.until = 0.5;
@@ -63,7 +63,7 @@ TEST_CASE("the rod that tumbles on the floor at 1/240: 104 J, and never more")
     }
 }
 
-TEST_CASE("a spinning ball of unequal inertia keeps its kinetic energy on a smooth plane, and never gains on a rough one")
+TEST_CASE("a spinning ball of unequal inertia keeps its kinetic energy on a smooth plane, and never gains any on a rough one")
 {
     for (const Method& method : kResting)
         for (const double h : {1.0 / 60, 1.0 / 240, 1.0 / 1000})

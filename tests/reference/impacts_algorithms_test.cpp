@@ -128,7 +128,7 @@ std::array<double, 2> rod_on_edge(const Algorithm& algorithm, double e)
             contact("rod edge", algorithm, e, 0, stiffness(algorithm, 1e9, 1e12)),
         "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.warnings_expected = algorithm.is("ConservativeAdvancement");  // the rod turns close by the edge
+    s.warnings_expected = algorithm.is("ConservativeAdvancement");  // the rod rotates close to the edge
     while (s.vec("rod", "linear_velocity").z == -1 && s.simulation().time() < 1) s.step();
     const double J = (1 + e) / (1 + 12 * arm * arm);
     CHECK(std::fabs(J - 0.25 * (1 + e)) < 2e-9);
@@ -137,7 +137,7 @@ std::array<double, 2> rod_on_edge(const Algorithm& algorithm, double e)
 }
 }  // namespace
 
-TEST_CASE("C3: the end of a rod hits an edge: a quarter of its mass answers")
+TEST_CASE("C3: the end of a rod hits an edge: the effective mass is a quarter of its mass")
 {
     // Speed and spin for e = .5 and 1, and for e = 0.
     constexpr Bound<4> table[] = {{"*", "Impulse", {1e-14, 1e-14, 1e-14, 1e-14}},
@@ -185,7 +185,7 @@ std::array<double, 5> bounce_out(const Algorithm& algorithm, double e, double re
 }
 }  // namespace
 
-TEST_CASE("C5: bounces that lose speed end at the sum of their series, on each algorithm as well as it can tell")
+TEST_CASE("C5: bounces that lose speed end at the sum of their series, with the accuracy of each algorithm")
 {
     // h = 1 m: t = sqrt(2 h / g) (1 + e) / (1 - e).
     // If bounces are not located, all bounces that last longer than a step are up to 2 h late; the fourth value is in units of

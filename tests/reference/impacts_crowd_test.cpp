@@ -90,7 +90,7 @@ TEST_CASE("balls in a room keep their energy to rounding at 30 steps per second,
     }
 }
 
-TEST_CASE("boxes that spin among balls: nobody gets out or sinks, nothing is made up")
+TEST_CASE("boxes that spin among balls: no body leaves the room or sinks, and no contact is invented")
 {
     for (const char* resolution : {"LocalRoot", "ConservativeAdvancement"})
     {
@@ -107,7 +107,7 @@ TEST_CASE("boxes that spin among balls: nobody gets out or sinks, nothing is mad
     }
 }
 
-TEST_CASE("the same run twice, and again from a saved step: the same bits")
+TEST_CASE("a repeated run, and a run from a saved step, give the same bits")
 {
     Outcome first;
     for (int run = 0; run < 2; ++run)

@@ -51,7 +51,7 @@ std::array<double, 2> bouncing(const Algorithm& algorithm, double h, double unti
 }
 }  // namespace
 
-TEST_CASE("C4: elastic balls by every algorithm: energy, and height over 20 s at 1/100 and over 10 s at 1/400")
+TEST_CASE("C4: elastic balls with every algorithm: energy, and height over 20 s at 1/100 and over 10 s at 1/400")
 {
     // If it is not located, each of ten bounces is up to 2 h late, at 9.9 m/s: 198 h in 20 s, 99 h in 10 s.
     constexpr double late = 198 * 0.01, less = 99 * 0.0025;
@@ -73,7 +73,7 @@ TEST_CASE("C4: elastic balls by every algorithm: energy, and height over 20 s at
                      });
 }
 
-TEST_CASE("C4: elastic balls by every solver, located: exact for all but semi-implicit Euler, which is of order 1")
+TEST_CASE("C4: elastic balls with every solver, impacts located: exact for all but semi-implicit Euler, which is of order 1")
 {
     for (const SolverAlgorithm& by : {SolverAlgorithm{"StoermerVerlet"},
                                       {"RungeKutta4"},
@@ -122,7 +122,7 @@ double cannon(const Algorithm& algorithm, double h, double away, double until)
 }
 }  // namespace
 
-TEST_CASE("C9: Galileo's cannon by every algorithm, at 1/60, where the gap closes within a step, and at 1e-5")
+TEST_CASE("C9: Galileo's cannon with every algorithm, at 1/60, where the gap closes within a step, and at 1e-5")
 {
     // Springs push both balls at the same time, and give a different result.
     constexpr Bound<2> table[] = {

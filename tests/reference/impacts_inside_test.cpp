@@ -34,7 +34,7 @@ TEST_CASE("C10: a bullet of 1 mm at 1000 m/s meets paper of 0.1 mm, 16.7 m per s
     }
 }
 
-TEST_CASE("C10: a thousand sheets in one step are met in order, each at its time")
+TEST_CASE("C10: a thousand sheets in one step are hit in order, each at its time")
 {
     std::string sheets, all;
     for (int i = 0; i < 1000; ++i)
@@ -56,7 +56,7 @@ TEST_CASE("C10: a thousand sheets in one step are met in order, each at its time
     CHECK(near(s.vec("bullet", "linear_velocity").x, 1000, 1e-15));
 }
 
-TEST_CASE("C10: random shots at a ball that moves: as many hits as the geometry says")
+TEST_CASE("C10: random shots at a moving ball: the number of hits follows from the geometry")
 {
     // Sensor shots: whether the line of a sphere meets a static ball is known in closed form, grazing ones included.
     std::uint64_t seed = 7;
@@ -87,10 +87,10 @@ TEST_CASE("C10: random shots at a ball that moves: as many hits as the geometry 
             worst = std::max(worst, std::fabs(begins[0].time - (s.simulation().time() - s.simulation().dt()) - time));
     }
     CHECK(wrong == 0);
-    CHECK(worst < 1e-12);  // the clock of the event counts from the start of the run
+    CHECK(worst < 1e-12);  // the time of an event counts from the start of the run
 }
 
-TEST_CASE("a spinning box hits the ground with a corner, though both ends of the step are clear")
+TEST_CASE("a spinning box hits the ground with a corner, although it is clear of it at both ends of the step")
 {
     // Half extents .5 x .1 x .1, spinning at 40 rad/s about y above the ground: its end reaches .51 m below the centre at half
     // turns only. With the centre at .505 it touches between two steps.
@@ -114,7 +114,7 @@ TEST_CASE("a spinning box hits the ground with a corner, though both ends of the
     }
 }
 
-TEST_CASE("a ball that passes a post is met or missed by a hair, as the geometry says")
+TEST_CASE("a ball that passes a post hits or narrowly misses it, as the geometry requires")
 {
     for (const double miss : {-1e-6, -1e-9, 1e-9, 1e-6})
     {
@@ -129,7 +129,7 @@ TEST_CASE("a ball that passes a post is met or missed by a hair, as the geometry
     }
 }
 
-TEST_CASE("a ball thrown up touches a ceiling at the top of its way")
+TEST_CASE("a ball thrown up touches a ceiling at the apex of its path")
 {
     // The gap closes and opens within one step: h = v^2 / 2g.
     const double v = 0.3, top = v * v / (2 * 9.81);

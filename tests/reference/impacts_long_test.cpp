@@ -1,10 +1,10 @@
 // The same claims as in impacts_*_test.cpp, at full size.
 //
-// | problem | algorithm           | bound                                                                                 |
-// |---------|---------------------|---------------------------------------------------------------------------------------|
-// | C6      | LocalRoot + Impulse | 31415 exactly; a step of 0.1 s has 9700 of them, so it may take more than others      |
-// | C10     | LocalRoot, sensor   | 0 wrong in 1e6                                                                        |
-// | D3      | LocalRoot + Impulse | 216 elastic balls: energy to 1e-12 over the fall and the collapse (2 s), nobody sinks |
+// | problem | algorithm           | bound                                                                                  |
+// |---------|---------------------|----------------------------------------------------------------------------------------|
+// | C6      | LocalRoot + Impulse | 31415 exactly; a step of 0.1 s has 9700 of them, so it may take more than others       |
+// | C10     | LocalRoot, sensor   | 0 wrong in 1e6                                                                         |
+// | D3      | LocalRoot + Impulse | 216 elastic balls: energy to 1e-12 over the fall and the collapse (2 s), no body sinks |
 #include <algorithm>
 
 #include "impacts.h"
@@ -29,7 +29,7 @@ TEST_CASE("C6: 31415 collisions")
     CHECK(n == 31415);
 }
 
-TEST_CASE("C10: a million random shots at a ball that moves, not one missed")
+TEST_CASE("C10: a million random shots at a moving ball: no hit is missed")
 {
     std::uint64_t seed = 11;
     const auto uniform = [&](double low, double high) { return low + (high - low) * next_uniform(seed); };

@@ -1,5 +1,5 @@
-// Many impacts: their number, their order and what they leave. C4, C5, C6 and C9 as in the catalogue, with the best algorithm; every
-// algorithm, C8 and C13: impacts_flight_algorithms_test.cpp and impacts_series_algorithms_test.cpp.
+// Many impacts: their number, their order and the motion after them. C4, C5, C6 and C9 as in the catalogue, with the best
+// algorithm; every algorithm, C8 and C13: impacts_flight_algorithms_test.cpp and impacts_series_algorithms_test.cpp.
 //
 // | problem | algorithm            | bound                                                                      |
 // |---------|----------------------|----------------------------------------------------------------------------|
@@ -16,7 +16,7 @@
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("C4: 49 elastic balls keep their energy and their heights at dt = 0.01")
+TEST_CASE("C4: 49 elastic balls conserve their energy and their heights at dt = 0.01")
 {
     std::string balls, all;
     for (int i = 0; i < 49; ++i)
@@ -85,15 +85,16 @@ TEST_CASE("C6: Galperin's balls count the digits of pi, whatever happens within 
                 "dt=\"0.1\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.keep_events = true;
-        s.run(600);  // the last ones nearly move along with one another
+        s.run(600);  // the velocities of the last ones are nearly equal
         CHECK(s.count("contact.impact") == digits);
         ++k;
     }
 }
 
-// Both contacts press at once: M x'' = k (-x)+ - k (x - y)+ - M g, m y'' = k (x - y)+ - m g, from the touch of the big one, by
-// Runge-Kutta with 4000 steps in a radian of the fastest oscillation. The small one is fastest at the end of the step in which it leaves.
-TEST_CASE("C9: contacts that last do not do what impacts one after the other do")
+// Both contacts are compressed at the same time: M x'' = k (-x)+ - k (x - y)+ - M g, m y'' = k (x - y)+ - m g, from the first
+// contact of the big one, by Runge-Kutta with 4000 steps per radian of the fastest oscillation. The small one is fastest at the end
+// of the step in which it separates.
+TEST_CASE("C9: contacts of finite duration give a different result from impacts one after the other")
 {
     const double sequential = (3 - 0.1) / (1 + 0.1) * std::sqrt(2 * 9.81);
     for (const auto& [stiffness, fastest] : {std::pair{1e4, 5.271603805363632}, {1e6, 5.05645027296866}})
@@ -114,7 +115,7 @@ TEST_CASE("C9: contacts that last do not do what impacts one after the other do"
     }
 }
 
-TEST_CASE("C9: Galileo's cannon: the small ball leaves with (3M - m)/(M + m) of the speed")
+TEST_CASE("C9: Galileo's cannon: the small ball separates with (3M - m)/(M + m) times the speed")
 {
     Scene s(kGround + sphere("big", 0.1, at({0, 0, 1.1}, {}, 1)) + sphere("small", 0.05, at({0, 0, 1.251}, {}, 0.1)) +
                 gravity("big small") + contact("big small ground", "LocalRoot", "1"),
@@ -124,7 +125,7 @@ TEST_CASE("C9: Galileo's cannon: the small ball leaves with (3M - m)/(M + m) of 
     while (s.count("contact.impact") < 2 && s.simulation().time() < 1) s.step();
     const auto impacts = events_of(s, "contact.impact");
     REQUIRE(impacts.size() >= 2);
-    // The big one turns at t1, and meets the small one, a gap of 1 mm above it, at t2; both fall alike.
+    // The big one rebounds at t1, and meets the small one, a gap of 1 mm above it, at t2; both fall with the same acceleration.
     const double g = 9.81, v = std::sqrt(2 * g), t1 = v / g, t2 = t1 + 1e-3 / (2 * v);
     CHECK(std::fabs(impacts[0].time - t1) < 1e-13);
     CHECK(std::fabs(impacts[1].time - t2) < 1e-13);

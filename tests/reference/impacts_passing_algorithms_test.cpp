@@ -24,7 +24,9 @@ std::array<double, 3> shoot(const Algorithm& algorithm)
 }
 }  // namespace
 
-TEST_CASE("C10: a bullet and paper: certified algorithms at the time, springs too, Speculative short of it; the others miss it and say so")
+TEST_CASE(
+    "C10: a bullet and paper: certified algorithms and springs find the time of impact, Speculative stops short of it; the others miss it "
+    "and report that")
 {
     constexpr Bound<3> table[] = {
         {"certified", "*", {1e-15, 1e-15, 0}},
@@ -37,7 +39,7 @@ TEST_CASE("C10: a bullet and paper: certified algorithms at the time, springs to
     check_algorithms(every_algorithm(), table, shoot);
 }
 
-TEST_CASE("C10: a thousand sheets in one step: a sensor that certifies tells all, the others none")
+TEST_CASE("C10: a thousand sheets in one step: a sensor that certifies reports all of them, the others none")
 {
     std::string sheets, all;
     for (int i = 0; i < 1000; ++i)

@@ -22,7 +22,7 @@ std::array<double, 2> galperin(const Algorithm& algorithm, int k, double digits)
 }
 }  // namespace
 
-TEST_CASE("C6: Galperin's balls by every algorithm: 3, 31, 314 collisions, and energy")
+TEST_CASE("C6: Galperin's balls with every algorithm: 3, 31, 314 collisions, and energy")
 {
     // Speculative: the speed that closes a gap is subtracted from the approach, and restitution returns a share of the rest.
     constexpr Bound<6> table[] = {
@@ -84,10 +84,10 @@ std::array<double, 2> cradle_error(const Algorithm& algorithm, double gap)
     return worst;
 }
 
-/// Speeds of the first and of the last ball after one came in on four that touch. Impulses, one pair after the other: k in, k out. Rows at
-/// the ends of steps, all at once: the first contact parts at 1 m/s, the others at none. Springs: the chain's own equations, m x'' = -k x+
-/// or -k (x+)^1.5 between neighbours, by Runge-Kutta of order
-/// 4 with steps of 1e-5 (m / k)^(1/2), which agree with 2e-5 to 1e-11.
+/// Speeds of the first and of the last ball after one ball hit four that touch. Impulses, one pair after the other: k in, k out.
+/// Rows at the ends of steps, all at once: the first contact separates at 1 m/s, the others do not separate. Springs: the chain's
+/// own equations, m x'' = -k x+ or -k (x+)^1.5 between neighbours, by Runge-Kutta of order 4 with steps of 1e-5 (m / k)^(1/2),
+/// which agree with 2e-5 to 1e-11.
 std::array<double, 2> touching_law(const Algorithm& algorithm)
 {
     if (algorithm.law() == "Penalty") return {-0.13227948471, 0.94240173339};
@@ -104,7 +104,7 @@ namespace
 std::array<double, 5> chain_speeds(double k, double power, double gap)
 {
     constexpr double kStep = 2e-8, kEnd = 2e-3;  // s
-    using State = std::array<double, 10>;        // ways, speeds
+    using State = std::array<double, 10>;        // displacements, speeds
     const auto rates = [&](const State& y)
     {
         State out{};
@@ -140,7 +140,7 @@ std::vector<Algorithm> without_springs()
 }
 }  // namespace
 
-TEST_CASE("C8: springs across gaps of 1e-6 m: who stood still is found when it is hit, and hits the next one")
+TEST_CASE("C8: springs across gaps of 1e-6 m: a resting ball is detected when it is hit, and hits the next one")
 {
     for (const char* law : {"Penalty", "HuntCrossley"})
     {
@@ -154,7 +154,7 @@ TEST_CASE("C8: springs across gaps of 1e-6 m: who stood still is found when it i
     }
 }
 
-TEST_CASE("C8: Newton's cradle by every algorithm: k in, k out; with gaps of 1e-6 and 1e-9 m")
+TEST_CASE("C8: Newton's cradle with every algorithm: k in, k out; with gaps of 1e-6 and 1e-9 m")
 {
     // Speeds, momentum and energy; the same for the smaller gap.
     // Rows at the ends of steps: gaps up to 1e-9 m count as touching, so all balls share the impact; across a gap of 1e-6 m,
@@ -175,7 +175,7 @@ TEST_CASE("C8: Newton's cradle by every algorithm: k in, k out; with gaps of 1e-
                      });
 }
 
-TEST_CASE("C8: Newton's cradle without gaps: each response keeps to its declared law")
+TEST_CASE("C8: Newton's cradle without gaps: each response follows its declared law")
 {
     // One in: speeds of the first and of the last ball, relative to those of the law. k in: momentum and energy.
     constexpr Bound<3> table[] = {
@@ -246,7 +246,7 @@ std::array<double, 4> rack_error(const Algorithm& algorithm, double gap)
 }
 }  // namespace
 
-TEST_CASE("C13: a rack breaks as symmetric as it stands, whatever the ids: touching, by every algorithm")
+TEST_CASE("C13: a symmetric rack breaks symmetrically, whatever the ids of the balls: touching, with every algorithm")
 {
     // Bisection distinguishes touching from separated only to rounding, and simultaneous impacts are answered one after the
     // other: no symmetry.

@@ -27,7 +27,7 @@ constexpr const char* kManagers[] = {"Direct", "SequentialImpulse", "SoftStep"};
 
 }  // namespace
 
-TEST_CASE("a fast ball does not get behind a thin wall, at any phase of the step")
+TEST_CASE("a fast ball does not pass through a thin wall, at any phase of the step")
 {
     for (const char* manager : kManagers)
         for (int phase = 0; phase < 20; ++phase)
@@ -48,7 +48,7 @@ TEST_CASE("a fast ball does not get behind a thin wall, at any phase of the step
         }
 }
 
-TEST_CASE("who passes by is not held up, and nothing is told of it")
+TEST_CASE("a body that passes by is not slowed down, and no event is reported")
 {
     for (const char* manager : kManagers)
     {
@@ -64,7 +64,7 @@ TEST_CASE("who passes by is not held up, and nothing is told of it")
     }
 }
 
-TEST_CASE("a plastic fall ends on the ground, not in it")
+TEST_CASE("after a plastic impact a body lies on the ground and has not sunk in")
 {
     for (const char* manager : kManagers)
     {
@@ -85,6 +85,6 @@ TEST_CASE("a plastic fall ends on the ground, not in it")
         CHECK(lowest > 0.05 - 1e-3);
         CHECK(std::fabs(s.vec("ball", "position").z - 0.05) < 1e-3);
         CHECK(s.count("contact.begin") == s.count("contact.end") + 1);
-        CHECK(s.count("contact.begin") <= 2);  // a fall may stop short by a part of a step, and begin again
+        CHECK(s.count("contact.begin") <= 2);  // the fall may be stopped a part of a step too early, and begin again
     }
 }

@@ -8,8 +8,8 @@
 //
 // | resolution                                   | bound                                                                                |
 // |----------------------------------------------|--------------------------------------------------------------------------------------|
-// | LocalRoot                                    | 0 missed, 0 made up, time 1e-11 s head-on, 1e-8 s where a corner comes round         |
-// | ConservativeAdvancement                      | the same where it does not say resolution.grazing (it gives up after max_iterations) |
+// | LocalRoot                                    | 0 missed, 0 invented, time 1e-11 s head-on, 1e-8 s where a corner rotates into it    |
+// | ConservativeAdvancement                      | the same, except where it reports resolution.grazing (it stops after max_iterations) |
 // | Bisection, LocalBisection, None, Speculative | what begins and ends within a step is not seen: no bound                             |
 #include <algorithm>
 #include <array>
@@ -146,7 +146,7 @@ Count fire(const Solid& solid, const std::string& resolution, int shots, bool pa
     {
         Shot shot;
         shot.w = vector(passes ? 300 : 100), shot.q = normalized(Quat{uniform(0.1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
-        // Through the wall; or along it, where only a corner that comes round may touch.
+        // Through the wall; or along it, where only a rotating corner may touch.
         if (passes)
             shot.p = {uniform(-2, -0.5), uniform(-5, 5), uniform(-5, 5)},
             shot.v = {uniform(70, 1000), uniform(-300, 300), uniform(-300, 300)};
@@ -176,7 +176,7 @@ Count fire(const Solid& solid, const std::string& resolution, int shots, bool pa
 }
 }  // namespace
 
-TEST_CASE("random shots of spinning boxes, capsules and hulls at a thin wall: none missed, none made up, each at its time")
+TEST_CASE("random shots of spinning boxes, capsules and hulls at a thin wall: no hit missed, none invented, each at its time")
 {
     for (const Solid& solid : solids())
         for (const char* resolution : {"LocalRoot", "ConservativeAdvancement"})
@@ -198,7 +198,7 @@ TEST_CASE("random shots of spinning boxes, capsules and hulls at a thin wall: no
             }
 }
 
-TEST_CASE("and with an answer nobody gets through")
+TEST_CASE("with a response no body passes through")
 {
     std::uint64_t seed = 5;
     const auto uniform = [&](double low, double high) { return low + (high - low) * next_uniform(seed); };

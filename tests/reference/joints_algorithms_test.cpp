@@ -68,7 +68,7 @@ double mode_error(double w, const SolverAlgorithm& algorithm, int steps)
 
 }  // namespace
 
-TEST_CASE("A4: Lagrange's top at 200 rad/s by every solver, 0.1 s and 1 s")
+TEST_CASE("A4: Lagrange's top at 200 rad/s with every solver, after 0.1 s and 1 s")
 {
     // h |w| = 0.2 at 1/1000. Late: the nutation's phase at 1 s.
     struct Row
@@ -101,7 +101,7 @@ TEST_CASE("A4: Lagrange's top at 200 rad/s by every solver, 0.1 s and 1 s")
     check_same({"Automatic"}, {"RungeKutta4"}, 1000, top_error_early);
 }
 
-TEST_CASE("A9: a double pendulum by every solver, 5 s")
+TEST_CASE("A9: a double pendulum with every solver, after 5 s")
 {
     const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 1000, 0.17, 1},
@@ -119,7 +119,7 @@ TEST_CASE("A9: a double pendulum by every solver, 5 s")
     check_same({"Automatic"}, {"RungeKutta4"}, 500, double_pendulum_error);
 }
 
-TEST_CASE("E1: a pendulum by every solver, 10 s, on each kind of joint")
+TEST_CASE("E1: a pendulum with every solver, after 10 s, on each kind of joint")
 {
     // One motion, three sets of rows: the same error except for that of a body's rotation (a point on a rod has none).
     struct Row
@@ -153,11 +153,12 @@ TEST_CASE("E1: a pendulum by every solver, 10 s, on each kind of joint")
     check_same({"Automatic"}, {"RungeKutta4"}, 200, on("Hinge"));
 }
 
-TEST_CASE("E6: modes of a hanging chain by every solver")
+TEST_CASE("E6: modes of a hanging chain with every solver")
 {
-    // Errors of phase by theory, w' = w (1 + c (h w)^2): c = 1/24 for StoermerVerlet and its kind, -1/12 for ImplicitMidpoint; over
-    // 5/4 periods that is 5/2 pi c (2 pi / steps)^2. SemiImplicitEuler: its ellipse is askew by h w / 2. The amplitude shifts the
-    // frequencies as well, by its square: what is left of that, 2e-8 in the first mode and 7e-8 in the third, hides the order 4 there.
+    // Phase errors by theory, w' = w (1 + c (h w)^2): c = 1/24 for StoermerVerlet and similar methods, -1/12 for ImplicitMidpoint;
+    // over 5/4 periods that is 5/2 pi c (2 pi / steps)^2. SemiImplicitEuler: its ellipse in phase space is sheared by h w / 2. The
+    // amplitude shifts the frequencies as well, by its square: the remaining error, 2e-8 in the first mode and 7e-8 in the third,
+    // hides the order 4 there.
     const double turn = 2 * M_PI / 400, second = 2.5 * M_PI * turn * turn;
     const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 400, turn / 2, 1},

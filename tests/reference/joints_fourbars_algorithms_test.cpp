@@ -39,7 +39,7 @@ double four_bars_error(const SolverAlgorithm& algorithm, int steps)
 
 }  // namespace
 
-TEST_CASE("E2: two four-bars through their singular places, by every solver")
+TEST_CASE("E2: two four-bars pass their singular configurations, with every solver")
 {
     CHECK(distance(four_bars_top(2, 10), {.328458111540815379, 0, .944518538178600962}) < 1e-11);
     CHECK(distance(four_bars_top(40, 10), {.18051222668672839, 0, .983572740582311575}) < 1e-11);

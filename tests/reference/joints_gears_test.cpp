@@ -63,7 +63,7 @@ TEST_CASE("F8: a pendulum geared to a flywheel swings with the inertia of both, 
     // About the pivot: inertia .5, m g l = 4.905; flywheel .005 at ratio 10: w^2 = 9.81 / 2 for small angles.
     const double w = std::sqrt(4.905 / (.5 + 100 * .005));
     CHECK(near(w, 2.21472345903501, 1e-14));
-    const double period = 4 * 1.8540746773013719 / w;  // K(sin 45 deg): let go horizontally
+    const double period = 4 * 1.8540746773013719 / w;  // K(sin 45 deg): released horizontally
     const auto error = [&](int steps)
     {
         Scene s(solver_is("RungeKutta4") + gravity() + body("bob", 1, {.25, .25, .25}, {.5, 0, 0}) +
@@ -122,7 +122,7 @@ TEST_CASE("F9: forces between helical teeth: 1000 N m at a pitch radius of 2 m, 
     }
 }
 
-TEST_CASE("the torque of a gear in motion is what its driven's inertia takes, and angles of teeth beyond 90 deg are refused")
+TEST_CASE("the torque of a gear in motion is what accelerates its driven wheel, and tooth angles beyond 90 deg are refused")
 {
     // A torque of 6 N m on J = 10, ratio -0.1, J = 100: F1.
     const std::string pair = shaft("a", 10) + shaft("b", 100) + torque("t", "a", 6);
@@ -140,7 +140,7 @@ TEST_CASE("the torque of a gear in motion is what its driven's inertia takes, an
           std::string::npos);
 }
 
-TEST_CASE("a gear between prescribed wheels that turn otherwise says so once; one that they obey says nothing")
+TEST_CASE("a gear between prescribed wheels that violate its ratio reports that once; one whose ratio they satisfy reports nothing")
 {
     for (const double factor : {2., 3.})
     {
@@ -156,7 +156,7 @@ TEST_CASE("a gear between prescribed wheels that turn otherwise says so once; on
     }
 }
 
-TEST_CASE("gears between bodies count their turns, fast and for long")
+TEST_CASE("gears between bodies count their turns correctly at high speed and for a long time")
 {
     // 1000 rad/s at 1/60: more than two turns a step.
     Scene s(solver_is("RungeKutta4") + wheel("a", 2, {0, 0, 0}, "angular_velocity='0 0 1000'") +
@@ -170,7 +170,7 @@ TEST_CASE("gears between bodies count their turns, fast and for long")
     CHECK(std::fabs(s.real("gear", "phase_error")) < 1e-9);
 }
 
-TEST_CASE("a gear that comes while wheels turn brings their speeds together and books what that takes")
+TEST_CASE("a gear that is added while wheels turn matches their speeds and books the energy that this takes")
 {
     // F3 between bodies: J = 1 at 100 rad/s, J = 2 at rest, ratio -0.5.
     Scene s(solver_is("RungeKutta4") + wheel("a", 1, {0, 0, 0}, "angular_velocity='0 0 100'") + wheel("b", 2, {1, 0, 0}) +
@@ -182,7 +182,7 @@ TEST_CASE("a gear that comes while wheels turn brings their speeds together and 
     CHECK(near(s.vec("b", "angular_velocity").z, -100. / 3, 1e-13));
 }
 
-TEST_CASE("a motor turns its wheel at its speed; a servo nears its target as exp(-gain t)")
+TEST_CASE("a motor turns its wheel at the set speed; a servo approaches its target as exp(-gain t)")
 {
     Scene s(solver_is("RungeKutta4") + wheel("a", 2, {0, 0, 0}) + component("m", "Constraint/Motor", "b='a' speed='3'") +
                 wheel("b", 2, {2, 0, 0}) + component("servo", "Constraint/Motor", "b='b' mode='servo' speed='inf' target='7' gain='2'"),
@@ -193,7 +193,7 @@ TEST_CASE("a motor turns its wheel at its speed; a servo nears its target as exp
     CHECK(near(s.real("bearing_b", "angle"), 7 * (1 - std::exp(-6.)), 1e-8));
 }
 
-TEST_CASE("springs: along a line and about an axis, they swing as k/m and k/J say")
+TEST_CASE("springs along a line and about an axis oscillate at the frequencies of k/m and k/J")
 {
     // Damped: x = exp(-c t / 2m) (cos + ..), against the closed form after 1 s.
     constexpr double k = 100, c = 2, m = 2, x0 = .1;

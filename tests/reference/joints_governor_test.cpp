@@ -98,7 +98,7 @@ TEST_CASE("B6: a stiff governor with error control, 10 s: a millionth of a metre
     CHECK(radau.cost < 4);
 }
 
-TEST_CASE("B6: by every solver")
+TEST_CASE("B6: with every solver")
 {
     const double expected = height({"DormandPrince54", "relative_tolerance='1e-9' absolute_tolerance='1e-11'"}, 20, .2);
     CHECK(std::fabs(height({"DormandPrince54", kLoose}, 20, 1) - kHeightAt1) < 1e-11);
@@ -124,7 +124,7 @@ TEST_CASE("B6: by every solver")
     check_same({"Exact"}, {"RungeKutta4"}, 4000, error);
 }
 
-TEST_CASE("B6: explicit algorithms beyond their limit say so")
+TEST_CASE("B6: explicit algorithms beyond their stability limit report that")
 {
     for (const SolverAlgorithm& algorithm :
          {SolverAlgorithm{"SemiImplicitEuler"}, SolverAlgorithm{"StoermerVerlet"}, SolverAlgorithm{"RungeKutta4"},

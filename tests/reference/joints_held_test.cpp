@@ -72,13 +72,13 @@ TEST_CASE("a limit stops a fall along a slider, with and without rebound")
     }
 }
 
-TEST_CASE("a limit gives its restitution back, with joints beside it, by Direct and by SoftStep")
+TEST_CASE("a limit rebounds with its restitution, combined with joints, with Direct and with SoftStep")
 {
     // Falls 0.5 m: arrives at v = sqrt(g). A pendulum released horizontally reaches 0.6 rad with w^2 = 2 m g l sin(0.6) / J.
     struct Row
     {
         std::string type;
-        double error;  ///< m, of the joints: SoftStep's give way
+        double error;  ///< m, of the joints: those of SoftStep are compliant
     };
     for (const Row& row : {Row{"Direct", 1e-6}, Row{"SoftStep", 3e-3}})
         for (const double e : {0., .5, 1.})
@@ -111,7 +111,7 @@ TEST_CASE("a limit gives its restitution back, with joints beside it, by Direct 
         }
 }
 
-TEST_CASE("a manager that does not get there warns, with numbers that can be read")
+TEST_CASE("a manager that does not converge warns, with readable numbers")
 {
     Scene s(gravity() + shape("cube", "Box", "half_extents='0.5 0.5 0.5'") + ground() +
             "<component id='manager' type='Manager/SequentialImpulse' tolerance='1e-13' max_iterations='2'/>"
@@ -129,7 +129,7 @@ TEST_CASE("a manager that does not get there warns, with numbers that can be rea
     CHECK_MESSAGE(reported->message.find("0.000") == std::string::npos, reported->message);
 }
 
-TEST_CASE("a pendulum comes to rest on the limit of its hinge, which bears its moment")
+TEST_CASE("a pendulum comes to rest on the limit of its hinge, which carries its moment")
 {
     Scene s(solver_is("RungeKutta4") + gravity() + body("bob", 1, {.1, .1, .1}, {1, 0, 0}) +
                 joint("pivot", "Hinge", "", "bob", "anchor='0 0 0' axis='0 1 0'") + manager() +
@@ -144,7 +144,7 @@ TEST_CASE("a pendulum comes to rest on the limit of its hinge, which bears its m
     CHECK(s.simulation().totals().kinetic < 1e-15);
 }
 
-TEST_CASE("a rope is a limit of distance: slack while it can, then it bears the weight")
+TEST_CASE("a rope is a limit of distance: it is slack up to its length, then it carries the weight")
 {
     Scene s(solver_is("RungeKutta4") + gravity() + body("bob", 3, {.1, .1, .1}, {0, 0, -.5}) + manager() +
                 joint("rope", "Limit", "", "bob", "along='distance' anchor_a='0 0 0' anchor_b='0 0 0' upper='1' manager='manager'"),
@@ -157,7 +157,7 @@ TEST_CASE("a rope is a limit of distance: slack while it can, then it bears the 
     CHECK(near(s.vec("rope", "force").z, 3 * kG, 1e-9));
 }
 
-TEST_CASE("a motor with a largest effort gives that until it has its speed, and yields to more")
+TEST_CASE("a motor with a largest effort exerts that until it has reached its speed, and yields to a larger load")
 {
     // 4 N m on 2 kg m^2: 2 rad/s^2, up to 3 rad/s.
     Scene s(solver_is("RungeKutta4") + shaft("rotor", 2) + manager() +
@@ -180,7 +180,7 @@ TEST_CASE("a motor with a largest effort gives that until it has its speed, and 
     CHECK(near(weak.spin("rotor"), -3, 1e-12));
 }
 
-TEST_CASE("a body that lies on the only limit of its slider, at 0, lies still")
+TEST_CASE("a body that rests on the only limit of its slider, at 0, does not move")
 {
     for (const char* bounce : {"0", "0.5"})
     {
@@ -201,7 +201,7 @@ TEST_CASE("a body that lies on the only limit of its slider, at 0, lies still")
     }
 }
 
-TEST_CASE("limits and weak motors without a manager are refused with what would be right")
+TEST_CASE("limits and weak motors without a manager are refused, and the message says what would be accepted")
 {
     const Scene weak(shaft("rotor", 2) + "<component id='motor' type='Constraint/Motor' b='rotor' max_effort='4'/>");
     CHECK(weak.error().find("a finite max_effort needs a manager") != std::string::npos);
@@ -209,7 +209,7 @@ TEST_CASE("limits and weak motors without a manager are refused with what would 
     CHECK(loose.error().find("manager") != std::string::npos);
 }
 
-TEST_CASE("a pendulum hits a wall: it comes back with e times its speed, and its joint holds")
+TEST_CASE("a pendulum hits a wall: it rebounds with e times its speed, and its joint holds")
 {
     // Released 0.5 rad from the vertical; it hits the wall at the vertical and returns to where 1 - cos is e^2 of its initial
     // value.
@@ -239,7 +239,7 @@ TEST_CASE("a pendulum hits a wall: it comes back with e times its speed, and its
     }
 }
 
-TEST_CASE("a chain lies down on the floor, which bears its weight")
+TEST_CASE("a chain comes to rest on the floor, which carries its weight")
 {
     std::string parts = solver_is("RungeKutta4") + gravity() + shape("link", "Capsule", "radius='0.05' length='0.3'") + ground(), ids;
     for (int i = 0; i < 8; ++i)
@@ -268,7 +268,7 @@ TEST_CASE("a chain lies down on the floor, which bears its weight")
     CHECK(s.simulation().totals().kinetic < 1e-6);
 }
 
-TEST_CASE("a motor drives a pusher that shoves a box along the floor against friction")
+TEST_CASE("a motor drives a pusher that pushes a box along the floor against friction")
 {
     // The motor's force is the friction of the box: mu m g.
     Scene s(

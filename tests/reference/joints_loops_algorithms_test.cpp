@@ -48,10 +48,10 @@ Hanging look_at_chain(const Scene& s, int links)
 
 }  // namespace
 
-TEST_CASE("E4: a four-bar with a motor, by every solver")
+TEST_CASE("E4: a four-bar with a motor, with every solver")
 {
-    // The motor's row and the loop leave no freedom, and its speed is constant, which all solvers add up without error: what is left
-    // is made by rows that bend within a step, and projected.
+    // The motor's row and the loop leave no freedom, and its speed is constant, which all solvers integrate without error. The
+    // remaining error is that of rows that change within a step and are then projected.
     const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 240, 1.1e-10, 0},
         {{"StoermerVerlet"}, 240, 1.2e-11, 2},
@@ -68,7 +68,7 @@ TEST_CASE("E4: a four-bar with a motor, by every solver")
     check_same({"Automatic"}, {"RungeKutta4"}, 60, four_bar_error);
 }
 
-TEST_CASE("E5: a chain under a tonne, by every solver: it hangs, so no order shows")
+TEST_CASE("E5: a chain under a tonne, with every solver: it hangs still, so no order can be observed")
 {
     for (const SolverAlgorithm& algorithm : kEverySolver)
     {
@@ -81,20 +81,20 @@ TEST_CASE("E5: a chain under a tonne, by every solver: it hangs, so no order sho
         s.step(10);
         const Hanging found = look_at_chain(s, links);
         MESSAGE(name << ": tension " << found.tension << " stretch " << found.stretch);
-        CHECK(found.tension < 1.1e-14);  // twice what is reached
+        CHECK(found.tension < 1.1e-14);  // twice the error reached
         CHECK(found.stretch < 1e-14);
     }
 }
 
-TEST_CASE("E5: the same chain of ropes, by every manager")
+TEST_CASE("E5: the same chain of ropes, with every manager")
 {
-    // A tonne below a kilogram, a hundred times over: all managers but Direct let it fall (4.9 m in 1 s). SoftStep does not
+    // A tonne on a hundred links of a kilogram: all managers but Direct let it fall (4.9 m in 1 s). SoftStep does not
     // report it.
     struct Row
     {
         std::string manager;
         double tension, stretch;  ///< relative; m
-        bool reported;            ///< that it does not hold
+        bool reported;            ///< whether a failure to hold is reported
     };
     for (const Row& row :
          {Row{"Direct", 1.6e-13, 6.9e-14, false}, Row{"SequentialImpulse", 0.97, 4.88, true}, Row{"SoftStep", 0.70, 4.66, false}})
@@ -119,7 +119,7 @@ TEST_CASE("E5: the same chain of ropes, by every manager")
     }
 }
 
-TEST_CASE("E8: pins too far apart, by every solver: both share the error, both are named")
+TEST_CASE("E8: pins too far apart, with every solver: both share the error, both are named")
 {
     for (const SolverAlgorithm& algorithm : kEverySolver)
     {

@@ -10,7 +10,7 @@
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("E2: two four-bars go through their singular configuration on the right branch")
+TEST_CASE("E2: two four-bars pass their singular configuration on the right branch")
 {
     Scene s(four_bars(2), dt(2000));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -22,7 +22,7 @@ TEST_CASE("E2: two four-bars go through their singular configuration on the righ
     for (int i = 0; i < 2; ++i) CHECK(s.real("r" + number(i), "position_error") < 1e-12);
 }
 
-TEST_CASE("E2: a stage of a step next to the singular configuration costs nothing")
+TEST_CASE("E2: a stage of a step close to the singular configuration costs no accuracy")
 {
     // At t = 3.16 s a stage is 1e-4 rad away from it. If rows were released there, the energy would be wrong by 6e-10, and the
     // position here by 3e-9 m.
@@ -53,7 +53,7 @@ TEST_CASE("E4: a four-bar follows Freudenstein's equation")
     CHECK(redundant == 3);
 }
 
-TEST_CASE("E8: pins too far apart share the error, and say so")
+TEST_CASE("E8: pins too far apart share the error and report it")
 {
     Scene s(torn_rod(solver_is("RungeKutta4")), dt(240));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -71,7 +71,7 @@ TEST_CASE("E8: pins too far apart share the error, and say so")
     }
 }
 
-TEST_CASE("E3: Bricard's linkage moves though a count of its rows says it cannot")
+TEST_CASE("E3: Bricard's linkage moves although it has as many rows as degrees of freedom")
 {
     const BricardRun coarse = run_bricard(500, 3), fine = run_bricard(1000, 3);
     MESSAGE("drift of energy ", coarse.drift, " ", fine.drift, " of ", fine.kinetic, " J");
@@ -129,10 +129,11 @@ std::string centred_chain(std::uint64_t& chance)
 
 }  // namespace
 
-TEST_CASE("bodies centred on their joints at the origin do not contradict one another: rounding is no error")
+TEST_CASE("joints of bodies centred at the origin do not contradict one another: rounding is not reported as an error")
 {
-    // 60 chains, 5 of which told of 1e-16 m/s or less that were left: beside speeds of rounding that is much, beside what turns
-    // and hangs there it is nothing. A speed that does not fit is found all the same (E8, and gears that contradict one another).
+    // Of 60 chains, 5 used to report a remaining 1e-16 m/s or less. Compared with speeds of the size of rounding that is much;
+    // compared with the motion of the bodies it is nothing. A speed that does contradict a joint is still found (E8, and
+    // contradictory gears).
     std::uint64_t chance = 7;
     for (int i = 0; i < 120; ++i)
     {

@@ -31,7 +31,7 @@ Run swing(const std::string& joint, const std::string& solver, int per_second)
 
 }  // namespace
 
-TEST_CASE("E1: a pendulum keeps its joint to rounding and the solver its order")
+TEST_CASE("E1: a pendulum satisfies its joint to rounding, and the solver keeps its order")
 {
     for (const std::string joint : {"Distance", "Ball", "Hinge"})
     {
@@ -89,7 +89,7 @@ TEST_CASE("A4: Lagrange's top on a ball joint")
     CHECK(distance(axis_at("RungeKutta4", 4000, 1), kTopAt1) < 1e-6);
 }
 
-TEST_CASE("E5: a chain of 100 links bears a ball of a tonne")
+TEST_CASE("E5: a chain of 100 links carries a ball of a tonne")
 {
     // Each joint carries the weight below it.
     Scene s(heavy_chain(solver_is("RungeKutta4"), 100), dt(60));

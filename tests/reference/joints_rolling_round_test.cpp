@@ -23,7 +23,7 @@ std::string ball(const Vec3& p, double radius, const Vec3& v = {}, const Vec3& w
     return body("ball", "2", i + " " + i + " " + i, text(p), "linear_velocity='" + text(v) + "' angular_velocity='" + text(w) + "'");
 }
 
-/// theta'' = factor sin theta from rest: classical Runge-Kutta in 64 bits of mantissa, 1e-4 s a step.
+/// theta'' = factor sin theta from rest: classical Runge-Kutta with a mantissa of 64 bits and steps of 1e-4 s.
 double swing(double theta, double factor, double until)
 {
     long double x = theta, u = 0;
@@ -117,7 +117,7 @@ TEST_CASE("solvers keep their order on the inside of a sphere")
     }
 }
 
-TEST_CASE("a ball that goes round in an upright cylinder swings up and down")
+TEST_CASE("a ball that circles in an upright cylinder oscillates up and down")
 {
     const double R = 0.6, r = 0.1, rho = R - r, W = 10, w_N = 4;
     // v = rho W along phi; v + w x (r N) = 0: w_z = -rho W / r.
@@ -131,7 +131,7 @@ TEST_CASE("a ball that goes round in an upright cylinder swings up and down")
     CHECK(distance(s.vec("ball", "position"), due) < 1e-9);
 }
 
-TEST_CASE("a ball rolls on a ball that turns as told, along with it")
+TEST_CASE("a ball rolls on a ball with a prescribed rotation and is carried along")
 {
     // On top of a ball that turns about z, with n along z: n'' = 0, so it stays there and spins along.
     Scene s(solver_is("RungeKutta4") + gravity() + "<component id='globe' type='State/Kinematic' angular_velocity='0 0 2'/>" +
@@ -143,7 +143,7 @@ TEST_CASE("a ball rolls on a ball that turns as told, along with it")
     CHECK(near(s.real("rolls", "normal_force"), 2 * kG, 1e-13));
 }
 
-TEST_CASE("what cannot roll so is refused")
+TEST_CASE("shapes that cannot roll in this way are refused")
 {
     const auto error = [](const std::string& more) { return Scene(gravity() + ball({0, 0, 0.6}, 0.1) + rolling(more), dt(100)).error(); };
     CHECK(error("semi_axes='0.1 0.2 0.1' on='sphere' radius='1'").find("only a ball can roll") != std::string::npos);

@@ -62,7 +62,7 @@ Stone rock(const std::string& solver, int per_second, double spin, double t)
 
 }  // namespace
 
-TEST_CASE("C20: a rattleback turns round, one way only")
+TEST_CASE("C20: a rattleback reverses its spin, in one direction only")
 {
     // It pitches at 107 rad/s, and initial errors grow a thousandfold until it reverses: error control.
     const std::string solver =
@@ -84,7 +84,7 @@ TEST_CASE("C20: a rattleback turns round, one way only")
 
 TEST_CASE("C20: solvers keep their order while rolling")
 {
-    // Compared with the finest run, while the pitching has only begun.
+    // Compared with the finest run, in the early phase of the pitching.
     const auto spin_at = [](const std::string& solver, int per_second)
     {
         Scene s(rattleback(solver_is(solver), -5), dt(per_second));
@@ -103,7 +103,7 @@ TEST_CASE("C20: solvers keep their order while rolling")
     }
 }
 
-TEST_CASE("C20: the spin after a second, by every solver")
+TEST_CASE("C20: the spin after a second, with every solver")
 {
     // rad/s at 2000 steps per second, about twice the achieved error; observed order from there to 4000. Contacts are not
     // involved: rolling is a joint, and there is no ellipsoid shape to collide with.
@@ -155,7 +155,7 @@ TEST_CASE("a ball rolls down an incline with 5/7 g sin a, whatever its solver")
     }
 }
 
-TEST_CASE("a ball on a turntable goes round in circles, at 2/7 of its speed")
+TEST_CASE("a ball on a turntable moves in circles, at 2/7 of the table's angular velocity")
 {
     // v' = 2/7 W x v: the table is kinematic, 3 rad/s.
     const double w = 2. / 7 * 3;

@@ -30,7 +30,7 @@ Kept kept(Scene& s)
 
 }  // namespace
 
-TEST_CASE("Ball, Hinge, Fixed, Slider in turn: momentum stays to rounding, energy only falls, by what is booked")
+TEST_CASE("Ball, Hinge, Fixed, Slider in turn: momentum is conserved to rounding, energy only falls, by the amount booked")
 {
     Scene s(pair("Ball"), dt(500));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -53,7 +53,7 @@ TEST_CASE("Ball, Hinge, Fixed, Slider in turn: momentum stays to rounding, energ
     }
 }
 
-TEST_CASE("a joint that is taken away leaves its bodies to themselves, at the speeds that they had")
+TEST_CASE("a joint that is removed leaves its bodies free, at the speeds that they had")
 {
     Scene s(pair("Hinge"), dt(500));
     REQUIRE_MESSAGE(s.loaded(), s.error());

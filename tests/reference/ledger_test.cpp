@@ -36,7 +36,7 @@ double worst_of_bounces(const std::string& solver, const std::string& resolution
 
 }  // namespace
 
-TEST_CASE("what an event takes back is taken back in the ledger, by every solver")
+TEST_CASE("when an event rewinds time, the ledger is rewound too, with every solver")
 {
     for (const std::string& solver : solvers())
         for (const std::string& resolution : resolutions())
@@ -44,13 +44,13 @@ TEST_CASE("what an event takes back is taken back in the ledger, by every solver
             if (resolution == "None" || resolution == "Speculative") continue;
             CAPTURE(solver);
             CAPTURE(resolution);
-            // One kick of the method of order 1 misses (h g)^2 m / 2 = 0.13 J, with either sign where the ball reverses.
+            // One kick of the method of order 1 neglects (h g)^2 m / 2 = 0.13 J, with either sign where the ball reverses.
             const double most = solver == "SemiImplicitEuler" ? 60 * 0.14 : 1e-9;
             CHECK(worst_of_bounces(solver, resolution, "Impulse' response.restitution='0.8") <= most);
         }
 }
 
-TEST_CASE("a spring that begins and ends within a step is booked as far as it pushed")
+TEST_CASE("a spring contact that begins and ends within a step is booked for the time that it pushed")
 {
     // The remaining error is that of the method: springs in 20 pieces per contact, each of which is one step of it.
     const auto most = [](const std::string& solver)
@@ -69,7 +69,7 @@ TEST_CASE("a spring that begins and ends within a step is booked as far as it pu
     }
 }
 
-TEST_CASE("a joint that stops what swings books the blow, with springs in the scene too")
+TEST_CASE("a joint that stops a swinging body books the impact, also with springs in the scene")
 {
     for (const char* response : {"Impulse", "Penalty"})
     {
@@ -90,7 +90,7 @@ TEST_CASE("a joint that stops what swings books the blow, with springs in the sc
     }
 }
 
-TEST_CASE("gears that contradict one another take energy in every projection, and book it")
+TEST_CASE("gears that contradict one another remove energy in every projection and book it")
 {
     // Factors that multiply to 1.2, and to 0.99998, with velocities that satisfy two of the three couplings.
     for (const char* factor : {"0.2", "0.16666388893518441"})

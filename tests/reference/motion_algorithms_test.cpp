@@ -3,7 +3,7 @@
 //
 // A1 projectile, 2 s            Semi-implicit Euler g dt T / 2, all others 1e-13 relative, at 1/60 and 1/960
 // A2 free box, attitude at 5 s  at 1/100 and 1/1000, and the observed order between 1/100 and 1/400: the table below. Aims: 1e-7 at
-//                               1/100 and 1e-11 at 1/1000, which RungeKutta4 and what is better reach; momentum to the last bit by all
+//                               1/100 and 1e-11 at 1/1000, which RungeKutta4 and the better ones reach; momentum to the last bit with all
 #include "reference/algorithms.h"
 
 using namespace plab;
@@ -78,7 +78,7 @@ TEST_CASE("A1: a projectile is exact for every algorithm but semi-implicit Euler
         CHECK(projectile_error({"SemiImplicitEuler"}, steps) == doctest::Approx(9.81 / steps).epsilon(1e-9));
 }
 
-TEST_CASE("A2: a free box by every algorithm, with its order")
+TEST_CASE("A2: a free box with every algorithm, and the order of each")
 {
     struct Row
     {

@@ -56,7 +56,7 @@ std::vector<double> bits(const std::string& components, const std::vector<std::s
 
 }  // namespace
 
-TEST_CASE("what is soft and slow has the bits of RungeKutta4")
+TEST_CASE("scenes that are soft and slow have the bits of RungeKutta4")
 {
     for (const std::string& components : {kBraked, kPendulum, kGears, kScript})
     {
@@ -93,7 +93,7 @@ TEST_CASE("each group is advanced as if it were alone, with any number of thread
     }
 }
 
-TEST_CASE("forced groups go together, until one of them needs another method: still the bits of each alone")
+TEST_CASE("groups with forces are advanced together until one of them needs another method, with the bits of each alone")
 {
     // Nine on soft springs; one is hit by a stiff one, one spins fast.
     std::string all;
@@ -120,7 +120,7 @@ TEST_CASE("forced groups go together, until one of them needs another method: st
     CHECK(s.simulation().totals().kinetic - before == doctest::Approx(work).epsilon(1e-5));
 }
 
-TEST_CASE("it says what it picked and why, once")
+TEST_CASE("it reports once what it picked and why")
 {
     Scene s(solver({"Automatic"}) + free_body(1) + kBraked + kStiff + kGravity, per_second(120) + " solver=\"solver\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -133,7 +133,7 @@ TEST_CASE("it says what it picked and why, once")
     CHECK(s.vec("mass", "position").z == doctest::Approx(expected * (1 - std::cos(1000.0))).epsilon(1e-9));
 }
 
-TEST_CASE("a spring that is hardened under way is met in the same step")
+TEST_CASE("a spring that is stiffened during the run changes the method in the same step")
 {
     Scene s(spring_scene({"Automatic"}, 100, 0), per_second(100));
     REQUIRE_MESSAGE(s.loaded(), s.error());

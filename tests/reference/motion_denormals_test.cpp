@@ -52,7 +52,7 @@ double time_of(Scene& s, int steps)
 
 }  // namespace
 
-TEST_CASE("A13: by every solver: e^-5t, no denormal number in the state, zeros at the end")
+TEST_CASE("A13: every solver gives e^-5t, no denormal number in the state, and zeros at the end")
 {
     for (const SolverAlgorithm& algorithm : kEverySolver)
     {
@@ -84,7 +84,7 @@ TEST_CASE("A13: by every solver: e^-5t, no denormal number in the state, zeros a
 
 TEST_CASE("A13: 1000 bodies: a step at rest takes no longer than one in motion")
 {
-    // By RungeKutta4 in steps of 0.4 s each is a third of the one before: 1e-140 m/s after 120 s, nothing after 130 s.
+    // With RungeKutta4 in steps of 0.4 s each speed is a third of the one before: 1e-140 m/s after 120 s, nothing after 130 s.
     const std::string scene = solver({"RungeKutta4"}) + braked(1000);
     Scene moving(scene, "dt=\"0.4\""), fading(scene, "dt=\"0.4\""), resting(scene, "dt=\"0.4\"");
     REQUIRE_MESSAGE(moving.loaded(), moving.error());
@@ -103,7 +103,7 @@ TEST_CASE("A13: 1000 bodies: a step at rest takes no longer than one in motion")
     CHECK(middle < 1.1 * first);
 }
 
-TEST_CASE("A13: the floating-point environment inside a step: nearest, denormals as they are, on every thread")
+TEST_CASE("A13: the floating-point environment inside a step rounds to nearest and keeps denormals, on every thread")
 {
     // A shaft receives its torque of 1 N m only if both hold where its forces are evaluated.
     std::string parts;

@@ -9,8 +9,8 @@
 //       RungeKutta4         1e-5 s                      1 s
 //       DormandPrince54     1e-8 s                      1e-3 s
 //       Radau5              1e-4 s                      1e-2 s
-//     The state is the momentum in the world, whose rounding (2e-15 of 20 N m s) is a disturbance like e: below e = 1e-9 it is what
-//     decides about the second flip, and errors of the energy decide about it for methods that make some.
+//     The state is the momentum in the world, whose rounding (2e-15 of 20 N m s) is a disturbance like e: below e = 1e-9 it
+//     determines the second flip; for methods that do not conserve energy, their energy errors determine it.
 // A5: symmetric tops precess in the body at (I3 - I1) / I1 w3; eigen-gaps of 1e-14 and balls keep their spin. The table below.
 #include "reference/algorithms.h"
 
@@ -86,7 +86,7 @@ Vec3 spin_after(const SolverAlgorithm& algorithm, const std::string& inertia, co
 
 }  // namespace
 
-TEST_CASE("A3: a wing nut flips when the elliptic integral says, whatever the disturbance")
+TEST_CASE("A3: a wing nut flips at the time given by the elliptic integral, whatever the disturbance")
 {
     struct Row
     {
@@ -112,7 +112,7 @@ TEST_CASE("A3: a wing nut flips when the elliptic integral says, whatever the di
         }
 }
 
-TEST_CASE("A3: the first flip by every solver, with its order")
+TEST_CASE("A3: the first flip with every solver, and the order of each")
 {
     const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 1000, 1.9e-4, 1},
@@ -124,13 +124,13 @@ TEST_CASE("A3: the first flip by every solver, with its order")
         {{"Exponential"}, 100, 4.3e-6, 4},
         {{"DormandPrince54"}, 100, 2.9e-10, 0},
         {{"Radau5"}, 100, 2.1e-6, 0},
-        {{"Exact"}, 100, 5e-10, 0},  // what the interpolation between steps leaves
+        {{"Exact"}, 100, 5e-10, 0},  // the error of the interpolation between steps
     };
     for (const AlgorithmRow& row : table) check_algorithm(row, flip_error);
     check_same({"Automatic"}, {"Exact"}, 100, flip_error);
 }
 
-TEST_CASE("A5: degenerate tops by the algorithms")
+TEST_CASE("A5: degenerate tops with the algorithms")
 {
     struct Top
     {

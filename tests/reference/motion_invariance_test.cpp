@@ -4,13 +4,14 @@
 //
 // A11, after 2 s       translated 1e7 m   boosted 1e3 m/s   turned
 //   explicit, Automatic  1e-7 m           8e-12 m           3e-14 m
-//   ImplicitMidpoint     3e-7 m           8e-12 m           6e-13 m   (its iteration ends in the rounding of places)
+//   ImplicitMidpoint     3e-7 m           8e-12 m           6e-13 m   (its iteration ends in the rounding of positions)
 //   DormandPrince54      1e-7 m           2e-11 m           4e-12 m   (its tolerance)
 //   Radau5               1e-7 m           4e-9 m            2e-10 m   (its tolerance)
-//   Exponential          1e-4 m           9e-12 m           2e-13 m   (derivatives are differences of rounded places)
+//   Exponential          1e-4 m           9e-12 m           2e-13 m   (derivatives are differences of rounded positions)
 //
-// Places are rounded to 1.9e-9 m at 1e7 m, 2e-13 m where 1e3 m/s lead in 2 s, 2e-16 m at home. In 480 steps that adds up like a random
-// walk, sqrt(480) times half of it for each body and component, and the spring doubles it: 5e-8, 5e-12, 5e-15 m.
+// Positions are rounded to 1.9e-9 m at 1e7 m, to 2e-13 m at the distance that 1e3 m/s reach in 2 s, to 2e-16 m at the origin. In
+// 480 steps that adds up like a random walk, sqrt(480) times half of it for each body and component, and the spring doubles it:
+// 5e-8, 5e-12, 5e-15 m.
 #include <limits>
 
 #include "reference/motion.h"
@@ -66,7 +67,7 @@ std::string braked(int n)
 
 }  // namespace
 
-TEST_CASE("A11: the same relative motion wherever, however fast and whichever way")
+TEST_CASE("A11: the same relative motion at any place, at any speed and in any orientation")
 {
     const Quat turn = normalized(Quat{0.3, -0.5, 0.7, 0.4});
     struct Row
@@ -96,7 +97,7 @@ TEST_CASE("A11: the same relative motion wherever, however fast and whichever wa
     }
 }
 
-TEST_CASE("A13: motion dies away as e^-5t, ends in zeros before numbers become denormal, and steps stay what they are")
+TEST_CASE("A13: motion decays as e^-5t and ends in zeros before numbers become denormal, and steps take no longer")
 {
     for (const SolverAlgorithm& algorithm :
          {SolverAlgorithm{"RungeKutta4"}, SolverAlgorithm{"Automatic"}, SolverAlgorithm{"StoermerVerlet"}})
@@ -104,7 +105,7 @@ TEST_CASE("A13: motion dies away as e^-5t, ends in zeros before numbers become d
         CAPTURE(algorithm.type);
         Scene s(solver(algorithm) + braked(20), per_second(50));
         REQUIRE_MESSAGE(s.loaded(), s.error());
-        s.step(2);  // Automatic looks twice at the first one
+        s.step(2);  // Automatic examines the first one twice
         const auto evaluations = s.simulation().stepper().report().evaluations;
         s.run(10);
         const double z = -0.1, second = 1 + z + z * z / 2, fourth = second + z * z * z / 6 + z * z * z * z / 24;

@@ -4,13 +4,14 @@
 // DormandPrince54, 1e-7    < 850                   3e-6
 // DormandPrince54, 1e-9    < 1600                  1e-7
 // DormandPrince54, 1e-11   < 3800                  1e-9
-// the others, with calls told and orders: the table below. Their steps are as long at the sun as far from it, where the force is
-// 361 times weaker: with as many calls as DormandPrince54 they are 1e4 times worse, and Exponential's steps of 0.1 s throw the planet away
+// the others, with their numbers of calls and orders: the table below. Their steps are as long near the sun as far from it, where
+// the force is 361 times weaker: with as many calls as DormandPrince54 they are 1e4 times worse, and Exponential's steps of 0.1 s
+// throw the planet away
 //
 // 1e-9 with fewer than 400 calls is beyond a pair of order 5: with steps h ~ r^p placed by the known solution, p the best of
 // 1.0, 1.05 .. 1.8, no step refused and 6 calls each, this pair reaches 2.1e-5 with 400 calls per orbit, 1.7e-8 with 1000,
-// 3.4e-10 with 1900, 1.3e-12 with 4800 (a separate program). What is spent above that: one call in seven books the energy
-// ledger, and error control spreads steps by tolerance, not by what the end needs.
+// 3.4e-10 with 1900, 1.3e-12 with 4800 (a separate program). The additional calls: one call in seven books the energy
+// ledger, and error control chooses steps by the local tolerance, not by the error at the end.
 #include "reference/algorithms.h"
 
 using namespace plab;
@@ -56,7 +57,7 @@ std::string tolerance(const std::string& relative) { return "relative_tolerance=
 
 }  // namespace
 
-TEST_CASE("A6: DormandPrince54 goes round in one step of 10 s, as well in steps of 0.1 s")
+TEST_CASE("A6: DormandPrince54 completes the orbit in one step of 10 s as well as in steps of 0.1 s")
 {
     struct Row
     {
@@ -88,7 +89,7 @@ TEST_CASE("A6: the other algorithms, each with up to 25000 calls per orbit, and 
         double calls, error;  ///< per orbit; m
         double coarse;        ///< m, with a tenth of the steps
         double order;
-        bool reported = false;  ///< that the coarse one's force is not finite: it meets the sun
+        bool reported = false;  ///< whether the coarse one reports a force that is not finite: it hits the sun
     };
     const Row table[] = {
         {{"SemiImplicitEuler"}, 4000, 25133, 1.0e-2, 0.10, 1},

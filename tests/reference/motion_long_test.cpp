@@ -1,11 +1,11 @@
-// A7 and A8: 1e7 steps. A7, oscillator w = 1, dt = 0.01 s: what each symplectic method keeps instead of the energy stays to rounding,
-// 1e-12 sqrt(n / 1e6) relative, and the energy within what that allows. Every other solver, with its law:
+// A7 and A8: 1e7 steps. A7, oscillator w = 1, dt = 0.01 s: the quantity that each symplectic method conserves instead of the energy
+// is constant to rounding, 1e-12 sqrt(n / 1e6) relative, and the energy within what that allows. Every other solver, with its law:
 // motion_oscillator_algorithms_test.cpp.
 //   SemiImplicitEuler     1e7 steps   keeps x^2 + v^2 - h x v       energy within h/2
 //   StoermerVerlet        1e7         v^2 + (1 - h^2/4) x^2         h^2/4
 //   RotationSplitting 2   1e7         x^2 + (1 - h^2/4) v^2         h^2/4
 //   RotationSplitting 4   1e6         the energy to 6e-12
-//   ImplicitMidpoint      1e6         x^2 + v^2, with relative_tolerance 1e-15; as it is set to 5e-15 n
+//   ImplicitMidpoint      1e6         x^2 + v^2, with relative_tolerance 1e-15; with the default to 5e-15 n
 //   RungeKutta4           1e6         loses n h^6 / 72, its law
 //   Exponential           1e5         1e-12
 // A8, the clock: n dt to the last bit after 1e7 steps of 1e-3 s and of 1/60 s
@@ -44,7 +44,7 @@ Swing swing(const SolverAlgorithm& algorithm, std::int64_t steps, double a = 0, 
 
 }  // namespace
 
-TEST_CASE("A7: energy over 1e7 steps: bounded where it should be, lost by the law where not")
+TEST_CASE("A7: energy over 1e7 steps: bounded for symplectic methods, otherwise lost by the method's law")
 {
     const double h2 = kStep * kStep;
     struct Row

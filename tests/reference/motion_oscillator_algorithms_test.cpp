@@ -1,15 +1,15 @@
 // A7 by every solver: m = 1 on k = 1, dt = 0.01 s, 1e5 steps (1e3 rad). Runs of 1e7 steps: motion_long_test.cpp.
 //
 // What the energy x^2 + v^2 does, by theory:
-//   SemiImplicitEuler     keeps x^2 + v^2 - h x v: swings by h/2 about 1, no slope
-//   StoermerVerlet        keeps v^2 + (1 - h^2/4) x^2: swings by h^2/8, no slope
+//   SemiImplicitEuler     keeps x^2 + v^2 - h x v: oscillates by h/2 about 1, no slope
+//   StoermerVerlet        keeps v^2 + (1 - h^2/4) x^2: oscillates by h^2/8, no slope
 //   RotationSplitting 2   keeps x^2 + (1 - h^2/4) v^2: the same
 //   RotationSplitting 4   symplectic: no slope
-//   ImplicitMidpoint      keeps x^2 + v^2 if its iteration goes on to rounding. As it is set it ends at 1e-12 of a step's change, of
-//                         which a contraction by h/2 is left, to one side: a slope below 1e-12 h/2 per step
+//   ImplicitMidpoint      keeps x^2 + v^2 if it iterates to rounding. By default the iteration ends at 1e-12 of a step's change, of
+//                         which a contraction by h/2 remains, of one sign: a slope below 1e-12 h/2 per step
 //   Exponential           exact
 //   RungeKutta4           |R(i h)|^2 = 1 - h^6/72 per step; Automatic is RungeKutta4 here, Exact is RotationSplitting 4
-//   DormandPrince54       |R(i h)|^2 = 1 - h^6/1800 where a step is one of its own; less where its tolerance cuts it
+//   DormandPrince54       |R(i h)|^2 = 1 - h^6/1800 where it does not divide the step; less where its tolerance does
 //   Radau5                |R(i h)|^2 = 1 - h^6/3600
 #include <vector>
 
@@ -25,7 +25,7 @@ constexpr double kStep = 0.01;
 
 struct Swing
 {
-    double drift = 0, swing = 0;  ///< of x^2 + v^2: slope of the fitted line times the time, and the most beside that line
+    double drift = 0, swing = 0;  ///< of x^2 + v^2: slope of the fitted line times the time, and the largest deviation from that line
 };
 
 Swing swing_of(const SolverAlgorithm& algorithm, int steps)
@@ -57,15 +57,15 @@ Swing swing_of(const SolverAlgorithm& algorithm, int steps)
 
 }  // namespace
 
-TEST_CASE("A7: the energy of an oscillator by every solver: no slope where the method is symplectic, else the slope of its law")
+TEST_CASE("A7: the energy of an oscillator with every solver: no slope if the method is symplectic, otherwise the slope of its law")
 {
     struct Row
     {
         SolverAlgorithm algorithm;
         int steps;
-        double swing;      ///< the most beside the line; 0: rounding
+        double swing;      ///< the largest deviation from the line; 0: rounding
         double per_step;   ///< the law's slope
-        double loose = 0;  ///< and what may be beside it
+        double loose = 0;  ///< and the tolerance of it
     };
     const double h2 = kStep * kStep, h6 = h2 * h2 * h2;
     const Row table[] = {
@@ -90,7 +90,7 @@ TEST_CASE("A7: the energy of an oscillator by every solver: no slope where the m
         const Swing found = swing_of(row.algorithm, row.steps);
         const double law = row.per_step * row.steps, loose = row.loose * row.steps, rounding = 1e-12 * std::sqrt(row.steps / 1e6);
         MESSAGE(name << ": drift " << found.drift << " (" << law << "), swing " << found.swing << " (" << row.swing << ")");
-        // The fit of a swing that is not cut at a whole turn leaves 3 / (2 w T) of it.
+        // The fit of an oscillation over a number of periods that is not whole leaves 3 / (2 w T) of it.
         CHECK(std::fabs(found.drift - law) < 0.02 * std::fabs(law) + 0.01 * row.swing + loose + rounding);
         CHECK(found.swing < 1.01 * row.swing + 0.02 * (std::fabs(law) + loose) + rounding);
         CHECK(found.swing > 0.99 * row.swing);

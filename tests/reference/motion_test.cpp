@@ -60,7 +60,7 @@ TEST_CASE("A1: a projectile is exact for Runge-Kutta and off by g dt T / 2 for s
     CHECK(order == doctest::Approx(1).epsilon(1e-6));
 }
 
-TEST_CASE("A2: a free box turns as Jacobi's closed form says; orders 4 and 1; momentum to the last bit")
+TEST_CASE("A2: a free box rotates as given by Jacobi's closed form; orders 4 and 1; momentum to the last bit")
 {
     const BoxRun coarse = free_box("RungeKutta4", 100), fine = free_box("RungeKutta4", 200), finest = free_box("RungeKutta4", 1000);
     CHECK(coarse.attitude < 1e-7);
@@ -73,7 +73,7 @@ TEST_CASE("A2: a free box turns as Jacobi's closed form says; orders 4 and 1; mo
     CHECK(euler.momentum == 0);
 }
 
-TEST_CASE("A3: a wing nut flips when the elliptic integral says")
+TEST_CASE("A3: a wing nut flips at the time given by the elliptic integral")
 {
     // I = (3, 2, 1), spin 10 about the middle axis: flips every 3.55072530396584808 s.
     Scene s("<component id=\"nut\" type=\"State/RigidBody\" mass=\"1\" inertia=\"3 2 1\" angular_velocity=\"1e-3 10 1e-3\"/>", dt(5000));
@@ -103,7 +103,7 @@ TEST_CASE("A3: a wing nut flips when the elliptic integral says")
     CHECK(distance(body_spin(), {9.1429206965016778e-3, -9.9999876110424964, 1.5772729522424334e-2}) < 1e-6);
 }
 
-TEST_CASE("A5: degenerate inertias move as the symmetric top does, impossible ones are refused by name")
+TEST_CASE("A5: degenerate inertias move as the symmetric top does, impossible ones are refused with the component's name")
 {
     SUBCASE("a sphere keeps its spin")
     {
@@ -114,7 +114,7 @@ TEST_CASE("A5: degenerate inertias move as the symmetric top does, impossible on
     }
     SUBCASE("a disc, I3 = I1 + I2")
     {
-        // w1 + i w2 turns in the body with (I3 - I1) / I1 w3 = w3.
+        // w1 + i w2 rotates in the body with (I3 - I1) / I1 w3 = w3.
         Scene s("<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 2\" angular_velocity=\"1 0 2\"/>", dt(1000));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(3);

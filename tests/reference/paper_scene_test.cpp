@@ -12,7 +12,7 @@ namespace
 constexpr double kCollisionTime = 3.286392711;  // s
 }  // namespace
 
-TEST_CASE("motor, gears, fan and balloons run the course of the paper")
+TEST_CASE("motor, gears, fan and balloons move as in the paper")
 {
     Scene s = Scene::file("scenes/fan_and_balloons.xml");
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -33,7 +33,7 @@ TEST_CASE("motor, gears, fan and balloons run the course of the paper")
     for (const Event& e : s.events)
         if (e.kind == "contact.impact") CHECK(e.time == doctest::Approx(kCollisionTime).epsilon(1e-6));
     CHECK(s.vec("red", "position").x > red.x + 0.4);
-    // The impact itself changes no momentum; the wind adds what it adds in one step.
+    // The impact itself changes no momentum; the wind adds the momentum of one step.
     CHECK(distance(s.simulation().totals().momentum, momentum_before) < 0.02 * 1.0 / 240);
     s.run(10);
     CHECK(s.count("contact.impact") == 1);
@@ -53,7 +53,7 @@ TEST_CASE("the ledger explains the kinetic energy")
     CHECK(std::fabs(t.kinetic - s.simulation().kinetic_at_start() - t.work) < 1e-9 * t.kinetic);
 }
 
-TEST_CASE("short and long form give one hash")
+TEST_CASE("the short and the long form give the same hash")
 {
     Scene brief = Scene::file("scenes/fan_and_balloons.xml"), full = Scene::file("scenes/paper/fan_and_balloons.xml");
     REQUIRE_MESSAGE(full.loaded(), full.error());

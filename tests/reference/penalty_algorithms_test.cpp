@@ -46,7 +46,7 @@ const SolverRow kRows[] = {
 };
 }  // namespace
 
-TEST_CASE("B2: what comes back of an impact on a spring, a damped one and Hertz's, by every solver at 200 pieces per contact")
+TEST_CASE("B2: the rebound from a spring, a damped one and Hertz's, with every solver at 200 pieces per contact")
 {
     for (const SolverRow& row : kRows)
     {

@@ -42,7 +42,7 @@ const char* const kHard = "resolution=\"Resolution/LocalBisection\" response=\"R
 
 }  // namespace
 
-TEST_CASE("a floor that rises as told gives a ball at rest twice its speed")
+TEST_CASE("a floor with a prescribed upward velocity gives a ball at rest twice its speed")
 {
     Scene s(
         "<component id=\"floor\" type=\"Shape/Box\" half_extents=\"1 1 0.1\"/>"
@@ -57,9 +57,9 @@ TEST_CASE("a floor that rises as told gives a ball at rest twice its speed")
     CHECK(std::fabs(s.vec("a", "linear_velocity").z - 1) <= 1e-9);
 }
 
-TEST_CASE("a pendulum on a joint hits a stiff wall and swings back as high")
+TEST_CASE("a pendulum on a joint hits a stiff wall and returns to its initial height")
 {
-    // Bob of 1 kg at 1 m under a ball joint, let go at 0.5 rad from a wall that it meets when it hangs straight down.
+    // Bob of 1 kg at 1 m under a ball joint, released at 0.5 rad from a wall that it meets when it hangs straight down.
     const double a0 = 0.5, h = std::cos(a0);
     char where[200];
     std::snprintf(where, sizeof where, "position=\"%.17g 0 %.17g\" orientation=\"%.17g 0 %.17g 0\"", -std::sin(a0), -h, std::cos(a0 / 2),
@@ -86,7 +86,7 @@ TEST_CASE("a pendulum on a joint hits a stiff wall and swings back as high")
     CHECK(least < -0.999 * std::sin(a0));
 }
 
-TEST_CASE("a ball on a spring on a box that stands hard: m g / k deep, nothing creeps, the ledger closes")
+TEST_CASE("a ball on springs lies m g / k deep on a box with a hard contact: nothing creeps, the ledger closes")
 {
     Scene s(kGround + box("b", "mass=\"4\" position=\"0 0 0.1\"") + ball("a", "position=\"0.05 0 0.3\"") +
                 contact("hard", "b ground", kHard) + contact("soft", "a b", spring("1e4", "response.damping_ratio=\"0.3\"")) + kGravity,
@@ -105,7 +105,7 @@ TEST_CASE("a ball on a spring on a box that stands hard: m g / k deep, nothing c
     CHECK(length(s.vec("a", "position") - before) <= 1e-9);
 }
 
-TEST_CASE("an undamped spring in a mixed island neither gains nor loses for long")
+TEST_CASE("an undamped spring in a mixed island neither gains nor loses energy over a long time")
 {
     Scene s(kGround + box("b", "mass=\"4\" position=\"0 0 0.1\"") + ball("a", "position=\"0 0 0.2999\" linear_velocity=\"0 0 -0.02\"") +
                 contact("hard", "b ground", kHard) + contact("soft", "a b", spring("1e4", "response.steps_per_contact=\"40\"")) + kGravity,
@@ -127,9 +127,10 @@ TEST_CASE("an undamped spring in a mixed island neither gains nor loses for long
     CHECK(std::fabs(swing(22) / early - 1) < 0.05);
 }
 
-TEST_CASE("what rewinds the whole world cuts a spring's contact in pieces, and changes nothing")
+TEST_CASE("rewinding the whole world divides a spring's contact into pieces and changes nothing")
 {
-    // A second ball bounces hard, with the paper's rewinding of everything, many times in each contact of the first.
+    // A second ball bounces with a hard response and the paper's rewinding of the whole world, many times in each contact of the
+    // first.
     const auto fall = [](bool second)
     {
         Scene s(
@@ -156,7 +157,7 @@ TEST_CASE("what rewinds the whole world cuts a spring's contact in pieces, and c
     CHECK(begins_alone == begins_rewound);
 }
 
-TEST_CASE("a hard ball hits one that stands on a spring")
+TEST_CASE("a ball with a hard contact hits one that rests on a spring")
 {
     Scene s(
         kGround + ball("a", "position=\"0 0 0.099019\"") + ball("b", "position=\"0 0 0.5\"") +
@@ -166,14 +167,14 @@ TEST_CASE("a hard ball hits one that stands on a spring")
         "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(4);
-    // In the end both stand, one on the other.
+    // In the end both are at rest, one on the other.
     CHECK(std::fabs(s.vec("a", "position").z - 0.1 + 2 * kG / 1e4) <= 1e-6);
     CHECK(std::fabs(s.vec("b", "position").z - s.vec("a", "position").z - 0.2) <= 1e-8);
     const auto t = s.simulation().totals();
     CHECK(std::fabs(t.kinetic - s.simulation().kinetic_at_start() - t.work) <= 1e-4);
 }
 
-TEST_CASE("nobody far away feels a spring: bit for bit, and with any number of threads")
+TEST_CASE("a spring does not affect distant bodies: bit for bit, and with any number of threads")
 {
     const std::string far = ball("z", "position=\"0 0 50\" linear_velocity=\"1 2 3\" angular_velocity=\"3 2 1\"") + kGravity;
     const std::string near_by = kGround + ball("a", "position=\"0 0 0.3\"") + ball("b", "position=\"0.05 0 0.7\"") +
@@ -186,7 +187,7 @@ TEST_CASE("nobody far away feels a spring: bit for bit, and with any number of t
     CHECK(one.quat("z", "orientation") == alone.quat("z", "orientation"));
 }
 
-TEST_CASE("solvers of all kinds bounce")
+TEST_CASE("a ball bounces with solvers of all kinds")
 {
     for (const std::string solver : {"SemiImplicitEuler", "RungeKutta4", "StoermerVerlet", "RotationSplitting", "Exact", "Exponential",
                                      "Automatic", "DormandPrince54", "ImplicitMidpoint", "Radau5"})

@@ -12,14 +12,14 @@ namespace
 
 constexpr double kG = 9.81;
 
-/// A ball of 1 kg, `away` above a floor that it meets with `v`.
+/// A ball of 1 kg, `away` above a floor that it hits with `v`.
 std::string falling(double away, double v, const std::string& response)
 {
     return solid("a", "Sphere' radius='0.1'", 1, {0, 0, 0.1 + away}, "linear_velocity='0 0 " + text(-v) + "'") +
            ground_and_contact("None", response.substr(0, response.find(' ')), response.substr(response.find(' ') + 1));
 }
 
-/// Speed of the ball behind the contact, over the one before.
+/// Speed of the ball after the contact, divided by the one before.
 double restitution(double h, double phase, double v, double half_period, const std::string& response)
 {
     Scene s(falling((1 + phase) * h * v, v, response), "dt='" + text(h) + "'");
@@ -49,7 +49,7 @@ TEST_CASE("B2: fifty phases of the step at every h w, undamped and damped, give 
     CHECK(worst_damped <= 1e-9);
 }
 
-TEST_CASE("Hunt and Crossley: what comes back obeys (1 + e) s = ln((1 + s) / (1 - e s)), s = dissipation * speed")
+TEST_CASE("Hunt and Crossley: the restitution obeys (1 + e) s = ln((1 + s) / (1 - e s)), s = dissipation * speed")
 {
     // Roots by mpmath, 20 digits; whatever stiffness, mass and exponent.
     const std::pair<double, double> known[] = {
@@ -67,7 +67,7 @@ TEST_CASE("Hunt and Crossley: what comes back obeys (1 + e) s = ln((1 + s) / (1 
             }
 }
 
-TEST_CASE("within a contact too, kinetic and stored energy are what came in")
+TEST_CASE("also within a contact, kinetic and stored energy add up to the initial energy")
 {
     for (const char* response :
          {"Penalty response.restitution='1' response.stiffness='1e4'", "HuntCrossley response.restitution='1' response.stiffness='1e6'"})
@@ -84,11 +84,11 @@ TEST_CASE("within a contact too, kinetic and stored energy are what came in")
             CHECK(std::fabs(s.simulation().totals().kinetic + stored - 0.5) <= 1e-7);
             CHECK(std::fabs(s.simulation().totals().kinetic - 0.5 - s.simulation().totals().work) <= 1e-9);
         }
-        CHECK(most > 0.45);  // it was seen near its deepest
+        CHECK(most > 0.45);  // a step ended near the largest depth
     }
 }
 
-TEST_CASE("a heavy load on Hunt and Crossley's law with no rebound settles, in a bounded number of pieces")
+TEST_CASE("a heavy load on Hunt and Crossley's law without rebound settles, in a bounded number of pieces")
 {
     Scene s(
         gravity() + solid("a", "Box' half_extents='0.1 0.1 0.1'", 100, {0, 0, 0.1001}) +
@@ -103,10 +103,10 @@ TEST_CASE("a heavy load on Hunt and Crossley's law with no rebound settles, in a
     }
     CHECK(most < 5000);
     const double depth = std::pow(100 * kG / 4 / 1e6, 2.0 / 3);
-    CHECK(std::fabs(0.1 - s.vec("a", "position").z - depth) <= 0.06 * depth);  // overdamped: a creep of 1.5 s per e-th part
+    CHECK(std::fabs(0.1 - s.vec("a", "position").z - depth) <= 0.06 * depth);  // overdamped: it creeps with a time constant of 1.5 s
 }
 
-TEST_CASE("stiction remembers: a block on a slope of 30 degrees stays where it is")
+TEST_CASE("stiction has a memory: a block on a slope of 30 degrees does not move")
 {
     Scene s = block_on_a_slope();
     REQUIRE_MESSAGE(s.loaded(), s.error());

@@ -34,7 +34,7 @@ std::string penalty(double k, const std::string& more = "")
     return "Penalty\" response.stiffness=\"" + text(k) + "\"" + elastic + more;
 }
 
-/// A ball of 1 kg that comes down on a floor with 1 m/s, `away` above it.
+/// A ball of 1 kg that falls on a floor with 1 m/s, `away` above it.
 std::string bounce(double away, const std::string& response)
 {
     return kGround + ball("a", "mass=\"1\" linear_velocity=\"0 0 -1\" position=\"0 0 " + text(0.1 + away) + "\"") +
@@ -70,7 +70,7 @@ TEST_CASE("B2: a ball bounces on a linear spring, |e - 1| <= 1e-9 for any stiffn
         }
 }
 
-TEST_CASE("B2: with a damper e = exp(-pi z / sqrt(1 - z^2)), and where the damper may not pull, less is lost")
+TEST_CASE("B2: with a damper e = exp(-pi z / sqrt(1 - z^2)), and if the damper may not pull, less is lost")
 {
     for (const double phase : {0.0, 0.5})
     {
@@ -87,7 +87,7 @@ TEST_CASE("B2: with a damper e = exp(-pi z / sqrt(1 - z^2)), and where the dampe
     }
 }
 
-TEST_CASE("events tell when the contact was, and its whole impulse")
+TEST_CASE("events report the time of the contact and its whole impulse")
 {
     Scene s(bounce(1.5 / 60, penalty(1e6)), "dt=\"1/60\"");
     s.keep_events = true;
@@ -100,7 +100,7 @@ TEST_CASE("events tell when the contact was, and its whole impulse")
     CHECK(std::fabs(std::fabs(s.events[1].contact->impulse.z) - 2) <= 1e-9);
 }
 
-TEST_CASE("a ball comes to rest m g / k deep, and swings about it as it should")
+TEST_CASE("a ball comes to rest m g / k deep, and oscillates about that depth with the right period")
 {
     const double k = 1e4, w = 100, depth = kG / k;
     Scene s(kGround + ball("a", "mass=\"1\" position=\"0 0 0.1\"") + contact("a ground", penalty(k)) + kGravity, "dt=\"1/60\"");
@@ -121,7 +121,7 @@ TEST_CASE("a ball comes to rest m g / k deep, and swings about it as it should")
     CHECK(near(d.real("contact.response", "penetration"), depth, 1e-12));
 }
 
-TEST_CASE("a face rests m g / (4 k) deep, flat, whoever it is rotated to")
+TEST_CASE("a face rests m g / (4 k) deep, flat, in any orientation")
 {
     Scene s(kGround +
                 std::string("<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.2 0.3 0.1\"/>"
@@ -153,13 +153,13 @@ TEST_CASE("the solver keeps its order through contacts")
     const std::string linear = penalty(1e5, " response.damping_ratio=\"0.1\"");
     CHECK(order("RungeKutta4", 20, linear, 0.72924761428767) == doctest::Approx(4).epsilon(0.1));
     CHECK(order("SemiImplicitEuler", 100, linear, 0.72924761428767) > 0.9);
-    // Hertz's force has no second derivative at the touch and at the end: order 2.5, with luck in where pieces end.
+    // Hertz's force has no second derivative at the beginning and at the end of the contact: order 2.5, depending on where pieces end.
     const auto hertz = [&](int pieces)
     { return error("RungeKutta4", pieces, "HuntCrossley\" response.restitution=\"1\" response.stiffness=\"1e7\"", 1); };
     CHECK(std::log2(hertz(25) / hertz(800)) / 5 > 2.3);
 }
 
-TEST_CASE("Hertz: two balls part after 2.9432 (x_m / v), and have pushed as deep as they should")
+TEST_CASE("Hertz: two balls separate after 2.9432 (x_m / v), and their largest overlap is that of the theory")
 {
     // m x'' = -k x^1.5:  x_m = (5 m v^2 / (4 k))^(2/5),  T = 2 x_m / v int_0^1 du / sqrt(1 - u^2.5).
     const double k = 1e8, m = 0.5, v = 2, deepest = std::pow(1.25 * m * v * v / k, 0.4), time = 2.9432751843247047 * deepest / v;
@@ -177,7 +177,7 @@ TEST_CASE("Hertz: two balls part after 2.9432 (x_m / v), and have pushed as deep
     CHECK(std::fabs(s.vec("b", "linear_velocity").x - 1) <= 1e-7);
 }
 
-TEST_CASE("restitution is what was asked for, whatever the law and the speed")
+TEST_CASE("restitution is as requested, whatever the law and the speed")
 {
     for (const char* law : {"Penalty\" response.stiffness=\"1e6\"", "Penalty\" response.stiffness=\"1e6\" response.pulls=\"false\"",
                             "HuntCrossley\" response.stiffness=\"1e8\""})
@@ -197,7 +197,7 @@ TEST_CASE("restitution is what was asked for, whatever the law and the speed")
             }
 }
 
-TEST_CASE("a pair keeps its momentum, spin included, to rounding")
+TEST_CASE("a pair conserves its momentum and angular momentum to rounding")
 {
     Scene s(ball("a", "mass=\"1\" position=\"-0.3 0.04 0\" linear_velocity=\"1 0 0\" angular_velocity=\"3 -5 20\"") +
                 ball("b", "mass=\"3\" position=\"0.3 0 0.02\"") +
@@ -209,11 +209,11 @@ TEST_CASE("a pair keeps its momentum, spin included, to rounding")
     const auto after = s.simulation().totals();
     CHECK(s.vec("b", "linear_velocity").x > 0.1);
     CHECK(length(after.momentum - before.momentum) <= 1e-14);
-    // Forces act at one point: what is left is the turning of its place within a stage.
+    // Forces act at one point: the remaining error comes from the rotation of its position within a stage.
     CHECK(length(after.angular_momentum - before.angular_momentum) <= 1e-13);
 }
 
-TEST_CASE("the ledger closes: kinetic energy is what the springs have done")
+TEST_CASE("the ledger closes: kinetic energy is the work of the springs")
 {
     Scene s(kGround + ball("a", "mass=\"1\" position=\"0 0 0.5\" linear_velocity=\"1 0 0\"") +
                 contact("a ground", penalty(1e5, " response.friction=\"0.3\" response.restitution=\"0.6\"")) + kGravity,
@@ -229,11 +229,11 @@ TEST_CASE("the ledger closes: kinetic energy is what the springs have done")
     CHECK(s.real("contact.response", "stored") == doctest::Approx(0.5 * kG * kG / 1e5).epsilon(1e-2));
 }
 
-TEST_CASE("C14: a box holds on a ramp below the friction angle without creeping, and slides as it should above")
+TEST_CASE("C14: a box holds on a ramp below the friction angle without creeping, and slides above it as the closed form requires")
 {
     const auto ramp = [](const char* friction)
     {
-        // The ground is level, gravity leans by 30 degrees.
+        // The ground is level, gravity is inclined by 30 degrees.
         return Scene(
             kGround +
                 std::string("<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.2 0.2 0.1\"/>"
@@ -259,7 +259,7 @@ TEST_CASE("C14: a box holds on a ramp below the friction angle without creeping,
     CHECK(near(slides.vec("a", "linear_velocity").x - v1, 2.35628723666239706, 1e-9));
 }
 
-TEST_CASE("a ball rolls on and on: stiction does not brake what does not slip")
+TEST_CASE("a ball continues to roll: stiction does not brake a body that does not slip")
 {
     Scene s(kGround +
                 ball("a", "mass=\"1\" position=\"0 0 0.0999019\" linear_velocity=\"1 0 0\" angular_velocity=\"0 10.009819636263 0\"") +
@@ -273,7 +273,7 @@ TEST_CASE("a ball rolls on and on: stiction does not brake what does not slip")
     CHECK(near(v, 1, 1e-3));
 }
 
-TEST_CASE("fast and thin: nothing passes through unseen")
+TEST_CASE("fast and thin bodies do not pass through one another undetected")
 {
     for (const double v : {10.0, 1e3, 1e4})
     {
@@ -289,7 +289,7 @@ TEST_CASE("fast and thin: nothing passes through unseen")
     }
 }
 
-TEST_CASE("a spring too stiff for the pieces it may have says so, and holds all the same")
+TEST_CASE("a spring too stiff for the largest number of pieces reports that, and holds nevertheless")
 {
     Scene s(kGround + ball("a", "mass=\"1\" position=\"0 0 0.1\"") +
                 contact("a ground", penalty(1e9, " response.damping_ratio=\"0.3\" response.max_substeps=\"500\"")) + kGravity,
@@ -301,18 +301,18 @@ TEST_CASE("a spring too stiff for the pieces it may have says so, and holds all 
     CHECK(std::fabs(s.vec("a", "position").z - 0.1) <= 2e-8);
 }
 
-TEST_CASE("many at once: a heap of damped balls settles and stays together")
+TEST_CASE("many contacts at once: a heap of damped balls settles and stays together")
 {
     std::string scene = kGround + std::string(kGravity);
-    std::string who = "ground";
+    std::string bodies = "ground";
     for (int i = 0; i < 27; ++i)
     {
         const std::string id = "s" + std::to_string(i);
         const double x = 0.21 * (i % 3) + 1e-3 * ((i * 7) % 5), y = 0.21 * (i / 3 % 3) + 1e-3 * ((i * 3) % 4), z = 0.101 + 0.21 * (i / 9);
         scene += ball(id, "mass=\"1\" position=\"" + text(x) + " " + text(y) + " " + text(z) + "\"");
-        who += " " + id;
+        bodies += " " + id;
     }
-    Scene s(scene + contact(who, penalty(1e4, " response.restitution=\"0\" response.steps_per_contact=\"20\"")), "dt=\"1/60\"");
+    Scene s(scene + contact(bodies, penalty(1e4, " response.restitution=\"0\" response.steps_per_contact=\"20\"")), "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(0.5);
     CHECK(s.real("contact.response", "penetration") < 0.01);
@@ -320,7 +320,7 @@ TEST_CASE("many at once: a heap of damped balls settles and stays together")
     CHECK(std::fabs(t.kinetic - s.simulation().kinetic_at_start() - t.work) <= 1e-3);
 }
 
-TEST_CASE("thin plates that meet between two steps are seen: 1 mm at 100 m/s, flat on or askew")
+TEST_CASE("thin plates that meet between two steps are detected: 1 mm at 100 m/s, parallel or tilted")
 {
     // 0.42 m per step, and with a bounding sphere around each plate they would be queried every 0.18 m. The springs yield by 0.2
     // mm.

@@ -39,7 +39,7 @@ TEST_CASE("an oscillator of two quantities, fourth order")
     CHECK(std::log2(coarse / fine) == doctest::Approx(4).epsilon(0.02));
 }
 
-TEST_CASE("a quantity and a body that feel each other advance as one group, at the same stages")
+TEST_CASE("a quantity and a body that affect each other advance as one group, at the same stages")
 {
     // Thrust T = 3 z while fuel burns: z' = -z/2, v' = 3 z: v = 6 (1 - e^{-t/2}), x = 6 t - 12 (1 - e^{-t/2}).
     const auto error = [](int per_second)
@@ -63,7 +63,7 @@ TEST_CASE("a quantity and a body that feel each other advance as one group, at t
     CHECK(std::log2(coarse / fine) == doctest::Approx(4).epsilon(0.05));
 }
 
-TEST_CASE("what a script asks of quantities wrongly is a failure that says what would be right")
+TEST_CASE("a wrong use of quantities by a script fails with a message that says what would be right")
 {
     const auto failure = [](const std::string& line)
     {
@@ -87,9 +87,9 @@ TEST_CASE("quantities need a number")
     CHECK(s.error().find("at least one number") != std::string::npos);
 }
 
-TEST_CASE("quantities that leave the numbers stand still from then on, are told once, and go on when they are set")
+TEST_CASE("quantities that overflow are frozen and reported once, and continue when they are set")
 {
-    // z grows beyond all numbers where it is positive; the clock beside it, of the same script, goes on. A script has them by id.
+    // z grows beyond all numbers if it is positive; the clock, of the same script, continues. A script finds them by id.
     Scene s(R"(<component id="z" type="State/Quantities" values="1"/><component id="zclock" type="State/Quantities" values="0"/>
                <component id="law" type="Script/Lua" between="z zclock"><param name="code">
                function force(t, state)

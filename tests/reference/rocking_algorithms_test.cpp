@@ -1,11 +1,11 @@
-// C23 and C24 by every algorithm of contacts (contact_algorithms.h); rocking_test.cpp has the closed forms and the reasons for what is
-// lost.
+// C23 and C24 by every algorithm of contacts (contact_algorithms.h); rocking_test.cpp has the closed forms and the reasons for the
+// losses.
 #include "rocking.h"
 
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("C23: spin after the impact of a rocking block, by every algorithm")
+TEST_CASE("C23: spin after the impact of a rocking block, with every algorithm")
 {
     // rad/s, after one step (located) or ten.
     constexpr Bound<1> table[] = {
@@ -30,11 +30,10 @@ TEST_CASE("C23: spin after the impact of a rocking block, by every algorithm")
                      });
 }
 
-TEST_CASE("C23: Housner's quarter period, by every algorithm")
+TEST_CASE("C23: Housner's quarter period, with every algorithm")
 {
-    // Off by how many steps, at 1/100 and 1/400.
-    // Located: an edge that stands is stepped with order 1. At ends: found at the end of a step. Springs find it in time, tilted a little
-    // by what their edge gives way: 3e-4 s.
+    // Error in steps, at 1/100 and 1/400. Located: a resting edge is stepped with order 1. At ends: the impact is found at the end
+    // of a step. Springs find it in time; the block is tilted a little because its edge sinks in: 3e-4 s.
     constexpr Bound<2> table[] = {
         {"located", "Impulse", {0.15, 0.15}},         {"located", "Rows", {0.15, 0.45}},
         {"at ends", "Impulse", {1.15, 1.15}},         {"at ends", "Rows", {1.15, 1.15}},
@@ -48,11 +47,11 @@ TEST_CASE("C23: Housner's quarter period, by every algorithm")
                      });
 }
 
-TEST_CASE("C24: a rimless wheel at 1/400, by every algorithm")
+TEST_CASE("C24: a rimless wheel at 1/400, with every algorithm")
 {
-    // rad/s, over h: the largest spin of the later steps beside the fixed point's, and how far the least one lies below it.
-    // Why 12 h: rocking_test.cpp. Rows that speculate or locate let a spoke's two corners come down one step apart, and between them the
-    // spin dips by up to 0.1 rad/s. Springs are left out: on them the wheel leaves the cycle.
+    // rad/s, over h: the largest spin of the later steps relative to the fixed point's, and how far the smallest one lies below it.
+    // Why 12 h: rocking_test.cpp. With rows that speculate or locate, a spoke's two corners may land one step apart, and between
+    // them the spin dips by up to 0.1 rad/s. Springs are left out: on them the wheel leaves the cycle.
     constexpr Bound<2> table[] = {
         {"*", "Impulse", {12, 12}},
         {"None", "Rows/Direct", {6, 6}},

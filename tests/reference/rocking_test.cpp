@@ -1,28 +1,29 @@
 // Rocking and walking on edges: contacts that are taken over by others. C23 (Housner's block), C24 (rimless wheel).
 //
-// C23: half-diagonal 1, alpha = .2, let go at theta = .1. I_o theta'' = -m g R sin(alpha - theta): quarter period
+// C23: half-diagonal 1, alpha = .2, released at theta = .1. I_o theta'' = -m g R sin(alpha - theta): quarter period
 // .48608973195735393546 s, spin at the impact .46883536463483484333 rad/s (quadrature and energy, mpmath, 40 digits; the small-angle
-// formula gives .4855195874 s). At the impact the old edge lets go: w'/w = 1 - 1.5 sin^2(alpha).
+// formula gives .4855195874 s). At the impact the old edge separates: w'/w = 1 - 1.5 sin^2(alpha).
 // C24: eight spokes of 1 m, slope .08, mass 1 at the hub, with a small inertia I about its axle (a point would spin freely):
 //   w+ = r w-,  r = (I + cos 45) / (I + 1);   w-^2 = w+^2 + 2 g (cos(.08 - pi/8) - cos(.08 + pi/8)) / (1 + I)
 // fixed point 1.0954628 and contraction of w^2 cos^2 45 = .5 for I = 0; 1.0958222331616213, .50041388537773225 for I = 1e-3.
 //
-// | problem | algorithm                         | bound                                                               |
-// |---------|-----------------------------------|---------------------------------------------------------------------|
-// | C23     | impact alone, all that locate     | w'/w to 6e-8 (started 1e-7 rad ahead of it: the arms are off by it) |
-// |         | quarter period, located + Impulse | .15 h: an edge that stands is stepped with order 1 (asserted)       |
-// |         | located + Rows                    | .45 h: the edge trembles                                            |
-// |         | None, Speculative + either        | 1.15 h: .15 h, found at the end of a step                           |
-// | C24     | located + Impulse                 | fixed point to 12 h rad/s, contraction .5 -+ .035 at h = .001       |
-// |         | None + Rows                       | fixed point to 6 h rad/s                                            |
-// |         | Speculative, LocalRoot + Rows     | 12 h for the largest spin of a walking step; a spoke's two corners  |
-// |         |                                   | may come down one step apart, and between them it dips by 0.1 rad/s |
+// | problem | algorithm                         | bound                                                              |
+// |---------|-----------------------------------|--------------------------------------------------------------------|
+// | C23     | impact alone, all that locate     | w'/w to 6e-8 (started 1e-7 rad before it: the arms differ by that) |
+// |         | quarter period, located + Impulse | .15 h: a resting edge is stepped with order 1 (asserted)           |
+// |         | located + Rows                    | .45 h: the edge chatters                                           |
+// |         | None, Speculative + either        | 1.15 h: .15 h, found at the end of a step                          |
+// | C24     | located + Impulse                 | fixed point to 12 h rad/s, contraction .5 -+ .035 at h = .001      |
+// |         | None + Rows                       | fixed point to 6 h rad/s                                           |
+// |         | Speculative, LocalRoot + Rows     | 12 h for the largest spin of a walking step; a spoke's two corners |
+// |         |                                   | may land one step apart, and between them it drops by 0.1 rad/s    |
 //
-// Why 12 h: a stance loses 2.5 h J by its steps of order 1 (measured), 2.3 h rad/s of the fixed point. A corner that comes down is of
-// the pair that stands, so it is not located but met ahead of its step, up to h early: 3.1 h rad/s, twice that at the fixed point (what is
-// off halves from step to step). And the spin is seen at the step's end, up to 3 h rad/s later. In all 11.5 h; reached 10.7 h.
+// Why 12 h: a stance loses 2.5 h J by its steps of order 1 (measured), 2.3 h rad/s of the fixed point. A landing corner belongs to
+// the pair that is at rest, so its impact is not located but answered before its step, up to h early: 3.1 h rad/s, twice that at
+// the fixed point (a deviation halves from step to step). And the spin is measured at the step's end, up to 3 h rad/s later. In all
+// 11.5 h; reached 10.7 h.
 //
-// Aims not reached: the fixed point to more digits. Standing contacts are held at the level of speeds, with order 1.
+// Aims not reached: the fixed point to more digits. Resting contacts are held at the level of speeds, with order 1.
 #include <algorithm>
 
 #include "rocking.h"
@@ -30,13 +31,13 @@
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("C23: at the impact of a rocking block the old edge lets go")
+TEST_CASE("C23: at the impact of a rocking block the old edge separates")
 {
     for (const Algorithm& algorithm : kAlgorithms)
     {
         if (!algorithm.locates()) continue;
         CAPTURE(algorithm.name());
-        Scene s(block(1e-7, 1, 1e-7, algorithm), "dt=\"1/100\"");  // no gravity: at 1 rad/s it is there in 1e-7 s
+        Scene s(block(1e-7, 1, 1e-7, algorithm), "dt=\"1/100\"");  // no gravity: at 1 rad/s the impact is after 1e-7 s
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = s.keep_events = true;
         s.step();
@@ -45,7 +46,7 @@ TEST_CASE("C23: at the impact of a rocking block the old edge lets go")
     }
 }
 
-TEST_CASE("C23: a rocking block comes down after Housner's quarter period")
+TEST_CASE("C23: a rocking block lands after Housner's quarter period")
 {
     for (const Algorithm& algorithm : kAlgorithms)
     {
@@ -60,7 +61,7 @@ TEST_CASE("C23: a rocking block comes down after Housner's quarter period")
     CHECK(std::fabs(first_impact({"LocalRoot", "Impulse"}, 0.000625) - kQuarter) < 0.5 * (kQuarter - 0.485519587413140505));
 }
 
-TEST_CASE("C24: a rimless wheel comes to its limit cycle, half as far away with each step")
+TEST_CASE("C24: a rimless wheel converges to its limit cycle: each step halves the deviation")
 {
     constexpr double kFixed = 1.0958222331616213;
     for (const Algorithm& algorithm : {Algorithm{"LocalRoot", "Impulse"}, Algorithm{"LocalBisection", "Impulse"}, Algorithm{"None", "Rows"},
@@ -85,9 +86,9 @@ TEST_CASE("C24: a rimless wheel comes to its limit cycle, half as far away with 
         }
 }
 
-TEST_CASE("a wheel that walks on its edges at long steps makes no energy, however its corners come and go")
+TEST_CASE("a wheel that walks on its edges at long steps gains no energy, however its contacts change")
 {
-    // Corners that came round unseen used to sink in, be parted by lifting the wheel, and sink in again: 0.06 J a step.
+    // Corners that landed undetected used to sink in, be separated by lifting the wheel, and sink in again: 0.06 J per step.
     for (const char* resolution : {"LocalRoot", "LocalBisection"})
     {
         CAPTURE(std::string(resolution));

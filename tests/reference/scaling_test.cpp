@@ -135,23 +135,23 @@ void check_scales(const std::string& solver, const MakeScene& make, int steps)
 
 }  // namespace
 
-TEST_CASE("scaled bodies in flight: not a bit, by every solver without a tolerance of its own")
+TEST_CASE("scaling bodies in flight changes no bit, with every solver that has no tolerance of its own")
 {
     for (const char* solver :
          {"RungeKutta4", "SemiImplicitEuler", "StoermerVerlet", "RotationSplitting", "ImplicitMidpoint", "Exact", "Automatic"})
         check_scales(solver, flying, 40);
 }
 
-TEST_CASE("scaled joints and springs: not a bit")
+TEST_CASE("scaling joints and springs changes no bit")
 {
     for (const char* solver : {"RungeKutta4", "RotationSplitting", "StoermerVerlet"}) check_scales(solver, hanging, 200);
 }
 
-TEST_CASE("scaled gears: not a bit")
+TEST_CASE("scaling gears changes no bit")
 {
     for (const char* type : {"Graph", "Impulse", "Assign"})
         check_scales(
             "RungeKutta4", [&](const Scale& k) { return geared(k, type); }, 60);
 }
 
-TEST_CASE("scaled contacts by springs: not a bit") { check_scales("RungeKutta4", bouncing, 300); }
+TEST_CASE("scaling spring contacts changes no bit") { check_scales("RungeKutta4", bouncing, 300); }

@@ -45,7 +45,7 @@ TEST_CASE("B3: quadratic drag in a script")
     CHECK(std::fabs(s.vec("ball", "linear_velocity").z / -31.3209195267316505 - 1) < 1e-12);
 }
 
-TEST_CASE("a script that fails is quarantined by name and the rest goes on")
+TEST_CASE("a script that fails is quarantined by name and the rest of the scene continues")
 {
     Scene s(R"(<component id="a" type="State/Shaft" inertia="1"/><component id="b" type="State/Shaft" inertia="1"/>
                <component id="good" type="Script/Lua" driven="a"><param name="code">function force(t, state) driven:add_torque(1) end</param></component>

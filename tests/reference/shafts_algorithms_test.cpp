@@ -3,7 +3,7 @@
 // kind      F1 pair   F2 six meshes 10:1, down, up   F3 engaged at run time   F7 line
 // Graph     1e-13     2e-14, torques too             1e-14                    no drift: angles are derived
 // Gear      1e-13     2e-15, 3e-7                    1e-14                    1e-13 of 100
-// Impulse   1e-13     2e-15, 8e-8                    1e-14                    3e-15 of 10; 1000: told that it does not hold
+// Impulse   1e-13     2e-15, 8e-8                    1e-14                    3e-15 of 10; 1000: it reports that it does not hold
 // Assign    one way: the driver feels nothing; ratios to 2e-15
 //
 // Speeds under a constant torque are exact for every solver, angles for all but SemiImplicitEuler, which is ahead by h alpha t / 2.
@@ -42,7 +42,7 @@ double geared_pendulum_error(const SolverAlgorithm& algorithm, int steps)
 
 }  // namespace
 
-TEST_CASE("F1: a pair by every kind of gear, every solver, steps of 1/10 to 1/1000")
+TEST_CASE("F1: a pair with every kind of gear, every solver, steps of 1/10 to 1/1000")
 {
     for (const char* type : {"Graph", "Impulse", "Gear", "Assign"})
         for (const SolverAlgorithm& algorithm : kEverySolver)
@@ -66,7 +66,7 @@ TEST_CASE("F1: a pair by every kind of gear, every solver, steps of 1/10 to 1/10
             }
 }
 
-TEST_CASE("F2: six meshes both ways by every solver and step, with the torque of each mesh")
+TEST_CASE("F2: six meshes both ways with every solver and step, with the torque of each mesh")
 {
     for (const double factor : {0.1, 10.})
         for (const SolverAlgorithm& algorithm : kEverySolver)
@@ -91,7 +91,7 @@ TEST_CASE("F2: six meshes both ways by every solver and step, with the torque of
             }
 }
 
-TEST_CASE("F2: by the other kinds of gears")
+TEST_CASE("F2: with the other kinds of gears")
 {
     struct Row
     {
@@ -118,7 +118,7 @@ TEST_CASE("F2: by the other kinds of gears")
     }
 }
 
-TEST_CASE("F3: engaged at run time, by every kind of gear and every solver")
+TEST_CASE("F3: engaged at run time, with every kind of gear and every solver")
 {
     for (const std::string type : {"Graph", "Impulse", "Gear", "Assign"})
         for (const SolverAlgorithm& algorithm : kEverySolver)
@@ -134,14 +134,14 @@ TEST_CASE("F3: engaged at run time, by every kind of gear and every solver")
             const auto reply = s.ask(simulation::AddOperation{*compiled});
             REQUIRE_MESSAGE(reply.done, first_error(reply.errors));
             s.step();
-            const bool one_way = type == "Assign";  // 100 rad/s go on; what the driven gets is made up, and booked
+            const bool one_way = type == "Assign";  // 100 rad/s continue; the driven shaft's energy is added without a source, and booked
             CHECK(near(s.spin("a"), one_way ? 100 : 200.0 / 3, 1e-14));
             CHECK(near(s.spin("b"), one_way ? -50 : -100.0 / 3, 1e-14));
             CHECK(near(s.simulation().totals().kinetic - 5000, one_way ? 2500 : -5000.0 / 3, 1e-12));
         }
 }
 
-TEST_CASE("F7: a line of 1000 gears by every solver: angles are derived, so none drifts")
+TEST_CASE("F7: a line of 1000 gears with every solver: angles are derived, so none drifts")
 {
     const GearLine line(1000, "Graph");
     for (const SolverAlgorithm& algorithm : kEverySolver)
@@ -156,14 +156,14 @@ TEST_CASE("F7: a line of 1000 gears by every solver: angles are derived, so none
     }
 }
 
-TEST_CASE("F7: a line of gears by the other kinds")
+TEST_CASE("F7: a line of gears of the other kinds")
 {
     struct Row
     {
         std::string type;
         int shafts, steps;
         double phase;   ///< relative, of the angles
-        bool reported;  ///< that it does not hold
+        bool reported;  ///< whether a failure to hold is reported
     };
     for (const Row& row : {Row{"Assign", 1000, 100, 3e-15, false}, Row{"Gear", 100, 100, 6e-14, false},
                            Row{"Impulse", 10, 100, 1.6e-15, false}, Row{"Impulse", 1000, 5, 1, true}})
@@ -179,11 +179,11 @@ TEST_CASE("F7: a line of gears by the other kinds")
         MESSAGE(row.type << " " << row.shafts << ": " << phase << " events " << s.events.size());
         CHECK(phase < 2 * row.phase);
         CHECK(s.count("coupling.not_converged") == (row.reported ? 1 : 0));
-        if (row.reported) CHECK(phase > 0.5);  // the far end does not know yet
+        if (row.reported) CHECK(phase > 0.5);  // the motion has not reached the far end yet
     }
 }
 
-TEST_CASE("F8: a pendulum geared to a flywheel, by every solver: the state after a period at 90 deg")
+TEST_CASE("F8: a pendulum geared to a flywheel, with every solver: the state after a period at 90 deg")
 {
     const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 400, 3.4e-2, 1},
@@ -192,7 +192,7 @@ TEST_CASE("F8: a pendulum geared to a flywheel, by every solver: the state after
         {{"ImplicitMidpoint"}, 200, 4.0e-4, 2},
         {{"RungeKutta4"}, 200, 7.4e-8, 4},
         {{"RotationSplitting"}, 50, 1.6e-7, 4},
-        {{"Exponential"}, 50, 1.3e-6, 0},  // its order shows later
+        {{"Exponential"}, 50, 1.3e-6, 0},  // its order is visible only with shorter steps
         {{"Exponential"}, 200, 5.0e-8, 4},
         {{"DormandPrince54"}, 20, 4.6e-11, 0},
         {{"Radau5"}, 10, 2.2e-11, 0},

@@ -21,7 +21,7 @@ TEST_CASE("F1: a pair accelerates with its reflected inertia")
     }
 }
 
-TEST_CASE("F1, one way: an assigned shaft follows and the driver feels nothing")
+TEST_CASE("F1, one way: an assigned shaft follows and does not affect the driver")
 {
     Scene s(shaft("a", 10) + shaft("b", 100) + gear("g", "Assign", "a", "b", "-0.1") + torque("a", "6"), "dt=\"1/100\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -99,7 +99,7 @@ std::string prescribed(const std::string& id, double speed)
 
 }  // namespace
 
-TEST_CASE("F5 with Impulse: a contradictory loop says so once, whether it brakes to a stop or can hardly move")
+TEST_CASE("F5 with Impulse: a contradictory loop reports that once, whether it brakes to a stop or can hardly move")
 {
     struct Loop
     {
@@ -130,7 +130,7 @@ TEST_CASE("F5 with Impulse: a contradictory loop says so once, whether it brakes
     }
 }
 
-TEST_CASE("an Impulse between prescribed shafts that disagree says so, and says so again when that comes back")
+TEST_CASE("an Impulse between prescribed shafts that disagree reports that, and again when it recurs")
 {
     Scene s(prescribed("a", 10) + prescribed("b", 20) + gear("g", "Impulse", "a", "b", "3"));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -152,7 +152,7 @@ TEST_CASE("an Impulse between prescribed shafts that disagree says so, and says 
     CHECK(s.count("constraint.contradiction") == 2);
 }
 
-TEST_CASE("a train too long for the sweeps of Impulse says so once and names the better type; what converges says nothing")
+TEST_CASE("a train too long for the sweeps of Impulse reports that once and names the better type; one that converges reports nothing")
 {
     const auto train = [](int n)
     {

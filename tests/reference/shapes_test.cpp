@@ -4,7 +4,7 @@
 using namespace plab;
 using plab::test::Scene;
 
-TEST_CASE("all kinds of shapes fall on a plate and lie on it, each at the height of its form")
+TEST_CASE("all kinds of shapes fall on a plate and come to rest on it, each at the height of its geometry")
 {
     Scene s = Scene::file("scenes/shapes.xml");
     REQUIRE_MESSAGE(s.loaded(), s.error());

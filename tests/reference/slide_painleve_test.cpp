@@ -1,6 +1,6 @@
 // C22, Painleve's rod: slender, 1 kg, 1 m, at 60 degrees, its lower end dragged towards -x at 3 m/s with mu = 1.5. There sliding
-// has no acceleration: 1 + 3 cos^2 - 3 mu sin cos = -.19856 < 0. What answers is an impact without collision: an impulse that ends
-// the slip at once. About its end the rod keeps its angular momentum, so it goes on with w = 3/2 v sin(theta) / L = 3.8971 rad/s.
+// has no acceleration: 1 + 3 cos^2 - 3 mu sin cos = -.19856 < 0. The solution is an impact without collision: an impulse that ends
+// the slip at once. About its end the rod keeps its angular momentum, so it continues with w = 3/2 v sin(theta) / L = 3.8971 rad/s.
 // Dragged the other way (the mirror image) it slides on, without paradox.
 //
 // Springs yield instead: their rod is not stopped at once, and no paradox is reported.
@@ -56,13 +56,13 @@ Dragged drag(const Algorithm& algorithm, bool ahead)
 }
 }  // namespace
 
-TEST_CASE("C22: Painleve's rod: an impulse ends the slip, it is said, and energy does not rise")
+TEST_CASE("C22: Painleve's rod: an impulse ends the slip, this is reported, and energy does not rise")
 {
-    // Error of the spin after one step; rise above the start, ahead and behind; rise in a step; energy at the end, of both; the paradox
-    // told; and the spin behind after one step.
-    // The fall of one step is 9.81e-3 m/s; what lies has 9.81e-3 J.
+    // Error of the spin after one step; rise above the start, ahead and behind; rise in a step; energy at the end, of both; whether
+    // the paradox is reported; and the spin behind after one step. The fall of one step is 9.81e-3 m/s; a rod that lies has 9.81e-3
+    // J.
     constexpr Bound<8> table[] = {
-        // What sank in by the way of one turning step is lifted out again.
+        // The depth by which it sank in while rotating for one step is corrected by lifting it.
         {"certified", "Impulse", {3 * 9.81e-3, 1e-12, 1e-12, 6e-6, 0.01, 0.01, 1, 0.06}, {0, 0, 0, 0, 0, 0, 1, 0}},
         {"*", "Impulse", {3 * 9.81e-3, 1e-12, 1e-12, 1e-14, 0.01, 0.01, 1, 0.06}, {0, 0, 0, 0, 0, 0, 1, 0}},
         {"*", "Rows/Direct", {3 * 9.81e-3, 1e-12, 1e-12, 2e-10, 0.01, 0.01, 1, 0.06}, {0, 0, 0, 0, 0, 0, 1, 0}},

@@ -55,7 +55,8 @@ TEST_CASE("C14c: a box on a ramp at mu = tan(angle) (1 -+ 1e-6) holds for an hou
     }
 }
 
-TEST_CASE("C14c: by every algorithm at 1/100: what it moves at mu = tan(angle) (1 + 1e-6), and beside what is due at (1 - 1e-6)")
+TEST_CASE(
+    "C14c: with every algorithm at 1/100: the displacement at mu = tan(angle) (1 + 1e-6), and relative to the expected one at (1 - 1e-6)")
 {
     // m: in 5 s (springs: .5 s); in the same time again; relative to the expected displacement in both, 0.25 mm (2.5e-6 m).
     // Slip that began in the first steps is braked by only a millionth of the weight, so it continues. Impulses that hold the
@@ -79,7 +80,7 @@ TEST_CASE("C14c: by every algorithm at 1/100: what it moves at mu = tan(angle) (
         });
 }
 
-TEST_CASE("C14c: one percent below slipping every algorithm holds")
+TEST_CASE("C14c: one percent below the limit of slipping every algorithm holds")
 {
     // m: in the first half second; in ten times as long (springs: once more).
     constexpr Bound<2> table[] = {

@@ -1,19 +1,19 @@
 // C16, SimBenchmark's rolling test: a box of 10 kg is pushed over the ground by 150 N with 25 balls of 1 kg on it.
 //
-// mu = 0.4 between box and ground, 0.8 between balls and box, both start at rest. All points under the box slide the same way, so
-// however the load is shared friction is mu (M + n m) g against the push, and no torque turns the box. A ball that rolls on the box
-// takes f = m a forward, and f R = 2/5 m R^2 alpha backward spin; no slip: a + alpha R = A, so a = 2/7 A, and
+// mu = 0.4 between box and ground, 0.8 between balls and box, both start at rest. All points under the box slide in the same
+// direction, so however the load is shared friction is mu (M + n m) g against the push, and no torque turns the box. A ball that
+// rolls on the box takes f = m a forward, and f R = 2/5 m R^2 alpha backward spin; no slip: a + alpha R = A, so a = 2/7 A, and
 //
-//   A = (F - mu (M + n m) g) / (M + 2/7 n m) = 12.66 / 17.142857... m/s^2      f / m g = .0215 < 0.8: it does roll
+//   A = (F - mu (M + n m) g) / (M + 2/7 n m) = 12.66 / 17.142857... m/s^2      f / m g = .0215 < 0.8: it rolls
 //
-// in whatever direction the push goes: a friction pyramid of the usual kind does not move at all at 60 degrees (it holds up to
+// in any direction of the push: a friction pyramid of the usual kind does not move at all at 60 degrees (it holds up to
 // sqrt 2 mu N there).
 //
 // | algorithm                    | bound at h = 1/100, after 4 s                                     |
 // |------------------------------|-------------------------------------------------------------------|
 // | Rows/Direct, any resolution  | speeds 2e-14 m/s, sideways 4e-15, yaw 2e-16 rad/s: rounding       |
 // | Impulse, certifying          | speeds 2e-11                                                      |
-// | Impulse, None and bisections | with four balls only: they begin to touch one by one, and each is |
+// | Impulse, None and bisections | with four balls only: contacts begin one by one, and each is      |
 // |                              | answered with all the others; 25 take seconds                     |
 // | Rows/SequentialImpulse       | 1.4e-4 m/s: up to its tolerance, 1e-6 m/s, in each of 400 steps   |
 // | Rows/SoftStep                | 1.5e-4 m/s: sub-steps of finite stiffness                         |
@@ -100,7 +100,7 @@ TEST_CASE("C16: a box with balls on it is pushed as far in any direction")
         }
 }
 
-TEST_CASE("C16: with four balls for a second, by every algorithm")
+TEST_CASE("C16: with four balls for a second, with every algorithm")
 {
     // Speeds along the push, across it, m/s; yaw, rad/s: the worst of two directions.
     constexpr Bound<3> table[] = {

@@ -74,7 +74,7 @@ std::array<double, 3> slide_and_roll(const Algorithm& algorithm, double h)
 }
 }  // namespace
 
-TEST_CASE("C15: a sliding ball comes to roll, when and as fast as it should")
+TEST_CASE("C15: a sliding ball begins to roll at the time and the speed of the closed form")
 {
     // Position, velocity, spin at 1/100; position at 1/400.
     // Impulse: the end of sliding falls within a step. Springs: R is m g / k shorter, 1e-3 of it.
@@ -122,7 +122,7 @@ double furthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 }
 }  // namespace
 
-TEST_CASE("A11: a ball that bounces, slides and rolls does the same 1e7 m away, at 1e3 m/s and turned")
+TEST_CASE("A11: a ball that bounces, slides and rolls does the same 1e7 m away, at 1e3 m/s and rotated")
 {
     const Quat turn = normalized(Quat{0.3, -0.5, 0.7, 0.2});
     for (const Algorithm& algorithm : {Algorithm{"LocalRoot", "Impulse"}, Algorithm{"LocalBisection", "Impulse"},

@@ -13,7 +13,7 @@ namespace
 
 constexpr double kG = 9.81, kRadius = 0.1;
 
-/// The angle from the vertical of a ball whose centre goes round a circle of radius `length`: angle'' = rate sin angle, classical
+/// The angle from the vertical of a ball whose centre moves on a circle of radius `length`: angle'' = rate sin angle, classical
 /// Runge-Kutta.
 struct Swing
 {
@@ -150,7 +150,7 @@ TEST_CASE("a ball rolls in a bowl: order 2")
     }
 }
 
-TEST_CASE("a ball slides off a dome: it is released in short steps, too")
+TEST_CASE("a ball slides off a dome: it is also released with short steps")
 {
     for (const std::string& response : kResponses)
         for (const int n : {1920, 7680})
@@ -162,7 +162,7 @@ TEST_CASE("a ball slides off a dome: it is released in short steps, too")
         }
 }
 
-TEST_CASE("who rocks on its edges is not released while it touches")
+TEST_CASE("a body that rocks on its edges is not released while it touches")
 {
     for (const std::string& response : kResponses)
     {
@@ -182,13 +182,13 @@ TEST_CASE("who rocks on its edges is not released while it touches")
             s.step();
             highest = std::max(highest, s.vec("ball", "position").z);
         }
-        CHECK(highest > 0.202);  // it stood on an edge
+        CHECK(highest > 0.202);  // it rose onto an edge
         CHECK(s.count("contact.end") == 0);
         CHECK(s.count("contact.release") == 0);
     }
 }
 
-TEST_CASE("who stands between walls and is lifted off is released once from what it pressed")
+TEST_CASE("a body between walls that is lifted off is released once, from the body on which it pressed")
 {
     for (const std::string& response : kResponses)
         for (const char* shapes : {"wall floor", "floor wall"})
@@ -217,7 +217,7 @@ TEST_CASE("who stands between walls and is lifted off is released once from what
         }
 }
 
-TEST_CASE("a bowl that moves as told takes along what slides in it, as one that stands does")
+TEST_CASE("a body slides in a bowl with a prescribed velocity as in one at rest")
 {
     const auto place = [](const std::string& response, double speed)
     {

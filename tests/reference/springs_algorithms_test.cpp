@@ -25,7 +25,7 @@ const SolverAlgorithm kExplicit[] = {{"SemiImplicitEuler"}, {"StoermerVerlet"}, 
 
 std::string damped(const SolverAlgorithm& algorithm, double k) { return spring_scene(algorithm, k, 0.1 * std::sqrt(k)); }
 
-/// Place and speed over w, both of the spring pulled by 1 m and let go, if each step multiplies by `factor`.
+/// Position, and speed divided by w, of the spring released at 1 m, if each step multiplies by `factor`.
 Complex swing_by(double k, const Complex& factor, int steps)
 {
     const double zeta = 0.05, root = std::sqrt(1 - zeta * zeta);
@@ -44,7 +44,7 @@ double windy_speed(const SolverAlgorithm& algorithm)
     return s.vec("ball", "linear_velocity").x;
 }
 
-/// Relative, of the place after 5 s and of the final speed after 65 s.
+/// Relative, of the position after 5 s and of the final speed after 65 s.
 double script_fall_error(const SolverAlgorithm& algorithm, int steps)
 {
     Scene s(solver(algorithm) + R"(<component id="ball" type="State/RigidBody" mass="1" inertia="1 1 1"/>
@@ -65,7 +65,7 @@ double script_fall_error(const SolverAlgorithm& algorithm, int steps)
 
 }  // namespace
 
-TEST_CASE("B1: ImplicitMidpoint follows the recursion of its closed form at any stiffness: it rings, and does not blow up")
+TEST_CASE("B1: ImplicitMidpoint follows the recursion of its closed form at any stiffness: it oscillates, and does not diverge")
 {
     for (const double k : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
     {
@@ -78,11 +78,11 @@ TEST_CASE("B1: ImplicitMidpoint follows the recursion of its closed form at any 
         const Complex found{s.vec("mass", "position").x, s.vec("mass", "linear_velocity").x / std::sqrt(k)};
         MESSAGE("k " << k << ": off its recursion by " << std::abs(found - expected) << ", off the truth by "
                      << std::abs(found - swing_by(k, std::exp(z), 30)));
-        CHECK(std::abs(found - expected) < 7e-12);  // where its iteration ends: 1e-12 of a step
+        CHECK(std::abs(found - expected) < 7e-12);  // its iteration ends at 1e-12 of a step
     }
 }
 
-TEST_CASE("B1: explicit algorithms are within the amplitude below their limit, and blow up beyond it until they are told of")
+TEST_CASE("B1: explicit algorithms stay within the amplitude below their limit, and diverge beyond it until that is reported")
 {
     for (const SolverAlgorithm& algorithm : kExplicit)
         for (const double k : {1e4, 1e6, 1e8, 1e10, 1e12})
@@ -109,7 +109,7 @@ TEST_CASE("B1: explicit algorithms are within the amplitude below their limit, a
         }
 }
 
-TEST_CASE("B1: what Exact falls back to, and where DormandPrince54 gives up")
+TEST_CASE("B1: the method to which Exact falls back, and the limit at which DormandPrince54 gives up")
 {
     for (const double k : {1e2, 1e4})
     {
@@ -136,7 +136,7 @@ TEST_CASE("B1: what Exact falls back to, and where DormandPrince54 gives up")
     }
 }
 
-TEST_CASE("B3: quadratic drag in a script, by every solver")
+TEST_CASE("B3: quadratic drag in a script, with every solver")
 {
     const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 60, 3.7e-3, 1},
@@ -154,7 +154,7 @@ TEST_CASE("B3: quadratic drag in a script, by every solver")
     check_same({"Automatic"}, {"RungeKutta4"}, 20, script_fall_error);
 }
 
-TEST_CASE("B4: the transient of stiff drag, by every solver: its stability function to the 20th power")
+TEST_CASE("B4: the transient of stiff drag, with every solver: its stability function to the 20th power")
 {
     // z = -h c / m = -0.1.
     const double z = -0.1, fourth = 1 + z + z * z / 2 + z * z * z / 6 + z * z * z * z / 24;
@@ -165,7 +165,7 @@ TEST_CASE("B4: the transient of stiff drag, by every solver: its stability funct
     };
     const Row table[] = {
         {{"SemiImplicitEuler"}, 1 + z, 1e-12},
-        // Half a kick, then half a kick that sees the predicted end speed.
+        // Half a kick, then half a kick evaluated at the predicted final speed.
         {{"StoermerVerlet"}, 1 + z + z * z / 2, 1e-12},
         {{"RungeKutta4"}, fourth, 1e-12},
         {{"RotationSplitting", "order=\"2\""}, fourth, 1e-12},  // one kick over the step, by RungeKutta4
@@ -173,7 +173,7 @@ TEST_CASE("B4: the transient of stiff drag, by every solver: its stability funct
         {{"Exponential"}, std::exp(z), 1e-12},
         {{"RotationSplitting"}, std::exp(z), 1.5e-7},
         {{"Exact"}, std::exp(z), 1.5e-7},
-        {{"Automatic"}, fourth, 1e-12},  // soft at such a step
+        {{"Automatic"}, fourth, 1e-12},  // the problem is soft at such a step
         {{"DormandPrince54"}, std::exp(z), 3e-10},
         {{"Radau5"}, std::exp(z), 1.2e-9},
     };

@@ -3,12 +3,12 @@
 //
 //   algorithm        Robertson, 1e11 s   van der Pol, 1e-6, 2 s   HIRES, 321.8122 s
 //   Radau5           10.4                                                    with absolute_tolerance 1e-18
-//   Radau5           6.3                 9.8                      8.3, 8.6   as it is set without a word, 1e-12; in 1 step, in 10
-//   Automatic        6.3                 9.8                      8.6        is Radau5 as it is set without a word: it has no tolerances
-//   DormandPrince54  gives up by name    gives up by name         9.7
+//   Radau5           6.3                 9.8                      8.3, 8.6   with its default, 1e-12; in 1 step, in 10
+//   Automatic        6.3                 9.8                      8.6        is Radau5 with its defaults: it has no tolerances of its own
+//   DormandPrince54  gives up, reported  gives up, reported       9.7
 //
-// Robertson's second number ends at 8e-14, below an absolute tolerance of 1e-12: no relative one holds for it then. Eight digits of it
-// are Radau5's, with an absolute tolerance well below.
+// Robertson's second number ends at 8e-14, below an absolute tolerance of 1e-12, so the relative one does not control it. Radau5
+// computes eight digits of it with an absolute tolerance well below.
 #include <vector>
 
 #include "reference/algorithms.h"
@@ -26,7 +26,7 @@ struct Reaction
     std::vector<double> reference;
 };
 
-/// Its time in units of 1e8 s: steps of a scene are not as long.
+/// Its time is in units of 1e8 s, because steps of a scene are not as long.
 const Reaction kRobertson{"1 0 0",
                           R"(local y = between[1]
                           local a, b, c = y:value(1), y:value(2), y:value(3)
@@ -101,7 +101,7 @@ TEST_CASE("B5: Radau5 has eight digits and more, with an absolute tolerance belo
     }
 }
 
-TEST_CASE("B5: Automatic sees that reactions are stiff, and has the digits of Radau5 as it is set without a word")
+TEST_CASE("B5: Automatic detects that reactions are stiff, and has the digits of Radau5 with its defaults")
 {
     for (const auto& [reaction, steps, digits] : {std::tuple{&kRobertson, 10, 6.0}, {&kVanDerPol, 4, 9.5}, {&kHires, 10, 8.5}})
     {
@@ -110,7 +110,7 @@ TEST_CASE("B5: Automatic sees that reactions are stiff, and has the digits of Ra
         CHECK(found > digits);
         CHECK(found == radau);
     }
-    // What is missing is the absolute tolerance's: all but the second number, far below it, have nine digits.
+    // The missing digits are due to the absolute tolerance: all but the second number, far below it, have nine digits.
     Scene s = scene_of(kRobertson, {"Automatic"}, 10);
     s.step(10);
     const Reals z = std::get<Reals>(s.get("z", "values"));
@@ -118,7 +118,7 @@ TEST_CASE("B5: Automatic sees that reactions are stiff, and has the digits of Ra
     CHECK(std::fabs(z[2] / kRobertson.reference[2] - 1) < 1e-9);
 }
 
-TEST_CASE("B5: explicit steps give up by name, or take their time")
+TEST_CASE("B5: explicit steps give up and are named, or take a long time")
 {
     Scene s = scene_of(kRobertson, {"DormandPrince54", "max_substeps=\"2000\""}, 1);
     s.warnings_expected = s.keep_events = true;
@@ -138,10 +138,10 @@ double relative_error(const Reaction& r, const SolverAlgorithm& algorithm, int s
 
 }  // namespace
 
-TEST_CASE("B5: HIRES by the solvers that are not made for it")
+TEST_CASE("B5: HIRES with the solvers that are not made for it")
 {
-    // Its fastest rate is about 200 1/s for a while: explicit algorithms need 64000 (orders 1 and 2) or 32000 steps. Without places a kick
-    // is the whole of a step, so StoermerVerlet is Heun's method and RotationSplitting of order 2 is RungeKutta4.
+    // Its fastest rate is about 200 1/s for a while: explicit algorithms need 64000 (orders 1 and 2) or 32000 steps. Without
+    // positions a kick is the whole of a step, so StoermerVerlet is Heun's method and RotationSplitting of order 2 is RungeKutta4.
     const auto error = [](const SolverAlgorithm& algorithm, int steps) { return relative_error(kHires, algorithm, steps); };
     const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 64000, 5.9e-4, 0}, {{"StoermerVerlet"}, 64000, 6.3e-6, 0}, {{"RungeKutta4"}, 32000, 1.1e-10, 0},
@@ -149,18 +149,19 @@ TEST_CASE("B5: HIRES by the solvers that are not made for it")
     };
     for (const AlgorithmRow& row : table) check_algorithm(row, error);
     check_same({"RotationSplitting", "order=\"2\""}, {"RungeKutta4"}, 16000, error);
-    // Beyond their limits they swing within what nonlinear rates allow: wrong, finite, and nothing tells of it.
+    // Beyond their limits they oscillate within the bounds of the nonlinear rates: wrong, finite, and without any report.
     CHECK(error({"SemiImplicitEuler"}, 32000) > 0.3);
     CHECK(error({"RotationSplitting"}, 8000) > 0.3);
 }
 
-TEST_CASE("B5: Robertson and van der Pol in 1000 steps by the solvers that are not made for them: what they tell, or how wrong they are")
+TEST_CASE(
+    "B5: Robertson and van der Pol in 1000 steps with the solvers that are not made for them: what they report, or how wrong they are")
 {
     struct Row
     {
         SolverAlgorithm algorithm;
         std::string event;              ///< for both
-        double robertson, van_der_pol;  ///< relative; 0: the event says it all
+        double robertson, van_der_pol;  ///< relative; 0: the event reports the failure
     };
     const Row table[] = {
         {{"SemiImplicitEuler"}, "lost", 0, 0},
@@ -181,14 +182,14 @@ TEST_CASE("B5: Robertson and van der Pol in 1000 steps by the solvers that are n
             REQUIRE_MESSAGE(s.loaded(), s.error());
             s.warnings_expected = s.keep_events = true;
             s.step(1000);
-            // By a script whose rates leave the numbers, or by values that do.
+            // Caused by a script whose rates overflow, or by values that do.
             const bool lost = row.event == "lost";
             CHECK((lost ? s.count("script.error") + s.count("state.not_finite") >= 1 : s.count(row.event) == 1));
             const double bound = reaction == &kRobertson ? row.robertson : row.van_der_pol;
             if (bound > 0) CHECK(relative_error(*reaction, row.algorithm, 1000) < 2 * bound);
         }
-    // ImplicitMidpoint is not L-stable. Robertson: it rings about the answer, the second number 5e7 times too large (4e-6). Van der Pol: it
-    // does not find its midpoints, and says so.
+    // ImplicitMidpoint is not L-stable. Robertson: it oscillates about the solution, the second number 5e7 times too large (4e-6).
+    // Van der Pol: it does not find its midpoints, and reports that.
     CHECK(relative_error(kRobertson, {"ImplicitMidpoint"}, 1000) == doctest::Approx(4.8e7).epsilon(0.5));
     Scene s = scene_of(kVanDerPol, {"ImplicitMidpoint"}, 200);
     s.warnings_expected = s.keep_events = true;

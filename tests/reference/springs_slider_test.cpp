@@ -1,7 +1,7 @@
 // A stiff spring on a slider at any step: m = 1 on a vertical slider, k = 1e6, c = 20, rest position 0.01 m below the start, 1 s
 // (1000 rad/s); and 1e-3 kg against 1e3 kg on k = 1e6. References: the damped oscillator.
 //
-// algorithm                  steps of                place, relative to 0.01 m   ledger, relative to the spring's energy
+// algorithm                  steps of                position rel. to 0.01 m    ledger, relative to the spring's energy
 // Exponential                1/2 .. 1/1000 s         1e-11                       1e-9
 // Automatic                  1/2 .. 1/240 s          1e-9                        1e-8
 #include "reference/motion.h"
@@ -40,7 +40,7 @@ double sum(const std::vector<double>& all)
 
 }  // namespace
 
-TEST_CASE("a spring of 1000 rad/s on a slider is right at any step, and its books close")
+TEST_CASE("a spring of 1000 rad/s on a slider is correct at any step, and its energy ledger closes")
 {
     struct Row
     {
@@ -94,9 +94,10 @@ TEST_CASE("1e-3 kg against 1e3 kg on a stiff spring: the stretch by its closed f
         }
 }
 
-TEST_CASE("a stiff spring that nothing holds to its line swings along it, whichever way that points")
+TEST_CASE("a stiff spring that nothing holds to its line oscillates along it, in any direction")
 {
-    // Beside the line it pushes out and in by turns, 16 rad to a step: what is exact on the line would let rounding grow beside it.
+    // Across the line it pushes outwards and inwards alternately, 16 rad per step: a method that is exact on the line would let
+    // rounding grow across it.
     for (const SolverAlgorithm& algorithm : {SolverAlgorithm{"Exponential"}, SolverAlgorithm{"Automatic"}})
         for (const std::string place : {"1.1 0 0", "0.66 0.88 0"})
         {

@@ -1,14 +1,14 @@
 // B1, B3 and B4 by the algorithms: a spring from soft to 1e12 N/m, quadratic drag, stiff drag. References: closed forms.
 //
-// B1, m = 1, damping ratio 0.05, from rest at 1 m, 0.3 s; error of the place in m
+// B1, m = 1, damping ratio 0.05, from rest at 1 m, 0.3 s; error of the position in m
 //   algorithm                    step      k
 //   Exponential                  1e-2 s    1e2 .. 1e12: 1e-12
 //   Automatic                    1e-2 s    the same from 1e4 on; 1e2: 1e-5 (RungeKutta4)
 //   Radau5                       1e-2 s    1e2 .. 1e12: 1e-8
-//   ImplicitMidpoint             1e-2 s    1e2 .. 1e12: it rings within the amplitude, and does not blow up; order 2 at k = 1e2
+//   ImplicitMidpoint             1e-2 s    1e2 .. 1e12: it oscillates within the amplitude, and does not diverge; order 2 at k = 1e2
 //   DormandPrince54              1e-2 s    1e2 .. 1e8: 1e-8
 //   RungeKutta4, RotationSplitting, StoermerVerlet, SemiImplicitEuler
-//                                1e-3 s    k = 1e2, 1e4: the table below, with orders; beyond 2.8 / w (2 / w): not_finite is told
+//                                1e-3 s    k = 1e2, 1e4: the table below, with orders; beyond 2.8 / w (2 / w): not_finite is reported
 // B3, quadratic drag 0.01 kg/m: v(5), y(5), and the final speed; B4, c / m = 1e6 1/s, wind of 10 m/s from t = 0
 #include <vector>
 
@@ -32,7 +32,7 @@ double exact_speed(double k, double t)
     return -w / root * std::exp(-zeta * w * t) * std::sin(w * root * t);
 }
 
-/// m, of the place and of the speed over w: the error of the place alone passes 0 as it swings.
+/// m, of the position and of the speed divided by w: the error of the position alone passes 0 in each oscillation.
 double spring_error(const SolverAlgorithm& algorithm, double k, const std::string& step)
 {
     Scene s(spring_scene(algorithm, k, 0.1 * std::sqrt(k)), step);
@@ -78,7 +78,8 @@ TEST_CASE("B1: the references of the closed form")
     CHECK(exact_place(1e6, 0.3) / -1.3249336825406493e-7 == doctest::Approx(1).epsilon(1e-9));
 }
 
-TEST_CASE("B1: springs of 1e2 to 1e12 N/m in steps of 10 ms: the stiff algorithms follow, the explicit one with error control to 1e8")
+TEST_CASE(
+    "B1: springs of 1e2 to 1e12 N/m in steps of 10 ms: the stiff algorithms are accurate, the explicit one with error control up to 1e8")
 {
     for (const double k : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
     {
@@ -94,7 +95,7 @@ TEST_CASE("B1: springs of 1e2 to 1e12 N/m in steps of 10 ms: the stiff algorithm
         CHECK(radau < 1e-8);
         const double midpoint = spring_error({"ImplicitMidpoint"}, k, "dt=\"1/100\"");
         MESSAGE("ImplicitMidpoint " << k << ": " << midpoint);
-        CHECK(midpoint < 2);  // twice the amplitude: it stays within it, at some phase
+        CHECK(midpoint < 2);  // twice the amplitude: it stays within the amplitude, at an arbitrary phase
         if (k > 1e8) continue;
         const double pair = spring_error({"DormandPrince54"}, k, "dt=\"1/100\"");
         MESSAGE("DormandPrince54 " << k << ": " << pair);
@@ -130,7 +131,7 @@ TEST_CASE("B1: algorithms of fixed step below their limit, with their orders")
     }
 }
 
-TEST_CASE("B1: beyond its limit an explicit algorithm is told of by name, never silently not a number")
+TEST_CASE("B1: beyond its limit an explicit algorithm is reported by name and never gives a silent NaN")
 {
     for (const SolverAlgorithm& algorithm :
          {SolverAlgorithm{"SemiImplicitEuler"}, SolverAlgorithm{"StoermerVerlet"}, SolverAlgorithm{"RungeKutta4"},
@@ -146,7 +147,7 @@ TEST_CASE("B1: beyond its limit an explicit algorithm is told of by name, never 
     }
 }
 
-TEST_CASE("B3: quadratic drag by the algorithms")
+TEST_CASE("B3: quadratic drag with the algorithms")
 {
     struct Row
     {
@@ -219,7 +220,7 @@ TEST_CASE("B4: a jump of the wind on stiff drag")
     }
 }
 
-TEST_CASE("B4: explicit algorithms that cannot follow say so")
+TEST_CASE("B4: explicit algorithms that cannot follow report that")
 {
     Scene pair = windy({"DormandPrince54", "max_substeps=\"1000\""}, "dt=\"1/100\"");
     pair.warnings_expected = pair.keep_events = true;

@@ -29,7 +29,7 @@ Trajectory play(const std::string& body, double until)
 {
     Scene s(body, "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.keep_events = s.warnings_expected = true;  // steps this long take bodies through one another, which is told
+    s.keep_events = s.warnings_expected = true;  // steps this long take bodies through one another, which is reported
     Trajectory out;
     const double start = energy(s);
     for (double before = start; s.simulation().time() < until;)
@@ -74,7 +74,7 @@ std::string thrown(const std::string& manager, double friction, double restituti
 
 }  // namespace
 
-TEST_CASE("D3: 216 elastic balls fall on the ground at 1/60: Direct and sweeps keep their energy to 1e-3, sub-steps lose up to 20 %")
+TEST_CASE("D3: 216 elastic balls fall on the ground at 1/60: Direct and sweeps conserve energy to 1e-3, sub-steps lose up to 20 %")
 {
     for (const char* manager : {"Direct", "SequentialImpulse", "SoftStep"})
     {
@@ -87,7 +87,7 @@ TEST_CASE("D3: 216 elastic balls fall on the ground at 1/60: Direct and sweeps k
 
 // Remaining overlap is corrected, which lifts the bodies above: this explains the energy gain of a step, and is far less than
 // impacts dissipate.
-TEST_CASE("boxes thrown into a heap at 8 m/s: no manager makes energy, and what did not converge is told")
+TEST_CASE("boxes thrown into a heap at 8 m/s: no manager adds energy, and contacts that did not converge are reported")
 {
     for (const char* manager : {"Direct", "SequentialImpulse", "SoftStep"})
         for (const double friction : {0.0, 0.8, 1.0})

@@ -57,7 +57,7 @@ TEST_CASE("D1: heavy on light: a tower that doubles its masses to 512:1, pairs t
     for (const double ratio : {1e3, 1e6, 1e8}) CHECK(std::fabs(stand({1, ratio}, "Direct", "1/60", 5).sink) < 1e-8);
 }
 
-TEST_CASE("C14: a box slides to a stop: the way to 1e-12 in any direction at any step, whoever answers the first touch")
+TEST_CASE("C14: a box slides to a stop: the distance to 1e-12 in any direction at any step, with any response to the first contact")
 {
     const double exact = 9 / (2 * 0.4 * 9.81);
     for (const double angle : {0.0, 0.5235987755982988})
@@ -97,7 +97,7 @@ TEST_CASE("C14: a ramp at mu = tan(angle) (1 -+ 1e-6): holds, and slides by the 
     }
 }
 
-TEST_CASE("C15: a sliding ball comes to roll, at the time and the speed that it should")
+TEST_CASE("C15: a sliding ball begins to roll at the time and the speed of the closed form")
 {
     const double v0 = 5, mu = 0.3, g = 9.81, end = 2 * v0 / (7 * mu * g);
     Scene s(kGround + ball("a", 0.1, 1, {0, 0, 0.1}, "linear_velocity=\"5 0 0\"") + gravity("a") + contact("a ground", "Direct", mu),
@@ -109,7 +109,7 @@ TEST_CASE("C15: a sliding ball comes to roll, at the time and the speed that it 
     CHECK(near(s.vec("a", "angular_velocity").y, 250.0 / 7, 1e-10));
 }
 
-TEST_CASE("bounces without event location keep the energy exactly: the time of impact is off, not the speed")
+TEST_CASE("bounces without event location conserve energy exactly: the time of impact is wrong, not the speed")
 {
     Scene s(kGround + ball("a", 0.1, 1, {0, 0, 1.1}) + gravity("a") + contact("a ground", "Direct", 0, 1), "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -123,7 +123,7 @@ TEST_CASE("bounces without event location keep the energy exactly: the time of i
 
 // Simultaneous where the manager answers (None), sequential where impacts are located (LocalRoot): two results, both symmetric.
 // LocalBisection distinguishes touching from separated only to rounding (1e-16 m), and its result is not symmetric.
-TEST_CASE("C13: a ball hits a rack of fifteen: what was symmetric stays so to 1e-12, whatever the bodies are called")
+TEST_CASE("C13: a ball hits a rack of fifteen: the symmetry is kept to 1e-12, whatever the names of the bodies")
 {
     for (const auto& [resolution, renamed] : {std::pair{"None", false}, {"None", true}, {"LocalRoot", false}, {"LocalRoot", true}})
     {
@@ -158,7 +158,7 @@ TEST_CASE("C13: a ball hits a rack of fifteen: what was symmetric stays so to 1e
     }
 }
 
-TEST_CASE("D5: ten books overhang by sum of 1/2k of their length, less a thousandth: they stand; and more: they fall")
+TEST_CASE("D5: ten books overhang by sum of 1/2k of their length, less a thousandth: they stand; with more they fall")
 {
     for (const bool stands : {true, false})
     {
@@ -189,7 +189,7 @@ TEST_CASE("D5: ten books overhang by sum of 1/2k of their length, less a thousan
     }
 }
 
-TEST_CASE("a manager is exchanged while a stack stands: nothing pops")
+TEST_CASE("a manager is exchanged under a resting stack: nothing is thrown up")
 {
     std::string body = kGround, ids;
     for (std::size_t i = 0; i < 5; ++i)

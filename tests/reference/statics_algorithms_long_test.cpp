@@ -5,10 +5,11 @@
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("D2: three and ten cubes for two seconds, by every algorithm")
+TEST_CASE("D2: three and ten cubes for two seconds, with every algorithm")
 {
-    // Loads and way of the top for three; the same for ten (loads as means over the last second), and whether it is told. Halving spends
-    // the work of the first steps on ten cubes that lie exactly on one another, and says so; the rest is answered late.
+    // Loads and displacement of the top for three; the same for ten (loads as means over the last second), and whether it is
+    // reported. Halving spends the work allowed for the first steps on ten cubes that lie exactly on one another, and reports that;
+    // the other contacts are answered late.
     constexpr Bound<5> table[] = {
         {"None", "Impulse", {8e-6, 0.019, 1.01, 9, 2}, {0, 4e-3, 0.9, 1, 1}},
         {"Bisection", "Impulse", {1e-12, 4e-9, 0.45, 0.13, 0}, {0, 0, 6e-3, 2e-4, 0}},

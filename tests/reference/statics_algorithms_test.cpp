@@ -6,12 +6,13 @@
 using namespace plab;
 using namespace plab::test;
 
-// Equilibrium gives three equations for four feet; the split (+ - - +) remains undetermined. Of all splits Direct takes the one with the
-// least sum of squares: f_i = W / 4 (1 + x x_i / a^2 + y y_i / b^2), where (x, y) is the point of action of the resultant. Without a
-// guess it does so to rounding; later steps solve again when rounding has moved the table, and the split drifts with them.
-TEST_CASE("D6: a table with four feet: the sum and the moments, and which split, by every algorithm")
+// Equilibrium gives three equations for four feet; the distribution (+ - - +) remains undetermined. Of all distributions Direct
+// takes the one with the least sum of squares: f_i = W / 4 (1 + x x_i / a^2 + y y_i / b^2), where (x, y) is the point of action of
+// the resultant. Without an initial guess it does so to rounding; later steps solve again when rounding has moved the table, and
+// the distribution drifts with them.
+TEST_CASE("D6: a table with four feet: the sum, the moments and the distribution, with every algorithm")
 {
-    // Relative: the split after one step, and after 300; sum and moments.
+    // Relative: the distribution after one step, and after 300; sum and moments.
     constexpr Bound<3> table[] = {
         // The impulses of its points in one step are not the load.
         {"None", "Impulse", {2, 2.4, 0.53}, {0.1, 0.1, 0.02}},
@@ -34,7 +35,7 @@ TEST_CASE("D6: a table with four feet: the sum and the moments, and which split,
                      });
 }
 
-TEST_CASE("D7: a ladder slips iff tan theta < 1 / (2 mu), to 1e-4 rad either way, by every algorithm")
+TEST_CASE("D7: a ladder slips iff tan theta < 1 / (2 mu), to 1e-4 rad on either side, with every algorithm")
 {
     // m: displacement in a second above the limit; below it: relative to the expected slip.
     // The linearised law of sliding neglects 1.5 %.

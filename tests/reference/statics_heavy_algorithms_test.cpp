@@ -5,7 +5,7 @@
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("D1: 1 kg on 1 kg, 10 kg on 1 kg, 1000 kg on 1 kg, for a second, by every algorithm")
+TEST_CASE("D1: 1 kg on 1 kg, 10 kg on 1 kg, 1000 kg on 1 kg, for a second, with every algorithm")
 {
     // Loads and displacement of the top for 1:1; the same for 10:1; displacement of the top for 1000:1, and whether it is
     // reported.

@@ -55,7 +55,7 @@ inline Stood stand(const Algorithm& algorithm, const std::vector<double>& masses
 {
     Scene s(stack(masses, algorithm), "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.keep_events = s.warnings_expected = true;  // what falls through is told as a warning
+    s.keep_events = s.warnings_expected = true;  // a body that falls through is reported as a warning
     s.step(steps - over);
     double load = 0;
     for (std::int64_t i = 0; i < over; ++i)

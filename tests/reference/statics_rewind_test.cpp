@@ -30,7 +30,7 @@ std::string heap(const std::string& manager, const std::string& resolution)
 
 }  // namespace
 
-TEST_CASE("A12: ten thousand steps with contacts, put back at random steps and run again: the same bits, on one thread and two")
+TEST_CASE("A12: ten thousand steps with contacts, restored at random steps and run again: the same bits, on one thread and two")
 {
     constexpr Tick kSteps = 10000;
     for (const char* manager : {"Direct", "SequentialImpulse", "SoftStep"})
@@ -64,7 +64,7 @@ TEST_CASE("A12: ten thousand steps with contacts, put back at random steps and r
     }
 }
 
-TEST_CASE("a swap of a response or a manager for its own type changes no bit, whoever locates the impacts")
+TEST_CASE("a swap of a response or a manager for its own type changes no bit, with any resolution")
 {
     for (const char* manager : {"Direct", "SequentialImpulse", "SoftStep"})
         for (const char* resolution : {"None", "LocalBisection"})
@@ -87,7 +87,7 @@ TEST_CASE("a swap of a response or a manager for its own type changes no bit, wh
         }
 }
 
-TEST_CASE("A12: elastic balls in a box turn round and come back to where they were, to 1e-10 m")
+TEST_CASE("A12: elastic balls in a box with reversed velocities return to their initial positions, to 1e-10 m")
 {
     std::string body = kGround, ids;
     const Vec3 places[] = {{0, 0, 0.5}, {0.31, 0.05, 1.1}, {-0.2, 0.3, 1.6}, {0.1, -0.28, 2.2}};

@@ -12,7 +12,7 @@ namespace
 
 struct Loads
 {
-    double first = 0;          ///< largest relative error of what a face carries, in the first step
+    double first = 0;          ///< largest relative error of the load on a face, in the first step
     double worst = 0;          ///< the same, of each step
     double moved = 0;          ///< m, the top
     std::size_t reported = 0;  ///< events that contacts did not converge
@@ -46,8 +46,9 @@ TEST_CASE("D1: r kg on 1 kg, r = 1 to 1e8: reactions (1 + r) m g and r m g to ro
         CAPTURE(r);
         const Loads loads = loads_of({1, r}, 600);
         CHECK(loads.first < 1e-15);
-        // Two impulses of r g h leave the light body r g h eps off its speed, and r g h^2 eps off its place: the heavy one follows,
-        // by r eps of its own load. Beside that the tolerance, some 1e-13 m/s of g h = 0.16 m/s. Reached: 2.3e-12, and 4.1e-16 r.
+        // Two impulses of r g h leave an error of r g h eps in the light body's speed, and r g h^2 eps in its position: the heavy
+        // one follows, with r eps of its own load. In addition there is the tolerance, some 1e-13 m/s of g h = 0.16 m/s. Reached:
+        // 2.3e-12, and 4.1e-16 r.
         CHECK(loads.worst < 4e-12 + 6e-16 * r);
         CHECK(loads.moved < 5e-13 + 1e-17 * r);
         CHECK(loads.reported == 0);
@@ -56,8 +57,8 @@ TEST_CASE("D1: r kg on 1 kg, r = 1 to 1e8: reactions (1 + r) m g and r m g to ro
 
 TEST_CASE("D2: n cubes: (n - k + 1) m g between them to 6e-12 with Direct, and twice that in later steps")
 {
-    // Newton's method ends within 1e-12 m/s of the law: of the load of one cube, g dt, that is a share of 6.1e-12. Reached 2.6e-14 at
-    // first, and 8.4e-12 in one of 30 steps (50 cubes). Places are rounded to 1.4e-14 m at the top.
+    // Newton's method ends within 1e-12 m/s of the law: of the load of one cube, g dt, that is a fraction of 6.1e-12. Reached
+    // 2.6e-14 at first, and 8.4e-12 in one of 30 steps (50 cubes). Positions are rounded to 1.4e-14 m at the top.
     constexpr double kTolerance = 1e-12 / (kG / 60);
     for (const std::size_t n : {10u, 20u, 50u, 100u})
     {

@@ -4,7 +4,7 @@
 using namespace plab;
 using plab::test::Scene;
 
-TEST_CASE("what lies in the bowl, the pipe and the drum stays there; nothing sinks into the waves")
+TEST_CASE("bodies in the bowl, the pipe and the drum stay there; nothing sinks into the waves")
 {
     Scene s = Scene::file("scenes/surfaces.xml");
     REQUIRE_MESSAGE(s.loaded(), s.error());

@@ -25,7 +25,7 @@ std::string cylinder(const std::string& id, double radius, double height, const 
 }
 }  // namespace
 
-TEST_CASE("a ball on a height field at height 0 does what it does on a plane, bit for bit, or to rounding")
+TEST_CASE("a ball on a height field at height 0 moves as on a plane, bit for bit, or to rounding")
 {
     for (const Algorithm& algorithm : kAlgorithms)
     {
@@ -49,7 +49,7 @@ TEST_CASE("a ball on a height field at height 0 does what it does on a plane, bi
     }
 }
 
-TEST_CASE("what slides over inner edges of a flat grid keeps its speed, and rolls on with friction")
+TEST_CASE("a ball that slides over inner edges of a flat grid keeps its speed, and begins to roll with friction")
 {
     for (const Algorithm& algorithm : kAlgorithms)
     {
@@ -70,7 +70,7 @@ TEST_CASE("what slides over inner edges of a flat grid keeps its speed, and roll
     }
 }
 
-TEST_CASE("a ball in a closed shell is a billiard: energy, angular momentum and place stay those of the polygon")
+TEST_CASE("a ball in a closed shell is a billiard: energy, angular momentum and position are those of the polygon")
 {
     const double R = 1, r = 0.1, rho = R - r;
     const Vec3 start{0.3, 0.2, -0.1}, v{2, -1, 3};
@@ -177,7 +177,7 @@ TEST_CASE("a ball that slides or rolls over a ball or a cylinder stays in one co
             }
 }
 
-TEST_CASE("a box lies in a bore on two edges, and carries its weight there")
+TEST_CASE("a box lies in a bore on two edges, which carry its weight")
 {
     // Edges at 30 degrees from the vertical: each carries m g / (2 cos 30).
     const double half = 0.3, low = 0.1;
@@ -225,7 +225,7 @@ TEST_CASE("solids of every kind come to rest on waves, on a mesh and in a bowl")
         }
 }
 
-TEST_CASE("a surface is for what stands still, and has no mass")
+TEST_CASE("a surface is only for bodies that do not move, and has no mass")
 {
     const auto error = [](const std::string& shape, const std::string& body)
     { return Scene("<component id=\"s\" " + shape + "/><component id=\"b\" shape=\"s\" " + body + "/>").error(); };

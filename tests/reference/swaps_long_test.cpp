@@ -13,7 +13,7 @@ TEST_CASE("H8: twenty thousand random swaps")
     check_result(one, 5e-3);
 }
 
-TEST_CASE("stiction remembers: a block on a slope of 30 degrees does not creep in an hour")
+TEST_CASE("stiction has a memory: a block on a slope of 30 degrees does not creep in an hour")
 {
     Scene s = block_on_a_slope();
     REQUIRE_MESSAGE(s.loaded(), s.error());

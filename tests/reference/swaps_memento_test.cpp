@@ -9,7 +9,7 @@ using namespace plab::test;
 namespace
 {
 
-/// Stretched springs and impulses that a next step starts from.
+/// Stretched springs and impulses from which the next step starts.
 std::size_t remembered(const simulation::ContactCache& contacts)
 {
     std::size_t n = 0;
@@ -20,7 +20,7 @@ std::size_t remembered(const simulation::ContactCache& contacts)
     return n;
 }
 
-/// Boxes that lean on friction: gravity is not square to the floor.
+/// Boxes held by friction: gravity is not perpendicular to the floor.
 std::string leaning(const std::string& resolution, const std::string& response, const std::string& more)
 {
     return gravity("2 1 -9.6") + solid("low", "Box' half_extents='0.2 0.2 0.1'", 2, {0, 0, 0.1}) +
@@ -31,7 +31,7 @@ std::string leaning(const std::string& resolution, const std::string& response, 
 
 }  // namespace
 
-TEST_CASE("a memento of leaning boxes is all there is, on springs and on rows, also in a world that never ran")
+TEST_CASE("a memento of boxes held by friction is complete, on springs and on rows, also in a world that never ran")
 {
     const std::string soft = "response.friction='0.6' response.stiffness='1e4' response.restitution='0.2' response.steps_per_contact='20'";
     std::vector<std::string> scenes{leaning("None", "Penalty", soft), leaning("None", "HuntCrossley", soft),

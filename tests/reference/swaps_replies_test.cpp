@@ -1,4 +1,4 @@
-// What the reply to a swap says of contacts and fields is so.
+// What the reply to a swap reports about contacts and fields is true.
 #include "swaps.h"
 
 using namespace plab;
@@ -43,7 +43,7 @@ bool is_soft(const std::string& response) { return response == "Penalty" || resp
 
 }  // namespace
 
-TEST_CASE("standing contacts: kept, converted or lost, as the reply says, under their ids and with their force")
+TEST_CASE("persistent contacts are kept, converted or lost as the reply reports, with their ids and forces")
 {
     for (const std::string from : {"Impulse", "Rows", "Penalty", "HuntCrossley"})
         for (const std::string to : {"None", "Impulse", "Rows", "Penalty", "HuntCrossley"})
@@ -73,13 +73,13 @@ TEST_CASE("standing contacts: kept, converted or lost, as the reply says, under 
             // Nothing moves: the new law holds it as the old one did.
             const Vec3 at = s.vec("a", "position");
             s.step(30);
-            // Hard after a spring: the overlap that it left goes.
+            // A hard response after a spring: the overlap that the spring left is removed.
             CHECK(distance(s.vec("a", "position"), at) <= (is_soft(from) && !is_soft(to) ? 1e-3 : 2e-5));
             CHECK(length(s.vec("a", "linear_velocity")) <= 1e-4);
         }
 }
 
-TEST_CASE("resolutions, managers and spaces keep what contacts hold")
+TEST_CASE("swaps of resolutions, managers and spaces keep the state of contacts")
 {
     Scene s(standing("Rows"), dt(60));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -94,9 +94,9 @@ TEST_CASE("resolutions, managers and spaces keep what contacts hold")
     CHECK(after.force == before.force);
 }
 
-TEST_CASE("a spring that let go of an overlap that a swap had left does not push until the bodies have parted")
+TEST_CASE("a spring that has released an overlap left by a swap does not push until the bodies have separated")
 {
-    // 1 mm deep on a soft spring, then hard, then on a spring ten thousand times as stiff, then gravity turns round.
+    // 1 mm deep on a soft spring, then hard, then on a spring ten thousand times as stiff, then gravity is reversed.
     const std::string scene =
         gravity() + solid("a", "Sphere' radius='0.1'", 1, {0, 0, 0.1}) +
         ground_and_contact("LocalBisection", "Penalty", "response.stiffness='1e4' response.damping_ratio='1' response.restitution='1'");
@@ -113,11 +113,11 @@ TEST_CASE("a spring that let go of an overlap that a swap had left does not push
                 {{"stiffness", std::string("1e8")}, {"damping_ratio", std::string("0")}, {"restitution", std::string("1")}});
         REQUIRE(s.ask(SetOperation{"g", "acceleration", std::string("0 0 1")}).done);
         s.run(2.5);
-        // What the spring held, f^2 / 2k, and what gravity gives: no more.
+        // At most the energy stored in the spring, f^2 / 2k, and the work of gravity.
         const double t = s.simulation().time() - 2 - s.simulation().dt();
         CHECK(near(s.vec("a", "linear_velocity").z, t, 2e-3));
         CHECK(s.count("contact.end") == 1);
-        // Down again: now it meets the floor where the floor is.
+        // Gravity points down again: now it touches the floor at the floor's true height.
         REQUIRE(s.ask(SetOperation{"g", "acceleration", std::string("0 0 -9.81")}).done);
         const double energy = [&] { return s.simulation().totals().kinetic + 9.81 * (s.vec("a", "position").z - 0.1); }();
         s.run(4);

@@ -9,7 +9,7 @@ using namespace plab::test;
 namespace
 {
 
-/// E1: 1 kg at 1 m, released horizontal; where it is after 10 s (mpmath, elliptic functions, 40 digits).
+/// E1: 1 kg at 1 m, released horizontally; its position after 10 s (mpmath, elliptic functions, 40 digits).
 constexpr double kX = -.275087462576116860, kY = -.961419205099125064;
 
 std::string pendulum(const std::string& joint_type, const std::string& solver)
@@ -18,7 +18,7 @@ std::string pendulum(const std::string& joint_type, const std::string& solver)
            joint("joint", joint_type, "", "bob", "anchor='0 0 0'" + std::string(joint_type == "Hinge" ? " axis='0 1 0'" : ""));
 }
 
-/// A point mass: the bob does not turn about its own centre under a ball joint only if nothing turns it.
+/// A point mass: under a ball joint the bob does not rotate about its own centre, as no torque acts on it.
 double error_of(const Scene& s)
 {
     const Vec3 p = s.vec("bob", "position");
@@ -29,7 +29,7 @@ double error_alone(const std::string& solver, int per_second)
 {
     Scene s(pendulum("Hinge", solver), dt(per_second));
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.warnings_expected = true;  // Exact says which method it falls back to
+    s.warnings_expected = true;  // Exact reports the method to which it falls back
     s.run(10);
     return error_of(s);
 }
@@ -92,7 +92,7 @@ std::unique_ptr<Simulation> bouncing(model::TypeSource& types)
 
 }  // namespace
 
-TEST_CASE("H5: any two solvers swapped at random steps on the pendulum: no worse than twice the worse of the two")
+TEST_CASE("H5: any two solvers swapped at random steps on the pendulum: the error is at most twice the larger one of the two")
 {
     constexpr int kPerSecond = 100;
     std::vector<double> alone;
@@ -121,9 +121,9 @@ TEST_CASE("H5: any two solvers swapped at random steps on the pendulum: no worse
         }
 }
 
-TEST_CASE("a joint exchanged on the way: ball, hinge, fixed, removed")
+TEST_CASE("a joint exchanged during the motion: ball, hinge, fixed, removed")
 {
-    // In the plane all of them that let it swing are the same joint.
+    // In the plane, all joints that allow it to swing are equivalent.
     Scene s(pendulum("Ball", "RungeKutta4"), dt(1000)), hinge(pendulum("Hinge", "RungeKutta4"), dt(1000));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(1), hinge.run(1);
@@ -136,7 +136,7 @@ TEST_CASE("a joint exchanged on the way: ball, hinge, fixed, removed")
     CHECK(s.simulation().totals().momentum == before.momentum);
     s.run(10);
     CHECK(s.real("joint", "position_error") <= 1e-12);
-    // Fixed: it stands still from then on, the blow is in the ledger.
+    // Fixed: it does not move from then on; the energy of the impact is in the ledger.
     const Reply fixed = swapped(s, "joint", "Constraint/Fixed");
     CHECK(transfer_of(fixed, "axis") == "lost");
     s.step();
@@ -172,7 +172,7 @@ TEST_CASE("H6: a request that comes while an impact is located waits for the bou
         Simulation* nobody = nullptr;
         posts_to = nobody;
         for (Tick i = 0; i < hit; ++i) after->step();
-        // The step with the impact has not felt it.
+        // The request has not affected the step with the impact.
         CHECK(during->state_hash() == after->state_hash());
         REQUIRE(after->carry_out_now(request).done);
         for (int i = 0; i < 60; ++i)

@@ -3,7 +3,7 @@
 
 using namespace plab::test;
 
-TEST_CASE("H8: random swaps: nothing is lost, nobody gains height, the books close, and threads do not show")
+TEST_CASE("H8: random swaps: nothing is lost, no body gains height, the ledger closes, and the number of threads has no effect")
 {
     const StormResult one = storm(300, 2026), two = storm(300, 2026, 2);
     check_result(one, 5e-3);

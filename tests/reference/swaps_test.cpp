@@ -13,7 +13,7 @@ struct Algorithm
     std::string resolution, response, more;
 };
 
-/// Each response with each resolution that it can have, each manager.
+/// Each response with each resolution and each manager that it can have.
 std::vector<Algorithm> contact_algorithms()
 {
     std::vector<Algorithm> out;
@@ -73,7 +73,7 @@ TEST_CASE("H1: a heap on each contact algorithm: exchanging any of its parts for
     }
 }
 
-TEST_CASE("H1: managers, resolutions and spaces there and back between two steps change no bit")
+TEST_CASE("H1: managers, resolutions and spaces exchanged and exchanged back between two steps change no bit")
 {
     const std::string scene = heap() + ground_and_contact("None", "Rows", "response.friction='0.4' response.restitution='0.5'");
     Scene alone(scene, dt(60)), exchanged(scene, dt(60));

@@ -20,7 +20,7 @@ double cost_of(const Scene& s, const std::string& id)
     return publish::Costs(s.simulation()).of(i).mean;
 }
 
-/// What all components cost together, and the server's own.
+/// The cost of all components together, and the server's own.
 double sum_of(const Scene& s)
 {
     const publish::Costs costs(s.simulation());
@@ -105,14 +105,14 @@ TEST_CASE("a SoftStep among Directs has its own figure, and managers carry most 
     CHECK(soft > 0);
     CHECK(two > 0);
     CHECK(soft != one);
-    // The same pile by the same manager costs the same, another one something else.
+    // The same pile with the same manager costs the same, another one a different amount.
     const auto median = [&](const char* id) { return publish::Costs(s.simulation()).of(s.simulation().world().find(id)).last.median; };
     const double first = median("one.response.manager"), second = median("two.response.manager");
     CHECK(std::fabs(first - second) < 0.5 * std::max(first, second));
     CHECK(sum_of(s) == doctest::Approx(step_of(s)).epsilon(0.02));
 }
 
-TEST_CASE("threads: what each of them does is counted, waiting is not")
+TEST_CASE("threads: the work of each is counted, waiting is not")
 {
     const std::string scene =
         "<repeat id='all' count='64' step='1 0 0'><component id='b' type='State/RigidBody' mass='1' inertia='0.1 0.2 0.3' "
@@ -124,7 +124,7 @@ TEST_CASE("threads: what each of them does is counted, waiting is not")
     CHECK(one.hash() == two.hash());
 }
 
-TEST_CASE("trial steps of a swap are no steps of the run: neither sums nor medians know them")
+TEST_CASE("trial steps of a swap are not steps of the run: neither sums nor medians include them")
 {
     Scene s(
         "<component id='a' type='State/Shaft' inertia='1' angular_velocity='1'/><component id='air' type='Field/Drag' between='a' "
@@ -161,7 +161,7 @@ TEST_CASE("two medians differ where quartiles of eight samples, or all of four, 
 TEST_CASE("equal costs differ by chance in less than 6 of 100 cases, whatever the number of samples")
 {
     std::mt19937 random(7);
-    // Step times: a floor, and now and then something that takes longer.
+    // Step times: a constant minimum, and occasionally a longer one.
     std::exponential_distribution<double> noise(1);
     const auto samples = [&](int n)
     {

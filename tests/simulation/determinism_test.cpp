@@ -30,7 +30,7 @@ std::uint64_t hash_after(int threads, double t)
 
 }  // namespace
 
-TEST_CASE("one, two and three threads give one hash")
+TEST_CASE("one, two and three threads give the same hash")
 {
     const std::uint64_t one = hash_after(1, 1);
     CHECK(hash_after(2, 1) == one);
@@ -38,7 +38,7 @@ TEST_CASE("one, two and three threads give one hash")
     CHECK(hash_after(1, 1) == one);
 }
 
-TEST_CASE("the paper's scene too, at every step, and two worlds interleaved equal two alone")
+TEST_CASE("so does the paper's scene, at every step, and two interleaved worlds equal two alone")
 {
     Scene a = Scene::file("scenes/fan_and_balloons.xml", 1), b = Scene::file("scenes/fan_and_balloons.xml", 2);
     Scene crowd(kCrowd, "dt=\"1/120\" seed=\"5\"");
@@ -51,7 +51,7 @@ TEST_CASE("the paper's scene too, at every step, and two worlds interleaved equa
     CHECK(crowd.hash() == hash_after(1, 1));
 }
 
-TEST_CASE("pairwise couplings are swept train by train: threads do not show")
+TEST_CASE("pairwise couplings are swept train by train: the number of threads has no effect")
 {
     std::string body;
     for (int train = 0; train < 7; ++train)
@@ -90,7 +90,7 @@ TEST_CASE("the order of a blueprint's components does not matter")
     CHECK(one.hash() == two.hash());
 }
 
-TEST_CASE("asking for energies, hashes and events changes nothing")
+TEST_CASE("reading energies, hashes and events changes nothing")
 {
     Scene watched = Scene::file("scenes/fan_and_balloons.xml"), alone = Scene::file("scenes/fan_and_balloons.xml");
     for (int i = 0; i < 1000; ++i)
@@ -103,7 +103,7 @@ TEST_CASE("asking for energies, hashes and events changes nothing")
     CHECK(watched.hash() == alone.hash());
 }
 
-TEST_CASE("the hash sees a single bit of any state")
+TEST_CASE("the hash depends on every single bit of the state")
 {
     Scene s = Scene::file("scenes/fan_and_balloons.xml");
     const std::uint64_t before = s.hash();

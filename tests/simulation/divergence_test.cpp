@@ -1,4 +1,4 @@
-// Events that tell of lost motion while its numbers are finite, and silence where nothing is wrong.
+// Events that report diverging motion while its numbers are finite, and none if nothing is wrong.
 #include "plab/island.h"
 #include "plab/registrar.h"
 #include "support/ground.h"
@@ -33,7 +33,7 @@ std::string flight(const std::string& resolution, const std::string& at)
            "\" response=\"Response/Impulse\" response.restitution=\"1\"/>";
 }
 
-/// A manager that is wrong: it holds nothing, and what it holds not it speeds up by 1 % a step.
+/// A defective manager: it satisfies no contact, and accelerates the bodies by 1 % per step.
 struct WrongRows
 {
     Column<double> gain;
@@ -50,7 +50,7 @@ void solve_wrongly(const StepContext&, Row row, WrongRows& rows, Bodies& bodies,
     island.motion->move_mean(island.h);
 }
 
-/// The types of this build, and the wrong manager.
+/// The types of this build, and the defective manager.
 class WithWrong final : public model::TypeSource
 {
 public:
@@ -76,7 +76,7 @@ const std::string kEuler = "dt=\"1/60\" solver=\"Solver/SemiImplicitEuler\"";
 
 }  // namespace
 
-TEST_CASE("a spring beyond its solver's step is reported once, with the energy that it made")
+TEST_CASE("a spring too stiff for its solver's step is reported once, with the energy that it gained")
 {
     Scene s(oscillator("20000"), kEuler);
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -88,13 +88,13 @@ TEST_CASE("a spring beyond its solver's step is reported once, with the energy t
         {
             REQUIRE(e.values.size() == 3);
             CHECK(s.simulation().world().id_of(e.component) == "mass");
-            CHECK(e.values[1] == doctest::Approx(0.5 * 20000 * 0.01));  // J, what was there
+            CHECK(e.values[1] == doctest::Approx(0.5 * 20000 * 0.01));  // J, the initial energy
             CHECK(e.values[0] > 10 * e.values[1]);
             CHECK(e.severity == Severity::Warning);
         }
 }
 
-TEST_CASE("within its step, and however large its error, it is not")
+TEST_CASE("a spring within the stability limit is not reported, however large its error")
 {
     for (const char* k : {"100", "10000", "14000"})  // h w = 0.17, 1.7, 1.97
     {
@@ -114,7 +114,7 @@ TEST_CASE("a speed that doubles every few steps is reported; one that grows by a
     Scene(script("driven.velocity"), kEuler).run(10);
 }
 
-TEST_CASE("a request that puts energy in is no divergence")
+TEST_CASE("a request that adds energy is not a divergence")
 {
     Scene s(oscillator("100"), kEuler);
     s.run(1);
@@ -124,7 +124,7 @@ TEST_CASE("a request that puts energy in is no divergence")
     s.run(3);
 }
 
-TEST_CASE("a ball that flies through a wall between two looks is reported; one that bounces or flies past is not")
+TEST_CASE("a ball that flies through a wall between two detections is reported; one that bounces or flies past is not")
 {
     Scene through(flight("None", "-50.3 0 0"), "dt=\"1/60\"");
     through.warnings_expected = through.keep_events = true;
@@ -137,7 +137,7 @@ TEST_CASE("a ball that flies through a wall between two looks is reported; one t
     past.run(0.1);
 }
 
-TEST_CASE("bodies that stay sunk into one another are reported; an overlap that is taken away is not")
+TEST_CASE("bodies that remain sunk into one another are reported; an overlap that is corrected is not")
 {
     const auto pair = [](const std::string& mass, const std::string& manager)
     {
@@ -160,7 +160,7 @@ TEST_CASE("bodies that stay sunk into one another are reported; an overlap that 
     Scene(pair("1e6", "Direct"), "dt=\"1/60\"").run(1);
 }
 
-TEST_CASE("a manager that makes energy is told, and what it makes stays unexplained")
+TEST_CASE("a manager that adds energy is reported, and this energy stays unexplained")
 {
     WithWrong types;
     const auto run = [&](const std::string& gain)
@@ -189,7 +189,7 @@ TEST_CASE("a manager that makes energy is told, and what it makes stays unexplai
         }
         const simulation::Totals t = s.totals();
         const double made = s.stepper().contact_energy()[s.world().find("contact.response.manager")].made;
-        // Whatever is there more than at the start is nobody's work, and the manager's making.
+        // Any energy beyond the initial one is not the work of a force: the manager has added it.
         CHECK(made == doctest::Approx(t.kinetic - 0.5));
         CHECK(t.kinetic - s.kinetic_at_start() - t.work == doctest::Approx(made));
         return reported;

@@ -24,7 +24,7 @@ publish::ErrorFigure shadow(const Scene& s, const std::string& id)
 
 }  // namespace
 
-TEST_CASE("Assign, which reports no residual, is wrong by the torque that it does not give back")
+TEST_CASE("the error of Assign, which reports no residual, is the reaction torque that it omits")
 {
     Scene s(kGears);
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -36,7 +36,7 @@ TEST_CASE("Assign, which reports no residual, is wrong by the torque that it doe
     CHECK(figure.meaning == "per second of a step, against Constraint/AngularVelocity/Graph");
 }
 
-TEST_CASE("a solver of order 1 is wrong by what one step shows against one of order 4, which is wrong by far less")
+TEST_CASE("the error of a solver of order 1 is its difference in one step from one of order 4, whose own error is far smaller")
 {
     // w' = -2 w from w = 1, x = 0, over one step: semi-implicit Euler against RungeKutta4.
     const std::string spring =
@@ -72,7 +72,7 @@ TEST_CASE("shadow steps leave the run bit for bit as it is")
     CHECK(hashes(true) == hashes(false));
 }
 
-TEST_CASE("the finest algorithm says that none is finer and gives its own residual; without a residual nothing is made up")
+TEST_CASE("the finest algorithm reports that none is finer and gives its own residual; without a residual no error is given")
 {
     Scene s(std::string(kGears) +
             "<component id='c' type='State/Shaft' inertia='1'/>"
@@ -87,11 +87,12 @@ TEST_CASE("the finest algorithm says that none is finer and gives its own residu
     CHECK(std::isnan(figure("push").value));
     for (std::int64_t i = 1; i < 10; ++i) probe.follow(s.simulation(), i << 40);
     CHECK(figure("mesh").meaning.find("against Constraint/AngularVelocity/Graph") != std::string::npos);
-    // The driver carries c too: inertia 5 without what the mesh gives back, 6 with it. Driven: 0.5 (3 / 5 - 3 / 6), driver 3 / 5 - 3 / 6.
+    // The driver also carries c: inertia 5 without the reaction of the mesh, 6 with it. Driven: 0.5 (3 / 5 - 3 / 6), driver 3 / 5 -
+    // 3 / 6.
     CHECK(figure("mesh").value == doctest::Approx(0.1).epsilon(1e-3));
 }
 
-TEST_CASE("with a share of 0 nobody looks")
+TEST_CASE("with a share of 0 no shadow step is made")
 {
     Scene s(kGears);
     s.step(5);

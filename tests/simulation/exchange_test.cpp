@@ -1,4 +1,4 @@
-// Requests between steps: what they change, what they leave alone, and that a failed one never happened.
+// Requests between steps: what they change, what they leave unchanged, and that a failed one has no effect.
 #include "support/scene.h"
 
 using namespace plab;
@@ -28,7 +28,7 @@ FieldTransfer transfer_of(const SwapReport& report, const std::string& field)
 {
     for (const TransferredField& f : report.fields)
         if (f.field == field) return f.transfer;
-    FAIL("no word about ", field);
+    FAIL("nothing reported about ", field);
     return FieldTransfer::Lost;
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("exchanging anything for itself changes no bit, now or later")
     CHECK(swapped.hash() == alone.hash());
 }
 
-TEST_CASE("a swap says what was kept, given, fresh and lost, and what the first step came to")
+TEST_CASE("a swap reports the fields that were kept, given, fresh and lost, and the cost of the first step")
 {
     Scene s = Scene::file(kPaper);
     s.run(1);
@@ -137,7 +137,7 @@ TEST_CASE("a refused request leaves everything as it was, bit for bit")
     CHECK(s.simulation().revision() == 0);
 }
 
-TEST_CASE("set changes what it names and nothing else; entries too")
+TEST_CASE("set changes the named fields and nothing else; also entries")
 {
     Scene s = Scene::file(kPaper);
     s.run(0.5);
@@ -171,7 +171,7 @@ TEST_CASE("push, add, remove")
     const double vz = s.vec("green", "linear_velocity").z;
     s.run(1.5);
     CHECK(s.vec("green", "linear_velocity").z == vz);
-    // A newcomer joins roles that mean everybody.
+    // An added component joins roles that mean everyone.
     REQUIRE(s.ask(AddOperation{fragment(s, "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>")}).done);
     REQUIRE(s.ask(AddOperation{
                       fragment(s, "<component id=\"third\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"0 5 9\"/>")})
@@ -180,7 +180,7 @@ TEST_CASE("push, add, remove")
     CHECK(near(s.vec("third", "linear_velocity").z, -9.81 * 0.5, 1e-12));
 }
 
-TEST_CASE("named steps: in time, late, and by revision")
+TEST_CASE("requests for a step: in time, late, and by revision")
 {
     Scene s = Scene::file(kPaper);
     Request at;
@@ -230,7 +230,7 @@ TEST_CASE("pause, step, resume, reset")
     CHECK(s.simulation().run() == first_run + 1);
 }
 
-TEST_CASE("a change of the step length keeps time")
+TEST_CASE("a change of the step length keeps the simulated time")
 {
     Scene s("", "dt=\"1/10\"");
     s.step(10);
@@ -239,7 +239,7 @@ TEST_CASE("a change of the step length keeps time")
     CHECK(s.simulation().time() == 1.25);
 }
 
-TEST_CASE("a standing contact is swapped too: the box neither pops nor sinks")
+TEST_CASE("the response of a resting contact is swapped: the box is neither thrown up nor does it sink")
 {
     Scene s(
         "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>"

@@ -1,4 +1,4 @@
-// What a scene does not need is not there: libraries, phases, memory, time.
+// A scene uses only what it needs: libraries, phases, memory, time.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -51,7 +51,7 @@ long allocations_of(Scene& s, int steps)
 
 }  // namespace
 
-TEST_CASE("no script, no Lua; no collision, no ODE; only what is named is mapped")
+TEST_CASE("without scripts no Lua, without collisions no ODE: only named libraries are mapped")
 {
     const std::string shafts = mapped_libraries(kShafts), script = mapped_libraries(std::string(kShafts) + kScript),
                       ball = mapped_libraries(kBall);
@@ -83,7 +83,7 @@ TEST_CASE("a warm step allocates nothing")
         "<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 2 2.5\" angular_velocity=\"1 2 3\"/><component id=\"g\" "
         "type=\"Field/Gravity\" between=\"*\"/>");
     CHECK(allocations_of(free_body, 1000) == 0);
-    // At rest: contact stays, no event is made.
+    // At rest: the contact persists, no event is made.
     Scene resting(
         "<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.1\"/><component id=\"floor\" type=\"Shape/Plane\"/>"
         "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"s\" position=\"0 0 0.1001\"/><component id=\"ground\" "
@@ -94,7 +94,7 @@ TEST_CASE("a warm step allocates nothing")
     CHECK(allocations_of(resting, 1000) == 0);
 }
 
-TEST_CASE("a warm step of a stack that slides allocates nothing, whichever manager holds it")
+TEST_CASE("a warm step of a sliding stack allocates nothing, with any manager")
 {
     std::string body =
         "<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"

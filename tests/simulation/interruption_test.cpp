@@ -1,4 +1,5 @@
-// A step in work is given up: the world goes back to where it began, bit for bit, and goes on as if nothing had been.
+// A step in progress is abandoned: the world returns to its state before the step, bit for bit, and continues as if nothing had
+// happened.
 #include <chrono>
 #include <cstdio>
 #include <thread>
@@ -37,7 +38,7 @@ std::string pile(const std::string& resolution, const std::string& response)
            "\"/>";
 }
 
-/// A step in which a spring swings some millions of times: minutes of work.
+/// A step in which a spring oscillates some millions of times: minutes of work.
 Scene long_step(const std::string& solver = "Solver/DormandPrince54")
 {
     return Scene(R"(<component id="r" type="Shape/Sphere" radius="0.1"/>
@@ -59,7 +60,7 @@ std::string differences_of(const Snapshot& a, const Snapshot& b)
 
 }  // namespace
 
-TEST_CASE("a step that is given up anywhere leaves no trace: the same bits before and ever after")
+TEST_CASE("a step that is abandoned at any time leaves no trace: the same bits before and after")
 {
     for (const auto& [resolution, response] : {std::pair{"Resolution/LocalBisection", "Response/Impulse"},
                                                {"Resolution/None", "Response/Rows"},
@@ -77,7 +78,7 @@ TEST_CASE("a step that is given up anywhere leaves no trace: the same bits befor
             const Snapshot before = disturbed.simulation().capture();
             Interruption interruption;
             disturbed.simulation().obey(&interruption);
-            // Sooner or later within the step, by chance of the machine: whenever it comes, nothing may show.
+            // At a random time within the step, which depends on the machine: it must leave no trace.
             interruption.ask(std::chrono::microseconds(17 * i));
             const bool stepped = disturbed.simulation().step();
             CHECK(stepped != disturbed.simulation().gave_up());
@@ -100,7 +101,7 @@ TEST_CASE("a step that is given up anywhere leaves no trace: the same bits befor
     }
 }
 
-TEST_CASE("a step that takes minutes ends at once, and the world is where it was")
+TEST_CASE("a step that takes minutes ends at once, and the world has its state before it")
 {
     for (const char* solver : {"Solver/DormandPrince54", "Solver/Radau5"})
     {
@@ -121,7 +122,7 @@ TEST_CASE("a step that takes minutes ends at once, and the world is where it was
     }
 }
 
-TEST_CASE("what a long step is at can be read from another thread while it lasts")
+TEST_CASE("the progress of a long step can be read from another thread")
 {
     Scene s = long_step();
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -145,7 +146,7 @@ TEST_CASE("what a long step is at can be read from another thread while it lasts
     CHECK(s.simulation().progress().look().activity == Activity::Nothing);
 }
 
-TEST_CASE("a pile that goes on from a snapshot of any step does what it would have done: no bit depends on what came before")
+TEST_CASE("a pile that continues from a snapshot of any step moves as without it: no bit depends on earlier steps")
 {
     for (const char* manager : {"Direct", "SequentialImpulse", "SoftStep"})
     {

@@ -49,13 +49,13 @@ TEST_CASE("ten times the objects take about ten times the time to load and to ma
         const Times few = times_for(2000, rest, "dt='1/240'"), many = times_for(20000, rest, "dt='1/240'");
         MESSAGE("us per object: load ", few.load * 1e6, " and ", many.load * 1e6, ", first step ", few.first_step * 1e6, " and ",
                 many.first_step * 1e6);
-        // Caches explain a factor of 2; what grows with the square is a factor of 10.
+        // Caches explain a factor of 2; quadratic growth would be a factor of 10.
         CHECK(many.load < 4 * few.load);
         CHECK(many.first_step < 4 * few.first_step);
     }
 }
 
-TEST_CASE("a mistake that a repeat makes in each cell is told by its first cells and the number of the others")
+TEST_CASE("an error in each cell of a repeat is reported for its first cells, with the number of the others")
 {
     const auto error_of = [](const std::string& cell)
     {
@@ -66,7 +66,7 @@ TEST_CASE("a mistake that a repeat makes in each cell is told by its first cells
     const std::string mass = error_of("<component id='b' type='State/RigidBody' mass='-1' inertia='1 1 1'/>");
     CHECK_MESSAGE(lines(mass) == 4, mass);
     CHECK_MESSAGE(mass.find("and 497 more like it") != std::string::npos, mass);
-    // Of the scene's structure, where no place is known.
+    // Errors of the scene's structure, which have no position in the text.
     const std::string loop = error_of(
         "<component id='a' type='State/Shaft' inertia='1'/><component id='b' type='State/Shaft' inertia='1'/>"
         "<component id='g' type='Constraint/AngularVelocity/Graph' driver='a' driven='b' velocity_factor='2'/>"

@@ -1,4 +1,5 @@
-// Steps that locate impacts end, whatever slides along or lies on what: what touches for a whole step is a contact and no event.
+// Steps that locate impacts end also if bodies slide or lie on one another: a pair that touches for a whole step is a contact, not
+// an event.
 #include <algorithm>
 
 #include "plab/random.h"
@@ -13,7 +14,7 @@ namespace
 const char* const kLocating[] = {"LocalRoot", "ConservativeAdvancement", "LocalBisection", "Bisection"};
 const char* const kResponses[] = {"Impulse", "Rows"};
 
-/// The most that locating may do in one step of these scenes, in looks: a multiple of a few impacts. A test ends there.
+/// Bound on the number of detections of locating in one step of these scenes: a multiple of a few impacts. A test ends there.
 constexpr int kMostTrials = 5000;
 
 void run_bounded(Scene& s, double until)
@@ -30,9 +31,9 @@ std::string law(double restitution, double friction)
     return "response.restitution=\"" + text(restitution) + "\" response.friction=\"" + text(friction) + "\"";
 }
 
-std::string contact(const char* resolution, const char* response, const std::string& who, double restitution, double friction)
+std::string contact(const char* resolution, const char* response, const std::string& bodies, double restitution, double friction)
 {
-    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + who + "\" resolution=\"Resolution/" + resolution +
+    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + bodies + "\" resolution=\"Resolution/" + resolution +
            "\" response=\"Response/" + response + "\" " + law(restitution, friction) + "/>";
 }
 
@@ -59,7 +60,7 @@ const char* const kRoom =
 
 }  // namespace
 
-TEST_CASE("a ball that falls along a wall which it touches bounces on the floor of the same body as if there were no wall")
+TEST_CASE("a ball that falls along a wall and touches it bounces on the floor of the same body as if there were no wall")
 {
     for (const double away : {0.0, 1e-15, 1e-12})
         for (const double speed : {0.0, 1e-9})
@@ -78,7 +79,7 @@ TEST_CASE("a ball that falls along a wall which it touches bounces on the floor 
                 });
 }
 
-TEST_CASE("what falls along a wall, touching it, falls freely: compounds, boxes, capsules and cylinders")
+TEST_CASE("bodies that touch a wall while they fall along it fall freely: compounds, boxes, capsules and cylinders")
 {
     struct Body
     {
@@ -113,16 +114,16 @@ TEST_CASE("what falls along a wall, touching it, falls freely: compounds, boxes,
                 });
 }
 
-TEST_CASE("a stack that is let go stands in its first step after one event, and who stands beside another is not held by it")
+TEST_CASE("a released stack is at rest in its first step after one event, and neighbouring bodies do not hold one another")
 {
     constexpr int kHigh = 40;
     const auto cubes_at = [](const std::vector<Vec3>& places, const char* resolution)
     {
-        std::string cubes, who;
+        std::string cubes, bodies;
         for (std::size_t i = 0; i < places.size(); ++i)
-            cubes += box("c" + std::to_string(i), {0.5, 0.5, 0.5}, at(places[i], {})), who += "c" + std::to_string(i) + " ";
+            cubes += box("c" + std::to_string(i), {0.5, 0.5, 0.5}, at(places[i], {})), bodies += "c" + std::to_string(i) + " ";
         return "<component id=\"plane\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"plane\"/>" + cubes +
-               gravity(who) + contact(resolution, "Impulse", who + "ground", 0.3, 0.5);
+               gravity(bodies) + contact(resolution, "Impulse", bodies + "ground", 0.3, 0.5);
     };
     for (const char* resolution : {"LocalRoot", "ConservativeAdvancement"})
     {
@@ -135,7 +136,7 @@ TEST_CASE("a stack that is let go stands in its first step after one event, and 
         s.step();
         CHECK(s.simulation().stepper().report().events == 1);
         CHECK(s.simulation().stepper().report().trials < 20 * kHigh);
-        // Each on the one below, or on the ground; four points, of which the first tells of the pair.
+        // Each on the one below, or on the ground; four points, of which the first identifies the pair.
         CHECK(s.count("contact.begin") == kHigh);
         CHECK(s.count("contact.rest") == kHigh);
 
@@ -148,24 +149,24 @@ TEST_CASE("a stack that is let go stands in its first step after one event, and 
     }
 }
 
-TEST_CASE("a wall of bricks that touch one another is let go: its first step takes bounded work, whoever answers")
+TEST_CASE("a wall of touching bricks is released: its first step takes bounded work, with any response")
 {
-    // Rows of contacts and joints gone through in all; 9.2 million, and 28.9 where an impact may take as many sweeps as it likes.
+    // Rows of contacts and joints processed in all: 9.2 million, and 28.9 million without a bound on the sweeps of an impact.
     constexpr std::uint64_t kMostRows = 10'000'000;
     constexpr int kBricks = 400, kRow = 20;
     for (const char* response : kResponses)
     {
         CAPTURE(std::string(response));
-        std::string bricks, who;
+        std::string bricks, bodies;
         for (int i = 0; i < kBricks; ++i)
         {
             const int row = i / kRow;
             const std::string id = "b" + std::to_string(i);
             bricks += box(id, {0.5, 0.25, 0.25}, at({i % kRow + (row % 2 == 0 ? 0.0 : 0.5), 0, 0.5 * row + 0.25}));
-            who += id + " ";
+            bodies += id + " ";
         }
         Scene s("<component id=\"plane\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"plane\"/>" + bricks +
-                    gravity(who) + contact("LocalRoot", response, who + "ground", 0, 0.5),
+                    gravity(bodies) + contact("LocalRoot", response, bodies + "ground", 0, 0.5),
                 "dt=\"1/60\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = true;
@@ -191,7 +192,7 @@ TEST_CASE("a heap of falling bodies: each step's work is bounded, the state stay
             out += i % 2 == 0 ? sphere(id, 0.1, at({x, y, z})) : box(id, {0.1, 0.1, 0.1}, at({x, y, z}));
             all += id + " ";
         }
-        // Hardly more than the allowance that every step has: these heaps meet it.
+        // Hardly more than the bound on the work of every step, which these heaps reach.
         return out + gravity(all) + "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + all +
                "ground\" resolution=\"Resolution/" + resolution + "\" resolution.max_work=\"0.01\" response=\"Response/" + response +
                "\" response.restitution=\"0.5\"/>";

@@ -1,4 +1,4 @@
-// Rewinding touches whom an event touches, and nobody else.
+// Rewinding affects the bodies of an event, and no others.
 #include "support/scene.h"
 
 using namespace plab;
@@ -27,7 +27,7 @@ std::string bystanders(const std::string& resolution, bool with_floor)
 
 }  // namespace
 
-TEST_CASE("with LocalBisection everybody but the ball stays bit-identical")
+TEST_CASE("with LocalBisection everything but the ball stays bit-identical")
 {
     Scene with(bystanders("LocalBisection", true), "dt=\"1/60\""), without(bystanders("", false), "dt=\"1/60\"");
     REQUIRE_MESSAGE(with.loaded(), with.error());

@@ -1,4 +1,4 @@
-// Requests and scripts that once broke a scene: each stays refused, or does what it says.
+// Requests and scripts that once broke a scene: each is refused, or has the intended effect.
 #include "support/scene.h"
 
 using namespace plab;
@@ -23,7 +23,7 @@ std::string script(const std::string& set)
 
 }  // namespace
 
-TEST_CASE("a sensor holds nobody up: what rested falls")
+TEST_CASE("a sensor supports no body: a resting body falls")
 {
     Scene s(kResting, "dt=\"1/240\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -58,7 +58,7 @@ TEST_CASE("scripts' changes obey the rules of requests")
         CHECK(s.count("script.refused") == 1);
         CHECK(std::fabs(s.vec("a", "position").z - 0.5) < 1e-9);
     }
-    // What depends on a shape follows, and the frame that the author sees stays.
+    // Everything that depends on a shape follows, and the frame that the author defined stays.
     Scene s(
         "<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.5\"/><component id=\"a\" type=\"State/RigidBody\" density=\"1000\" "
         "shape=\"s\"/>" +
@@ -81,7 +81,7 @@ TEST_CASE("requests to the clock are transactions too")
     CHECK(s.simulation().time() == 1.0);
 }
 
-TEST_CASE("work stays with who did it, and requests have an account of their own")
+TEST_CASE("work stays with the component that did it, and requests have an account of their own")
 {
     Scene s(
         "<component id=\"a\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"/><component id=\"g\" type=\"Field/Gravity\" "
@@ -103,7 +103,7 @@ TEST_CASE("work stays with who did it, and requests have an account of their own
     CHECK(unexplained() < 1e-9);
 }
 
-TEST_CASE("a body is frozen and let go by a swap")
+TEST_CASE("a body is made static and dynamic again by a swap")
 {
     Scene s(kResting, "dt=\"1/240\"");
     REQUIRE(s.ask(SetOperation{"b", "position", std::string("3 0 20")}).done);
@@ -121,7 +121,7 @@ TEST_CASE("a body is frozen and let go by a swap")
     CHECK(s.vec("b", "linear_velocity").x == 1);
 }
 
-TEST_CASE("fifty balls land at one time in bounded work, whoever rewinds")
+TEST_CASE("fifty balls land at one time in bounded work, with any resolution")
 {
     for (const char* resolution : {"Bisection", "LocalBisection"})
     {

@@ -1,4 +1,4 @@
-// Requests of several operations, and what is left after the ones that failed.
+// Requests of several operations, and the state after failed ones.
 #include "support/scene.h"
 
 using namespace plab;
@@ -56,7 +56,7 @@ TEST_CASE("a component that a request adds may be swapped by it; errors go to th
     CHECK(reply.swaps[0].with_old.error == 0);
 }
 
-TEST_CASE("what came and went in a request that failed takes nothing from those who come later")
+TEST_CASE("components that were added and removed in a failed request take nothing from later ones")
 {
     Scene s("<component id=\"first\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"/>");
     const std::uint64_t hash = s.hash();
@@ -78,7 +78,7 @@ TEST_CASE("what came and went in a request that failed takes nothing from those 
           s.simulation().world().component(s.simulation().world().find("y")).host_index);
 }
 
-TEST_CASE("a request that adds many, one of which fails at its first step, is taken back while scripts set parameters")
+TEST_CASE("a request that adds many components, one of which fails at its first step, is rolled back while scripts set parameters")
 {
     Scene s("<component id=\"a\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"/>");
     const std::uint64_t hash = s.hash();
@@ -96,7 +96,7 @@ TEST_CASE("a request that adds many, one of which fails at its first step, is ta
     s.run(0.1);
 }
 
-TEST_CASE("a shape that many bodies wear is changed in a time that grows with their number")
+TEST_CASE("a shape that many bodies share is changed in a time that grows with their number")
 {
     const auto cost = [](int side)
     {

@@ -1,4 +1,4 @@
-// Random swaps of every family while gears turn and balls bounce: nothing may be lost, leak or go out of its invariants.
+// Random swaps of every family while gears turn and balls bounce: nothing may be lost or leak, and invariants hold.
 #include "plab/random.h"
 #include "support/scene.h"
 

@@ -1,4 +1,4 @@
-// What proves a swap: trials of those whom it can touch, within a budget, and what becomes of swaps that make energy.
+// How a swap is checked: trial steps of the objects that it can affect, within a budget, and the refusal of swaps that add energy.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -65,7 +65,7 @@ const char* const kImpulse = "Constraint/AngularVelocity/Impulse";
 
 }  // namespace
 
-TEST_CASE("a trial steps those whom the swap can touch, and nobody else")
+TEST_CASE("a trial steps the objects that the swap can affect, and no others")
 {
     Scene s(gears_and_balls(3, 40));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -79,7 +79,7 @@ TEST_CASE("a trial steps those whom the swap can touch, and nobody else")
     const double w = s.spin("in1");
     CHECK(gear.swaps[0].energy_before == doctest::Approx(0.5 * w * w + 0.25 * w * w).epsilon(1e-12));
     CHECK(gear.swaps[0].with_new.energy == doctest::Approx(gear.swaps[0].energy_before).epsilon(1e-9));
-    // Whoever collides is touched by another response.
+    // Another response affects all bodies that collide.
     const Reply response = ask(s, {SwapOperation{"c.response", "Response/Impulse", {}}});
     REQUIRE_MESSAGE(response.done, first_error(response.errors));
     CHECK(response.trial.objects == 40);
@@ -109,9 +109,9 @@ TEST_CASE("a trial leaves no trace: with it and without it the run has the same 
     both("g", "Field/Gravity");
 }
 
-TEST_CASE("whoever is met in the trial's step takes part in it")
+TEST_CASE("a body that is hit in the trial's step takes part in it")
 {
-    // b flies into c, which stands alone, within the next step.
+    // b hits c, which is at rest on its own, within the next step.
     Scene s(R"(<component id="r" type="Shape/Sphere" radius="0.1"/>
       <component id="a" type="State/RigidBody" mass="1" shape="r" position="-0.5 0 0" linear_velocity="100 0 0"/>
       <component id="b" type="State/RigidBody" mass="1" shape="r"/>
@@ -122,12 +122,12 @@ TEST_CASE("whoever is met in the trial's step takes part in it")
     const Reply reply = ask(s, {SwapOperation{"push", "Field/Load", {{"force", std::string("2 0 0")}}}});
     REQUIRE_MESSAGE(reply.done, first_error(reply.errors));
     CHECK(reply.trial.objects == 2);
-    // Both after the impact: momentum is what a had, and what pushed it.
+    // Both after the impact: the momentum is that of a, and of the push.
     CHECK(reply.swaps[0].with_new.momentum.x == doctest::Approx(100 + 2.0 / 240).epsilon(1e-12));
     CHECK(reply.swaps[0].with_new.energy == doctest::Approx(5000).epsilon(1e-3));
 }
 
-TEST_CASE("a trial that takes longer than its budget is given up: carried out without it, or refused, as was asked")
+TEST_CASE("a trial that exceeds its budget is abandoned: the swap is carried out without it, or refused, as requested")
 {
     // The first spring is slack, the second one swings a million times in a step of 100 s.
     const std::string scene = R"(<component id="r" type="Shape/Sphere" radius="0.1"/>
@@ -161,7 +161,7 @@ TEST_CASE("a trial that takes longer than its budget is given up: carried out wi
     CHECK(none.trial.outcome == TrialReport::Outcome::None);
 }
 
-TEST_CASE("one request exchanges all that a pattern names, as one transaction")
+TEST_CASE("one request exchanges all components that a pattern names, as one transaction")
 {
     Scene s(gears_and_balls(12, 0)), one_by_one(gears_and_balls(12, 0));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -185,7 +185,7 @@ TEST_CASE("one request exchanges all that a pattern names, as one transaction")
     const Reply wrong = ask(s, {SwapOperation{"in*", kImpulse, {}}});
     CHECK(!wrong.done);
     CHECK(first_error(wrong.errors).find("none of which can be exchanged") != std::string::npos);
-    // One that does not work out takes all of them back.
+    // A single failure rolls all of them back.
     const std::uint64_t before = s.hash();
     const Reply bad = ask(s, {SwapOperation{"gears.*", kImpulse, {}}, SwapOperation{"nobody", kImpulse, {}}});
     CHECK(!bad.done);
@@ -193,7 +193,8 @@ TEST_CASE("one request exchanges all that a pattern names, as one transaction")
     CHECK(s.simulation().world().type_of(s.simulation().world().find("gears.1"))->info.name == "Constraint/AngularVelocity/Graph");
 }
 
-TEST_CASE("a swap whose first step makes a hundred times the energy is refused, and taken back bit for bit, unless it is asked for")
+TEST_CASE(
+    "a swap whose first step multiplies the energy by a hundred is refused, and rolled back bit for bit, unless it is explicitly allowed")
 {
     const std::string scene = R"(<component id="r" type="Shape/Sphere" radius="0.1"/>
       <component id="a" type="State/RigidBody" mass="1" shape="r" linear_velocity="3 0 0"/>
@@ -215,7 +216,7 @@ TEST_CASE("a swap whose first step makes a hundred times the energy is refused, 
     TrialChoice wanted;
     wanted.energy_factor = 1e6;
     CHECK(ask(s, {swap}, wanted).done);
-    // What a spring has stored may well come out.
+    // The energy stored in a spring may be released.
     Scene spring(R"(<component id="r" type="Shape/Sphere" radius="0.1"/>
       <component id="a" type="State/RigidBody" mass="1" shape="r" position="1 0 0"/><component id="b" type="State/RigidBody" mass="1" shape="r"/>
       <component id="s" type="Constraint/SpringDamper" a="a" b="b" length="0.5" stiffness="1e4" damping="0"/>)");
@@ -224,7 +225,7 @@ TEST_CASE("a swap whose first step makes a hundred times the energy is refused, 
     CHECK_MESSAGE(again.done, first_error(again.errors));
 }
 
-TEST_CASE("the cost of a swap is a median of repeats, and its difference is told where it is more than chance")
+TEST_CASE("the cost of a swap is a median of repetitions, and its difference is reported if it is significant")
 {
     const auto script = [](int turns)
     {
@@ -246,7 +247,7 @@ TEST_CASE("the cost of a swap is a median of repeats, and its difference is told
     const std::string words = text_of(dearer.trial);
     CHECK_MESSAGE(words.find(" us more") != std::string::npos, words);
 
-    // A type for itself: nothing but noise. The clock is no perfect witness, so not each time.
+    // A type for itself: only noise. Because the clock is imperfect, a difference may be reported in a few cases.
     int reported = 0;
     for (int i = 0; i < 40; ++i)
     {
@@ -260,13 +261,13 @@ TEST_CASE("the cost of a swap is a median of repeats, and its difference is told
         if (differs) MESSAGE(text_of(same.trial));
     }
     CHECK_MESSAGE(reported <= 4, reported, " of 40");
-    MESSAGE(reported, " of 40 swaps of a type for itself were told to differ");
+    MESSAGE(reported, " of 40 swaps of a type for itself were reported to differ");
     CHECK(text_of(ask(s, {SetOperation{"a", "mass", std::string("2")}}).trial).find("costs") == std::string::npos);
 }
 
-TEST_CASE("a step is not made again for its cost beyond the budget")
+TEST_CASE("a step is not repeated for its cost beyond the budget")
 {
-    // The budget has room for some steps, not for enough to tell a difference.
+    // The budget allows some steps, but not enough to find a difference.
     const std::string code =
         "function force(t, state) local x = 0 for i = 1, 20000 do x = x + i end driven:add_force(vec(x * 1e-30, 0, 0)) end";
     Scene s(

@@ -15,11 +15,11 @@ struct Case
     std::string name;       ///< one word, for --case
     std::string title;      ///< a heading
     std::string text;       ///< scene, measure of error, bounds
-    std::string algorithm;  ///< what the rows are
-    std::string parameter;  ///< what the columns are, with its unit
+    std::string algorithm;  ///< the heading of the rows
+    std::string parameter;  ///< the heading of the columns, with its unit
     std::vector<std::string> algorithms, values;
     std::function<Outcome(std::size_t algorithm, std::size_t value)> run;
-    /// Cells of the default test: those that are quick and tell most.
+    /// Cells of the default test: the quick and most informative ones.
     std::function<bool(std::size_t algorithm, std::size_t value)> quick;
     unsigned cpu_seconds = 20;  ///< of one cell, then it counts as hanging
 };

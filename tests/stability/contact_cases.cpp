@@ -1,4 +1,4 @@
-// Contacts that have no good answer, or very many: overlap at the start, Painleve's rod, bounces without end.
+// Contacts without a good solution, or with very many: overlap at the start, Painleve's rod, endless bounces.
 #include "case.h"
 #include "pieces.h"
 #include "trial.h"

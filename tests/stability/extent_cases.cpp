@@ -1,4 +1,4 @@
-// Steps, sizes and places far from what scenes usually have.
+// Steps, sizes and positions far from the usual ones.
 #include "case.h"
 #include "pieces.h"
 #include "trial.h"
@@ -18,7 +18,8 @@ std::string law(const ContactAlgorithm& algorithm, double mass, double g, double
            attribute("response.restitution", 0.2) + attribute("response.steps_per_contact", 20);
 }
 
-/// A box dropped from half its height at `at`; everything scaled to `size`, time with it. How far off its rest it ends, sizes.
+/// A box dropped from half its height at `at`; everything scaled to `size`, time with it. Returns its final distance from rest, in
+/// units of `size`.
 double drop(Trial& t, double size, double until)
 {
     t.run(until);

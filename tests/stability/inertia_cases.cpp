@@ -11,7 +11,7 @@ namespace
 
 std::string inertia_settings(const std::string& solver) { return dt(1.0 / 60) + attribute("solver", "Solver/" + solver); }
 
-/// Largest change of kinetic energy and angular momentum, relative, of all that turns freely.
+/// Largest relative change of kinetic energy and angular momentum of the freely rotating bodies.
 double drift(Trial& t, double until)
 {
     double worst = 0, energy = 0;
@@ -51,8 +51,8 @@ Case spin()
         {}};
     c.run = [solvers, speeds](std::size_t r, std::size_t v)
     {
-        Trial t(body("top", 1, {1, 2, 2.5}, {}, attribute("angular_velocity", Vec3{0.01, 1, 0.01} * speeds[v])), inertia_settings(solvers[r]),
-                kManyEvaluations);
+        Trial t(body("top", 1, {1, 2, 2.5}, {}, attribute("angular_velocity", Vec3{0.01, 1, 0.01} * speeds[v])),
+                inertia_settings(solvers[r]), kManyEvaluations);
         return t.judge(drift(t, 2), {1e-3, 1.01});
     };
     c.quick = [](std::size_t, std::size_t v) { return v == 0 || v == 4; };

@@ -91,7 +91,7 @@ struct Mesh
     const char *driver, *driven;
     double factor;
 };
-/// Three in a loop, a loop just missed, two on a pair, one between prescribed speeds.
+/// Three in a loop, a loop that almost closes, two on a pair, one between prescribed speeds.
 std::vector<Mesh> bad_meshes(std::size_t v)
 {
     if (v < 2) return {{"a", "b", 2}, {"b", "c", 3}, {"a", "c", v == 0 ? 5 : 5.9999}};
@@ -168,15 +168,15 @@ Case bad_joints()
         std::string parts = gravity() + body("body", 1, {0.1, 0.1, 0.1}, {1, 0, 0});
         const auto joint = [&](const char* id, const char* type, const std::string& more)
         { parts += component(id, std::string("Constraint/") + type, attribute("b", std::string("body")) + more); };
-        const std::string foot = attribute("anchor", Vec3{}), y = attribute("axis", Vec3{0, 1, 0});
+        const std::string anchor = attribute("anchor", Vec3{}), y = attribute("axis", Vec3{0, 1, 0});
         if (v == 0)
             for (const double x : {0.0, 3.0})
                 joint(x > 0 ? "far" : "near", "Distance",
                       attribute("anchor_a", Vec3{x, 0, 0}) + attribute("anchor_b", Vec3{}) + attribute("length", 1));
-        if (v >= 1) joint("hinge", "Hinge", foot + y);
-        if (v == 1) joint("askew", "Hinge", foot + attribute("axis", Vec3{0, 1, 1}));
+        if (v >= 1) joint("hinge", "Hinge", anchor + y);
+        if (v == 1) joint("askew", "Hinge", anchor + attribute("axis", Vec3{0, 1, 1}));
         if (v == 2)
-            for (const double speed : {1.0, 2.0}) joint(speed > 1 ? "fast" : "slow", "Motor", foot + y + attribute("speed", speed));
+            for (const double speed : {1.0, 2.0}) joint(speed > 1 ? "fast" : "slow", "Motor", anchor + y + attribute("speed", speed));
         if (v == 3)
             joint("rod", "Distance", attribute("anchor_a", Vec3{-2, 0, 0}) + attribute("anchor_b", Vec3{}) + attribute("length", 3));
         Trial t(parts, dt(1.0 / 240) + attribute("solver", "Solver/" + solvers[r]));

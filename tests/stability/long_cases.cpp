@@ -1,4 +1,4 @@
-// Many steps: what creeps in.
+// Many steps: errors that accumulate slowly.
 #include "case.h"
 #include "pieces.h"
 #include "trial.h"
@@ -13,7 +13,7 @@ constexpr double kLongStep = 1.0 / 240;
 constexpr std::uint64_t kNoLimit = 1'000'000'000;  // of evaluations: time is the limit here
 const std::vector<double> kCounts{1e4, 1e6, 1e7};
 
-/// Those whose step costs about a microsecond; what the others do in 1e7 steps nobody waits for.
+/// Solvers whose step costs about a microsecond; 1e7 steps of the others would take too long.
 std::vector<std::string> quick_solvers() { return {"Exact", "RotationSplitting", "RungeKutta4", "SemiImplicitEuler", "StoermerVerlet"}; }
 
 Case oscillator()
@@ -80,7 +80,7 @@ Case free_body()
 
 Case pendulum()
 {
-    // Under joints Exact is RungeKutta4, and RotationSplitting takes 30 us a step.
+    // With joints Exact is RungeKutta4, and RotationSplitting takes 30 us per step.
     const std::vector<std::string> solvers{"RungeKutta4", "SemiImplicitEuler", "StoermerVerlet"};
     Case c{"long_pendulum",
            "A jointed body for ten million steps",
@@ -112,7 +112,7 @@ Case pendulum()
     return c;
 }
 
-/// Those that hold what rests at the cost of some microseconds; springs take thousands of pieces for a step.
+/// Algorithms that hold resting bodies at a cost of some microseconds; springs take thousands of pieces for a step.
 std::vector<ContactAlgorithm> quick_contacts()
 {
     std::vector<ContactAlgorithm> out;

@@ -2,8 +2,8 @@
 //
 //   stability [--all] [--case NAME] [--print] [--update] [--write FILE.md]
 //
-// Without --all or --case: the quick cells. --print shows the matrix; without it only what differs from the table is
-// shown, and the program fails if there is any. --update takes over what was measured. --write renders the table.
+// Without --all or --case: the quick cells. --print shows the matrix; without it only differences from the table are shown, and the
+// program fails if there are any. --update stores the measured results. --write renders the table.
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -53,7 +53,7 @@ bool takes_part(const Options& options, const Case& c, std::size_t r, std::size_
     return options.all || c.quick(r, v);
 }
 
-/// Runs what takes part of one case; counts cells that are not as the table says.
+/// Runs the selected cells of one case; counts those that differ from the table.
 int run(const Options& options, const Case& c, Table& table)
 {
     int differences = 0;
@@ -80,7 +80,7 @@ int run(const Options& options, const Case& c, Table& table)
 const char* const kTableFile = PLAB_SOURCE_DIR "/tests/stability/expected.txt";
 const char* const kDocument = PLAB_SOURCE_DIR "/server/docs/stability.md";
 
-/// Whether the document says what the table says.
+/// Whether the document agrees with the table.
 bool document_is_current(const std::string& page)
 {
     std::ifstream file(kDocument);

@@ -11,7 +11,7 @@ namespace
 
 const std::vector<double> kRatios{1, 1e2, 1e4, 1e6, 1e8};
 
-/// Friction for all; springs that a mass presses in by about 1e-5 m, with as few sub-steps as they need.
+/// Friction for all; springs that a mass compresses by about 1e-5 m, with as few sub-steps as they need.
 std::string law(const ContactAlgorithm& algorithm, double mass)
 {
     const std::string friction = attribute("response.friction", 0.5);
@@ -20,12 +20,12 @@ std::string law(const ContactAlgorithm& algorithm, double mass)
            attribute("response.restitution", 0.2) + attribute("response.steps_per_contact", 20);
 }
 
-/// Force evaluations of a cell, times bodies: with springs, each is a look at all contacts.
+/// Force evaluations of a cell, times bodies: with springs, each evaluation queries all contacts.
 constexpr std::uint64_t kManyBodies = 500'000;
 
 std::string cube_name(int i) { return "cube" + std::to_string(100 + i); }
 
-/// Unit cubes on the floor, masses from below, for 1 s; springs for `load`, kg. How far one has sunk or wandered, m.
+/// Unit cubes on the floor, masses from below, for 1 s; springs for `load`, kg. Returns the largest displacement, m.
 Outcome tower(const ContactAlgorithm& algorithm, const std::vector<double>& masses, double load)
 {
     std::string parts = ground() + gravity();

@@ -51,7 +51,7 @@ std::optional<Outcome> from_line(std::string_view line)
 bool agree(const Outcome& expected, const Outcome& measured)
 {
     if (expected.verdict != measured.verdict || expected.how != measured.how) return false;
-    // Once nothing holds it, a figure says only that it is large; a verdict without one has 0.
+    // A figure beyond all bounds only says that it is large; a verdict without one has 0.
     if (expected.verdict == Verdict::Diverged || expected.verdict == Verdict::Refused) return true;
     const double a = std::max(std::fabs(expected.figure), kRounding), b = std::max(std::fabs(measured.figure), kRounding);
     return b <= kMostRatio * a && a <= kMostRatio * b;

@@ -12,21 +12,21 @@ namespace plab::stability
 enum class Verdict : std::uint8_t
 {
     Stable,    ///< within the case's bound, and nothing to report
-    Degraded,  ///< finite and bounded, but wrong by more than the bound, or with a warning that says so
+    Degraded,  ///< finite and bounded, but wrong by more than the bound, or with a warning about it
     Refused,   ///< the scene was not accepted; the message says why
-    Diverged,  ///< beyond all bounds, and a named event of the simulation said so
-    Silent,    ///< a hang, a crash, or beyond all bounds without a word: a defect
+    Diverged,  ///< beyond all bounds, and reported by a named event of the simulation
+    Silent,    ///< a hang, a crash, or beyond all bounds without a report: a defect
 };
 
 struct Outcome
 {
     Verdict verdict = Verdict::Silent;
-    double figure = 0;  ///< the case's measure of error; its meaning and unit stand in the case's text
+    double figure = 0;  ///< the case's measure of error; its meaning and unit are in the case's text
     std::string how;    ///< kinds of warnings that were raised, or the refusal
     friend bool operator==(const Outcome&, const Outcome&) = default;
 };
 
-/// What an error counts as.
+/// The classification of an error.
 struct Bounds
 {
     double stable = 0;   ///< up to here: stable
@@ -40,8 +40,8 @@ std::optional<Verdict> verdict_of(std::string_view name);
 std::string to_line(const Outcome& outcome);
 std::optional<Outcome> from_line(std::string_view line);
 
-/// The same verdict for the same reasons, and figures that differ by less than a factor of ten. What is below
-/// `kRounding` counts as rounding, which other compilers do otherwise.
+/// The same verdict for the same reasons, and figures that differ by less than a factor of ten. Figures below `kRounding` count as
+/// rounding, which differs between compilers.
 inline constexpr double kRounding = 1e-11;
 bool agree(const Outcome& expected, const Outcome& measured);
 

@@ -16,7 +16,7 @@ std::string figure(const Outcome& cell)
     return text;
 }
 
-/// Why a cell is not stable, as a number under the table: alike reasons share one.
+/// Why a cell is not stable, as a footnote number: equal reasons share one.
 class Notes
 {
 public:

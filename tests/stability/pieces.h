@@ -1,4 +1,4 @@
-/// Pieces of blueprints, and contacts with each way to answer them.
+/// Pieces of blueprints, and contacts with each response.
 #pragma once
 
 #include <cstdio>
@@ -57,7 +57,7 @@ inline std::string gravity(double g = kG)
     return component("weight", "Field/Gravity", attribute("between", "*") + attribute("acceleration", Vec3{0, 0, -g}));
 }
 
-/// A way to answer contacts.
+/// A response to contacts.
 struct ContactAlgorithm
 {
     std::string name, response, resolution, manager;

@@ -1,4 +1,4 @@
-// Scripts that fail in every way they can, beside a body that has nothing to do with them.
+// Scripts with every kind of failure, beside a body that is independent of them.
 #include "case.h"
 #include "pieces.h"
 #include "trial.h"

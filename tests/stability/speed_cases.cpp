@@ -1,4 +1,4 @@
-// Speed against a thin wall, for each resolution with each kind of response that may go with it.
+// Speed against a thin wall, for each resolution with each kind of response that can be combined with it.
 #include "case.h"
 #include "pieces.h"
 #include "trial.h"

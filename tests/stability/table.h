@@ -1,4 +1,4 @@
-/// The verdicts that are expected, as they stand in expected.txt: one line per cell.
+/// The expected verdicts of expected.txt: one line per cell.
 #pragma once
 
 #include <map>
@@ -19,7 +19,7 @@ public:
     static Table read(const std::string& file);
     const Outcome* find(const std::string& key) const;
     void set(const std::string& key, const Outcome& outcome) { cells_[key] = outcome; }
-    /// In the order of the cases; cells that no case has any more are left out.
+    /// In the order of the cases; cells of cases that no longer exist are left out.
     bool write(const std::string& file, const std::vector<Case>& cases) const;
 
 private:

@@ -8,7 +8,7 @@ namespace plab::stability
 namespace
 {
 
-/// The place in a text that nobody sees is left out.
+/// The position in the generated text is left out.
 std::string without_place(const std::string& message)
 {
     const std::size_t end = message.find(": ");
@@ -77,7 +77,7 @@ Outcome Trial::judge(double error, Bounds bounds) const
     if (std::isfinite(error) && error <= bounds.bounded)
         return {error <= bounds.stable && !warned() && finished_ ? Verdict::Stable : Verdict::Degraded, error, how()};
     if (warned()) return {Verdict::Diverged, error, how()};
-    // An event for information that says as much.
+    // An informational event about this.
     if (count("manager.not_converged") > 0) return {Verdict::Diverged, error, "manager.not_converged"};
     return {Verdict::Silent, error, how()};
 }

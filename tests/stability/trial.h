@@ -1,4 +1,4 @@
-/// A scene that may go wrong: what it raises is collected, and its work is bounded.
+/// A scene that may fail: its events are collected, and its work is bounded.
 #pragma once
 
 #include <algorithm>
@@ -13,21 +13,21 @@
 namespace plab::stability
 {
 
-/// Force evaluations that one cell may take, beside the limit of CPU time that ends its process: they are alike on every
+/// Force evaluations that one cell may take, beside the limit of CPU time that ends its process: they are the same on every
 /// machine, time is not.
 inline constexpr std::uint64_t kMostEvaluations = 100'000, kManyEvaluations = 1'000'000;
 
 class Trial
 {
 public:
-    /// `body` is what stands inside <plab>, `settings` the scene's attributes.
+    /// `body` is the content of <plab>, `settings` the scene's attributes.
     Trial(const std::string& body, const std::string& settings, std::uint64_t most_evaluations = kMostEvaluations);
 
     bool loaded() const { return simulation_ != nullptr; }
     const std::string& refusal() const { return refusal_; }
     simulation::Simulation& simulation() { return *simulation_; }
 
-    /// Steps to `until` or until the budget is used up; `watch()` looks after each step.
+    /// Steps to `until` or until the budget is used up; `watch()` checks after each step.
     template <class Watch>
     void run(double until, Watch&& watch)
     {
@@ -54,7 +54,7 @@ public:
     /// Whether events other than information were raised.
     bool warned() const { return !troubles_.empty(); }
 
-    /// The verdict on an error. What is not finite, or beyond the bounds, has to have been reported.
+    /// The verdict on an error. A value that is not finite, or beyond the bounds, must have been reported.
     Outcome judge(double error, Bounds bounds) const;
 
 private:

@@ -32,10 +32,10 @@ inline std::string four_bars(int n, const std::string& solver = solver_is("Runge
     std::string parts = solver + gravity();
     for (int i = 0; i <= n; ++i)
     {
-        const Vec3 foot{double(i), 0, 0}, top{double(i), 0, 1};
+        const Vec3 base{double(i), 0, 0}, top{double(i), 0, 1};
         // Rotates about y with w = 1 rad/s: the top moves at 1 m/s towards +x.
-        parts += rod("v" + number(i), foot, top, "linear_velocity='0.5 0 0' angular_velocity='0 1 0'");
-        parts += hinge("f" + number(i), "", "v" + number(i), foot);
+        parts += rod("v" + number(i), base, top, "linear_velocity='0.5 0 0' angular_velocity='0 1 0'");
+        parts += hinge("f" + number(i), "", "v" + number(i), base);
     }
     for (int i = 0; i < n; ++i)
     {
@@ -64,13 +64,13 @@ struct FourBar
     }
     static std::string scene(const std::string& solver)
     {
-        const Vec3 knee{crank, 0, 0}, foot{ground, 0, 0}, end = rocker_end(0);
+        const Vec3 knee{crank, 0, 0}, base{ground, 0, 0}, end = rocker_end(0);
         const auto link = [](const std::string& id, const Vec3& from, const Vec3& to) {
             return body(id, 1, {.01, .01, .01}, 0.5 * (from + to));
         };
-        return solver + gravity() + link("crank", {0, 0, 0}, knee) + link("coupler", knee, end) + link("rocker", foot, end) +
+        return solver + gravity() + link("crank", {0, 0, 0}, knee) + link("coupler", knee, end) + link("rocker", base, end) +
                hinge("j1", "", "crank", {0, 0, 0}, "0 -1 0") + hinge("j2", "crank", "coupler", knee) +
-               hinge("j3", "coupler", "rocker", end) + hinge("j4", "", "rocker", foot) +
+               hinge("j3", "coupler", "rocker", end) + hinge("j4", "", "rocker", base) +
                joint("m", "Motor", "", "crank", "axis='0 -1 0' speed='" + text(2 * std::numbers::pi) + "'");
     }
     /// m, position of the rocker's end; the rocker's centre is half way up to it.

@@ -82,7 +82,7 @@ namespace
 {
 
 /// The carrier is the base of bodies; the axle of a shaft is fixed in the world.
-Ref base_of(const GearRows& rows, Row row, Ref who) { return who.facet == Facet::Body ? rows.carrier[row] : Ref{}; }
+Ref base_of(const GearRows& rows, Row row, Ref participant) { return participant.facet == Facet::Body ? rows.carrier[row] : Ref{}; }
 
 struct GearSpins
 {
@@ -125,7 +125,7 @@ PlanetarySpins spins_of(const PlanetaryRows& rows, Row row, const Bodies& bodies
 
 double torque_about(const Spin& spin, const RowReport& report)
 {
-    return spin.who.facet == Facet::Shaft ? report.torque.x : dot(spin.n, report.torque);
+    return spin.participant.facet == Facet::Shaft ? report.torque.x : dot(spin.n, report.torque);
 }
 
 void put_out_teeth(GearRows& rows, Row row)

@@ -81,14 +81,14 @@ void apply_torsion(const StepContext& step, Rows which, const TorsionSpringRows&
         for (std::uint32_t k = 0; k < c.row.count; ++k)
         {
             const RowBlock& block = c.row.blocks[k];
-            if (block.who.facet == Facet::Shaft)
+            if (block.participant.facet == Facet::Shaft)
             {
-                if (shafts.dynamic(block.who.index)) wrenches.add_shaft_torque(block.who, block.angular.x * effort);
+                if (shafts.dynamic(block.participant.index)) wrenches.add_shaft_torque(block.participant, block.angular.x * effort);
                 continue;
             }
-            if (!bodies.dynamic(block.who.index)) continue;
-            wrenches.add_force(block.who, block.linear * effort);
-            wrenches.add_torque(block.who, block.angular * effort);
+            if (!bodies.dynamic(block.participant.index)) continue;
+            wrenches.add_force(block.participant, block.linear * effort);
+            wrenches.add_torque(block.participant, block.angular * effort);
         }
     }
 }

@@ -93,7 +93,7 @@ struct AxisJointRows : JointRows, AxisColumns
         place_points(row, bodies);
         place_axis(row, attitude(bodies, a[row]), attitude(bodies, b[row]));
     }
-    static Quat attitude(const Bodies& bodies, Ref who) { return who.valid() ? bodies.orientation[who.index] : Quat{}; }
+    static Quat attitude(const Bodies& bodies, Ref body) { return body.valid() ? bodies.orientation[body.index] : Quat{}; }
 };
 
 /// Phase::Finish of joints that have no further outputs.

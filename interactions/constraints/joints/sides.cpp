@@ -3,12 +3,12 @@
 namespace plab::constraints
 {
 
-Side side_of(const Bodies& bodies, Ref who, const Vec3& point_B)
+Side side_of(const Bodies& bodies, Ref body, const Vec3& point_B)
 {
-    if (!who.valid()) return {who, {}, {}, {}, {}, point_B, point_B};
-    const std::uint32_t i = who.index;
+    if (!body.valid()) return {body, {}, {}, {}, {}, point_B, point_B};
+    const std::uint32_t i = body.index;
     const Vec3 r = rotate(bodies.orientation[i], point_B - bodies.center_B[i]);
-    return {who, bodies.position[i], bodies.velocity[i], bodies.angular_velocity[i], bodies.orientation[i], r, bodies.position[i] + r};
+    return {body, bodies.position[i], bodies.velocity[i], bodies.angular_velocity[i], bodies.orientation[i], r, bodies.position[i] + r};
 }
 
 Sides sides_of(const Side& a, const Side& b)
@@ -21,8 +21,8 @@ Sides sides_of(const Side& a, const Side& b)
 ConstraintRow row_over(const Sides& s, const Vec3& linear, const Vec3& angular_a, const Vec3& angular_b, std::uint32_t feature)
 {
     ConstraintRow row;
-    if (s.a.who.valid()) row.blocks[row.count++] = {s.a.who, -linear, angular_a};
-    row.blocks[row.count++] = {s.b.who, linear, angular_b};
+    if (s.a.body.valid()) row.blocks[row.count++] = {s.a.body, -linear, angular_a};
+    row.blocks[row.count++] = {s.b.body, linear, angular_b};
     row.feature = feature;
     return row;
 }

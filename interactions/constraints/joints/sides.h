@@ -21,7 +21,7 @@ namespace plab::constraints
 
 struct Side
 {
-    Ref who;  ///< invalid: the world
+    Ref body;  ///< invalid: the world
     Vec3 c, v, w;
     Quat q;
     Vec3 r;  ///< from c to the joint's point, in W
@@ -29,7 +29,7 @@ struct Side
 };
 
 /// The side of a body whose point is at point_B (m, in the body's frame as authored; for the world, in W).
-Side side_of(const Bodies& bodies, Ref who, const Vec3& point_B);
+Side side_of(const Bodies& bodies, Ref body, const Vec3& point_B);
 
 struct Sides
 {

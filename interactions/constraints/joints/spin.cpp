@@ -5,16 +5,16 @@ namespace plab::constraints
 namespace
 {
 
-void add_block(Ref who, const Vec3& angular, ConstraintRow& row)
+void add_block(Ref participant, const Vec3& angular, ConstraintRow& row)
 {
-    if (!who.valid()) return;
+    if (!participant.valid()) return;
     for (std::uint32_t k = 0; k < row.count; ++k)
-        if (row.blocks[k].who == who)
+        if (row.blocks[k].participant == participant)
         {
             row.blocks[k].angular += angular;
             return;
         }
-    row.blocks[row.count++] = {who, {}, angular};
+    row.blocks[row.count++] = {participant, {}, angular};
 }
 
 }  // namespace
@@ -22,7 +22,7 @@ void add_block(Ref who, const Vec3& angular, ConstraintRow& row)
 void add_spin(const Spin& spin, double factor, ConstraintRow& row)
 {
     add_block(spin.base, -factor * spin.n, row);
-    add_block(spin.who, factor * spin.n, row);
+    add_block(spin.participant, factor * spin.n, row);
     row.bias += factor * spin.extra;
 }
 
@@ -37,27 +37,27 @@ void SpinColumns::describe_spin(Schema& s, const std::string& prefix, const std:
     describe_meter(s, prefix, "rotation angle of " + whose);
 }
 
-Result<void> SpinColumns::place(Row row, Ref who, Ref base, const Bodies& bodies)
+Result<void> SpinColumns::place(Row row, Ref participant, Ref base, const Bodies& bodies)
 {
-    if (base.valid() && base.facet != who.facet) return reason("a shaft turns against a shaft, and a body against a body");
-    if (who.facet == Facet::Shaft) return {};
+    if (base.valid() && base.facet != participant.facet) return reason("a shaft turns against a shaft, and a body against a body");
+    if (participant.facet == Facet::Shaft) return {};
     const Quat q_base = base.valid() ? bodies.orientation[base.index] : Quat{};
-    if (place_axis(row, q_base, bodies.orientation[who.index])) reset(row);
+    if (place_axis(row, q_base, bodies.orientation[participant.index])) reset(row);
     return {};
 }
 
-Spin SpinColumns::look(Row row, Ref who, Ref base, const Bodies& bodies, const Shafts& shafts) const
+Spin SpinColumns::look(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts) const
 {
-    Spin spin{who, base, {1, 0, 0}, 0, 0, 0, false};
-    if (who.facet == Facet::Shaft)
+    Spin spin{participant, base, {1, 0, 0}, 0, 0, 0, false};
+    if (participant.facet == Facet::Shaft)
     {
-        spin.twist = shafts.angle[who.index] - (base.valid() ? shafts.angle[base.index] : 0.0);
-        spin.speed = shafts.speed[who.index] - (base.valid() ? shafts.speed[base.index] : 0.0);
+        spin.twist = shafts.angle[participant.index] - (base.valid() ? shafts.angle[base.index] : 0.0);
+        spin.speed = shafts.speed[participant.index] - (base.valid() ? shafts.speed[base.index] : 0.0);
         return spin;
     }
-    const Quat frame = bodies.orientation[who.index] * frame_b[row];
+    const Quat frame = bodies.orientation[participant.index] * frame_b[row];
     const Quat frame_base = (base.valid() ? bodies.orientation[base.index] : Quat{}) * frame_a[row];
-    const Vec3 w = bodies.angular_velocity[who.index];
+    const Vec3 w = bodies.angular_velocity[participant.index];
     const Vec3 w_base = base.valid() ? bodies.angular_velocity[base.index] : Vec3{};
     spin.n = rotate(frame, Vec3{0, 0, 1});
     spin.twist = constraints::twist(frame_base, frame);

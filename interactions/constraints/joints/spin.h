@@ -13,7 +13,7 @@ namespace plab::constraints
 /// The rotation of one participant at the present state.
 struct Spin
 {
-    Ref who, base;
+    Ref participant, base;
     Vec3 n;              ///< in W; for a shaft only x is used
     double twist = 0;    ///< rad; for bodies within half a turn
     double speed = 0;    ///< rad/s
@@ -30,8 +30,8 @@ struct SpinColumns : AxisColumns, MeterColumns
     /// `prefix` of the field names, such as "driver_".
     void describe_spin(Schema& s, const std::string& prefix, const std::string& whose);
     /// Phase::Prepare: sets the axle from its parameter, if that is new.
-    Result<void> place(Row row, Ref who, Ref base, const Bodies& bodies);
-    Spin look(Row row, Ref who, Ref base, const Bodies& bodies, const Shafts& shafts) const;
+    Result<void> place(Row row, Ref participant, Ref base, const Bodies& bodies);
+    Spin look(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts) const;
     /// Phase::Drive: the angle at the start of the first step.
     void begin(Row row, const Spin& spin, double now)
     {

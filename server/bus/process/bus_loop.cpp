@@ -45,7 +45,7 @@ BusLoop::BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const B
       lifeline_(lifeline),
       reader_(std::move(reader)),
       writer_(std::move(writer)),
-      trouble_([](void* self, const char* line) { static_cast<BusLoop*>(self)->tell(Up::Log, std::string(line)); }, this),
+      trouble_([](void* self, const char* line) { static_cast<BusLoop*>(self)->report(Up::Log, std::string(line)); }, this),
       catalogue_(start.name),
       presence_(identity_of(start)),
       outbox_([this](const publish::Answer& answer, bool repeated) { return replies_.write(reply_sample_.of(answer, repeated)); }, trouble_)
@@ -55,7 +55,7 @@ BusLoop::BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const B
 /// A message that finds no room is dropped: each is only a notice, except requests, which wait in the DDS reader until there is
 /// room.
 template <class... Record>
-void BusLoop::tell(Up kind, const Record&... record)
+void BusLoop::report(Up kind, const Record&... record)
 {
     if (writer_.ready()) (void)writer_.send(kind, record...);
 }
@@ -73,9 +73,9 @@ bool BusLoop::join()
 {
     const auto entered = enter();
     if (entered)
-        dds_log_.gather(), tell(Up::Joined);
+        dds_log_.gather(), report(Up::Joined);
     else
-        tell(Up::Failed, entered.error().text());
+        report(Up::Failed, entered.error().text());
     server_->ring();
     return entered.ok();
 }
@@ -171,7 +171,7 @@ void BusLoop::each_second(Clock::time_point now)
     matched_.store(true, std::memory_order_relaxed);
     trouble_.report();
     report_dds();
-    tell(Up::Alive);
+    report(Up::Alive);
 }
 
 /// One line per second, however many invalid packets arrive. A line that finds no room waits.
@@ -253,7 +253,7 @@ bool BusLoop::read_requests()
     const dds_return_t n = requests_.take(handle, 1);
     (void)trouble_.check(wire::topic_of<plab_v2_Request>().name, n < 0 ? n : DDS_RETCODE_OK);
     if (n > 0) arrived_.store(true, std::memory_order_relaxed);
-    if (const auto rival = presence_.look_for_rival()) tell(Up::Lost, *rival);
+    if (const auto rival = presence_.look_for_rival()) report(Up::Lost, *rival);
     pass_on();
     return n > 0 && waiting_.empty();
 }

@@ -53,7 +53,7 @@ private:
     template <class Function>
     void each(Function function);
     template <class... Record>
-    void tell(Up kind, const Record&... record);
+    void report(Up kind, const Record&... record);
     bool sleep(Clock::time_point now);
 
     StartMessage start_;

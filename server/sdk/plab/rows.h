@@ -14,7 +14,7 @@ namespace plab
 /// One participant's part of a row. A body: linear . v_WC + angular . w_WB (both in W); a shaft: angular.x * speed.
 struct RowBlock
 {
-    Ref who;
+    Ref participant;
     Vec3 linear;
     Vec3 angular;
 };

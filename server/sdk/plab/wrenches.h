@@ -62,8 +62,8 @@ public:
 private:
     bool accounted(Ref r) const
     {
-        const auto& who = r.facet == Facet::Body ? accounted_bodies : accounted_shafts;
-        return power && (who.empty() || who[r.index] != 0);
+        const auto& accounted = r.facet == Facet::Body ? accounted_bodies : accounted_shafts;
+        return power && (accounted.empty() || accounted[r.index] != 0);
     }
     void account(double watts) { (*power)[current_] += watts; }
     const Bodies* bodies_ = nullptr;

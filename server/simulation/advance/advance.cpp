@@ -7,9 +7,9 @@ namespace plab::simulation
 
 void Advance::rebuild()
 {
-    const auto stands_alone = [](const Group& g)
+    const auto has_no_solver = [](const Group& g)
     { return g.solver == kNoIndex && !(g.bodies.empty() && g.shafts.empty() && g.quantities.empty()); };
-    some_without_solver_ = std::any_of(step_.groups.all.begin(), step_.groups.all.end(), stands_alone);
+    some_without_solver_ = std::any_of(step_.groups.all.begin(), step_.groups.all.end(), has_no_solver);
     batches_.rebuild();
 }
 
@@ -18,7 +18,7 @@ void Advance::advance_all()
     contacts_.cache().forget_parked();
     if (forces_.any()) forces_.begin_step();
     hard_.begin_step();
-    if (some_without_solver_ || hard_.any_stands() || (forces_.any() && forces_.may_touch()))
+    if (some_without_solver_ || hard_.needs_islands() || (forces_.any() && forces_.may_touch()))
         advance(step_.all_groups, 0, step_.frame.step, step_.book(), false);
     else
         batches_.advance();

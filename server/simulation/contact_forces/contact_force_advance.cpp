@@ -318,11 +318,11 @@ void ContactForces::advance_mixed(const Island& island, double from, double to, 
         const double n = std::ceil(left / h - 1e-9);
         const double next = n <= 1 ? to : t + left / n;
         margin_ = margin_for(next - t);
-        lead_ = 0.5 * (next - t), taken_ = false;
+        time_ahead_ = 0.5 * (next - t), taken_ = false;
         motion_.feel(this);
         hard_.advance(island.groups, island.observed, t, next, book, trial);
         motion_.feel(nullptr);
-        lead_ = 0;
+        time_ahead_ = 0;
         const double gone = next - std::exchange(t, next);
         inspect(margin_, at_end_);
         evaluate_laws();

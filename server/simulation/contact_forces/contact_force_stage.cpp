@@ -139,9 +139,9 @@ Vec3 ContactForces::moved_along(const FoundContact& f) const
     return displacement(f.contact.b.index) - displacement(f.contact.a.index);
 }
 
-/// Detects the pushing contact points at the present state, and fills in their stored state. With `lead`, depth and stretch are
-/// extrapolated by lead_.
-void ContactForces::gather(bool lead)
+/// Detects the pushing contact points at the present state, and fills in their stored state. With `extrapolate`, depth and stretch
+/// are those expected time_ahead_ later.
+void ContactForces::gather(bool extrapolate)
 {
     found_.clear(), matched_.clear();
     for (std::size_t i = 0; i < pushing_.size();)
@@ -165,12 +165,12 @@ void ContactForces::gather(bool lead)
         fill_surface(f);
         c.id = known->id, c.approach = known->approach, c.rest_depth = known->rest_depth, c.preload = known->preload;
         Vec3 stretch = known->stretch + moved_along(f);
-        if (lead)
+        if (extrapolate)
         {
             const Bodies& bodies = step_.world.host().bodies;
             const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
-            c.depth -= lead_ * dot(u, c.normal);
-            stretch += u * lead_;
+            c.depth -= time_ahead_ * dot(u, c.normal);
+            stretch += u * time_ahead_;
         }
         c.stretch = stretch - c.normal * dot(stretch, c.normal);
         matched_.push_back({i, known});
@@ -194,7 +194,7 @@ void ContactForces::run_laws(const StepContext& context, Wrenches& wrenches)
 
 void ContactForces::add(const StepContext& context, Wrenches& wrenches)
 {
-    if (lead_ == 0)
+    if (time_ahead_ == 0)
     {
         gather(false);
         run_laws(context, wrenches);

@@ -167,7 +167,7 @@ private:
     void detect(std::uint32_t detector, std::span<const PersistentPair> pairs, double margin, std::vector<FoundContact>& out);
     void inspect(double margin, std::vector<Seen>& out);
     void fill_surface(FoundContact& found) const;
-    void gather(bool lead);
+    void gather(bool extrapolate);
     Vec3 moved_along(const FoundContact& f) const;
     ForceContact* find_known(const FoundContact& f);
     ForceContact* find_pushing(const FoundContact& f);
@@ -198,7 +198,7 @@ private:
     void expect(ForceContact& known, const FoundContact& at, double closing);
     void list_gone(const std::vector<Seen>& seen);
     void end_gone(double time);
-    void tell(ForceHappening::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time);
+    void report(ForceHappening::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time);
     void report_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time);
 
     // contact_force_advance.cpp
@@ -249,7 +249,7 @@ private:
     double margin_ = 0;                  ///< m: gaps up to this are detected within a piece
     int order_ = 1;                      ///< order of the solver
     bool taken_ = false;                 ///< the forces of this piece of a mixed island have been evaluated
-    double lead_ = 0;                    ///< s: how far ahead of the state springs are evaluated (mixed islands)
+    double time_ahead_ = 0;              ///< s: how far ahead of the state springs are evaluated (mixed islands)
     std::vector<PersistentPair> persistent_;
     std::vector<FoundContact> found_;
     std::vector<std::pair<std::size_t, ForceContact*>> matched_;  ///< index in found_, and the known contact

@@ -148,9 +148,9 @@ std::uint64_t hash_of_contact(const KnownContact& k)
 
 std::uint64_t hash_of_pair(const world::World& world, const PairState& p)
 {
-    const std::uint64_t who = std::uint64_t{world.rank(p.a)} << 32 | world.rank(p.b);
+    const std::uint64_t pair = std::uint64_t{world.rank(p.a)} << 32 | world.rank(p.b);
     const std::uint64_t how = (p.resting ? 1u : 0u) | (p.ahead ? 2u : 0u) | (p.overlapping ? 4u : 0u) | std::uint64_t{p.count} << 3;
-    std::uint64_t h = mix(mix(hash_of(p.normal), who), how);
+    std::uint64_t h = mix(mix(hash_of(p.normal), pair), how);
     for (std::uint32_t i = 0; i < p.count; ++i) h = mix(h, hash_of_contact(p.contacts[i]));
     if (p.bounces == BounceHistory{}) return h;
     return mix(mix(mix(h, p.bounces.time), p.bounces.interval), p.bounces.previous);

@@ -13,7 +13,7 @@ void HardContacts::begin_step()
     step_.report.further_pairs = 0;
 }
 
-bool HardContacts::any_stands() const
+bool HardContacts::needs_islands() const
 {
     const auto& pairs = contacts_.cache().pairs();
     return held_.holds_joints() || std::any_of(pairs.begin(), pairs.end(), [](const PairState& p) { return p.resting; });

@@ -25,7 +25,7 @@ public:
     void rebuild() { held_.rebuild(); }
     void begin_step();
     /// Whether groups have to advance as islands because of a persistent contact, or of a joint that only a manager can hold.
-    bool any_stands() const;
+    bool needs_islands() const;
     /// Whether a group has such a joint in this step.
     bool holds_joints_of(std::uint32_t group) const { return held_.holds_joints_of(group); }
     /// Advances groups with persistent contacts from their present state, each island by itself. Times in s since the start of the step.

@@ -165,7 +165,7 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
     system.evaluate(0, 0);
     given_speed_.resize(step_.world.host().bodies.size(), 0.0);
     for (HeldIsland* island : islands) set_approach(*island, system, to - from);
-    lead(islands, system, to - from);
+    advance_to_midpoint(islands, system, to - from);
     for (HeldIsland* island : islands)
         if (!step_.frame.give_up()) solve(*island, system, from, to, book, trial);
     const bool given_up = step_.frame.give_up();  // then islands may be unsolved, and the booked work is discarded
@@ -181,21 +181,21 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
 /// Advances islands in which a body moves along a curved surface to the midpoint of the step, where contacts and forces are evaluated
 /// (midpoint_contacts.h). Islands with an impact are left out, as its impulse acts at the start of the step along the normals there; so are
 /// islands with kinematic bodies.
-void HeldIslands::lead(std::span<HeldIsland*> islands, GroupSystem& system, double h)
+void HeldIslands::advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h)
 {
     const auto stays = [this](const Contact& c) { return c.approach > 0 || midpoint_.is_driven(c); };
-    led_places_.clear();
+    midpoint_places_.clear();
     for (HeldIsland* island : islands)
     {
         island->turns = island->turns && std::none_of(island->contacts.begin(), island->contacts.end(), stays);
         if (!island->turns) continue;
-        midpoint_.lead(system, island->members, h);
-        led_places_.insert(led_places_.end(), island->places.begin(), island->places.end());
+        midpoint_.advance_to_midpoint(system, island->members, h);
+        midpoint_places_.insert(midpoint_places_.end(), island->places.begin(), island->places.end());
     }
-    if (led_places_.empty()) return;
+    if (midpoint_places_.empty()) return;
     system.evaluate(0, 0);
-    std::sort(led_places_.begin(), led_places_.end());
-    midpoint_.bend(led_places_, touching_, h);
+    std::sort(midpoint_places_.begin(), midpoint_places_.end());
+    midpoint_.update_contacts(midpoint_places_, touching_, h);
     for (HeldIsland* island : islands)
         for (std::size_t i = 0; island->turns && i < island->places.size(); ++i) island->contacts[i] = touching_[island->places[i]].contact;
 }

@@ -146,7 +146,7 @@ private:
     void run(std::span<HeldIsland*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from,
              double to, WorkBook book, bool trial);
     void solve(HeldIsland& island, GroupSystem& system, double from, double to, WorkBook book, bool trial);
-    void lead(std::span<HeldIsland*> islands, GroupSystem& system, double h);
+    void advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h);
     void book_contacts(HeldIsland& island, double gained, WorkBook book);
     void keep(const HeldIsland& island);
     void report_begin(const PairState& pair, const Contact& contact, double time) const;
@@ -171,7 +171,7 @@ private:
     std::size_t island_count_ = 0;
     MidpointContacts midpoint_;
     std::vector<HeldIsland*> plain_, jointed_;
-    std::vector<std::uint32_t> led_places_;
+    std::vector<std::uint32_t> midpoint_places_;
     std::vector<std::uint32_t> plain_groups_;
     std::vector<FoundContact> touching_;
     std::vector<PairState*> pair_of_contact_;

@@ -43,14 +43,14 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     system.begin(from, to, book, trial ? nullptr : &step_);
     members_.resize(system.bodies().size());
     std::iota(members_.begin(), members_.end(), 0u);
-    const bool led = lead_touching(system, h);
+    const bool at_midpoint = advance_to_midpoint(system, h);
     system.evaluate_here();
-    if (led) bend_touching(h);
+    if (at_midpoint) update_touching(h);
     if (!trial)
         for (const FoundContact& f : touching_)
             if (contacts_.is_paradox(f.contact))
                 contacts_.report_paradox(f.contact, *contacts_.find_pair(f), step_.frame.start_time + from);
-    if (!led && meets_any(system, h)) stop_closing(h, book), system.join();
+    if (!at_midpoint && meets_any(system, h)) stop_closing(h, book), system.join();
 
     moved_.kick(system, bodies, members_, h);
     if (!trial) positions_.note_forces(system);
@@ -58,7 +58,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     if (!trial) keep_impulses(touching_, from, h);
     system.join();  // contact impulses ignore joints: project the velocities onto them
     const double work = moved_.move_mean(h);
-    if (led) midpoint_.take_back();
+    if (at_midpoint) midpoint_.take_back();
     if (book.work && !system.rows()) book_rest(work, book);
     system.move_shafts(h, shafts);
     system.move_prescribed();
@@ -67,7 +67,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
 }
 
 /// Advances an island to the midpoint if a body moves along a curved surface and there is no impact.
-bool ImpulseIslands::lead_touching(GroupSystem& system, double h)
+bool ImpulseIslands::advance_to_midpoint(GroupSystem& system, double h)
 {
     const auto turns = [&](const FoundContact& f) { return midpoint_.turns(f.contact, h); };
     const auto is_driven = [&](const FoundContact& f) { return midpoint_.is_driven(f.contact); };
@@ -75,15 +75,15 @@ bool ImpulseIslands::lead_touching(GroupSystem& system, double h)
     if (std::any_of(touching_.begin(), touching_.end(), is_driven)) return false;
     system.evaluate(0, 0);
     if (meets_any(system, h)) return false;
-    midpoint_.lead(system, members_, h);
+    midpoint_.advance_to_midpoint(system, members_, h);
     return true;
 }
 
-void ImpulseIslands::bend_touching(double h)
+void ImpulseIslands::update_touching(double h)
 {
     places_.resize(touching_.size());
     std::iota(places_.begin(), places_.end(), 0u);
-    midpoint_.bend(places_, touching_, h);
+    midpoint_.update_contacts(places_, touching_, h);
 }
 
 /// Corrects the booked work of resting contacts. Along the actual displacements it must not be positive if no kinematic body takes part.

@@ -26,8 +26,8 @@ public:
 private:
     bool meets_any(const GroupSystem& system, double h) const;
     void stop_closing(double h, WorkBook book);
-    bool lead_touching(GroupSystem& system, double h);
-    void bend_touching(double h);
+    bool advance_to_midpoint(GroupSystem& system, double h);
+    void update_touching(double h);
     void book_rest(double work, WorkBook book);
     void keep_impulses(const std::vector<FoundContact>& contacts, double from, double h);
 

@@ -51,7 +51,7 @@ bool MidpointContacts::turns(const Contact& c, double h) const
     return is_round(bodies, host.shapes, c.a.index) && is_round(bodies, host.shapes, c.b.index);
 }
 
-void MidpointContacts::lead(GroupSystem& system, std::span<const std::uint32_t> members, double h)
+void MidpointContacts::advance_to_midpoint(GroupSystem& system, std::span<const std::uint32_t> members, double h)
 {
     const Bodies& bodies = step_.world.host().bodies;
     const std::span<double> x = system.coordinates();
@@ -61,7 +61,7 @@ void MidpointContacts::lead(GroupSystem& system, std::span<const std::uint32_t> 
         const std::uint32_t b = system.bodies()[i];
         const Vec3 displacement = bodies.velocity[b] * (0.5 * h);
         const Vec3 turn = rotate_back(bodies.orientation[b], bodies.angular_velocity[b]) * (0.5 * h);
-        led_.push_back({b, displacement, bodies.orientation[b]});
+        advanced_.push_back({b, displacement, bodies.orientation[b]});
         displacements_[b] = displacement;
         std::copy_n(&displacement.x, 3, &x[6 * i]), std::copy_n(&turn.x, 3, &x[6 * i + 3]);
     }
@@ -97,13 +97,13 @@ void MidpointContacts::query(std::span<const std::uint32_t> places, const std::v
     }
 }
 
-void MidpointContacts::bend(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h)
+void MidpointContacts::update_contacts(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h)
 {
     Bodies& bodies = step_.world.host().bodies;
-    for (const Led& led : led_)
+    for (const Advanced& moved : advanced_)
     {
-        bodies.orientation[led.body] = led.start;
-        bodies.refresh_spin(led.body);
+        bodies.orientation[moved.body] = moved.start;
+        bodies.refresh_spin(moved.body);
     }
     query(places, all);
     const auto key = [&](const FoundContact& f)
@@ -116,7 +116,7 @@ void MidpointContacts::bend(std::span<const std::uint32_t> places, std::vector<F
         const bool same = found != midpoint_.end() && key(*found) == key(all[place]) && dot(found->contact.normal, c.normal) > kSameCurve;
         if (!same)
         {
-            // Not found at the midpoint: keep the normal, and let the contact point move with the led bodies.
+            // Not found at the midpoint: keep the normal, and let the contact point move with the advanced bodies.
             const Vec3 a = displacement_of(c.a), b = displacement_of(c.b);
             c.point += bodies.dynamic(c.a.index) && bodies.dynamic(c.b.index) ? (a + b) * 0.5 : a + b;
             continue;
@@ -130,8 +130,8 @@ void MidpointContacts::bend(std::span<const std::uint32_t> places, std::vector<F
 void MidpointContacts::take_back()
 {
     Bodies& bodies = step_.world.host().bodies;
-    for (const Led& led : led_) bodies.position[led.body] -= led.displacement, displacements_[led.body] = {};
-    led_.clear();
+    for (const Advanced& moved : advanced_) bodies.position[moved.body] -= moved.displacement, displacements_[moved.body] = {};
+    advanced_.clear();
 }
 
 }  // namespace plab::simulation

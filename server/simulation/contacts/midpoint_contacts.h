@@ -3,10 +3,10 @@
 /// Consider a ball that rolls in a bowl. Time stepping that uses the contact normal at the start of the step keeps the velocity tangential
 /// to a surface that has turned away by the end of the step. The body leaves the curve by O(h^2) in every step, which gives a method of
 /// first order. The midpoint rule avoids this: evaluate the constraint in the middle of the step.
-///   1. Advance the bodies by half a step in a straight line with their velocities v0 (lead).
-///   2. Detect the contacts there; take normals n, contact points and forces from the midpoint (bend).
+///   1. Advance the bodies by half a step in a straight line with their velocities v0 (advance_to_midpoint).
+///   2. Detect the contacts there; take normals n, contact points and forces from the midpoint (update_contacts).
 ///   3. Solve for the impulses, which change v0 to v1.
-///   4. Move the poses by h (v0 + v1) / 2, starting from the start of the step (take_back removes the lead).
+///   4. Move the poses by h (v0 + v1) / 2, starting from the start of the step (take_back removes the half step).
 /// What remains is the curvature itself. If the gap is g0 at the start and gm at the midpoint,
 ///
 ///   c = gm - g0 - (h / 2) n0 . (vb0 - va0)      is what the curvature alone opens the gap by in half a step, and
@@ -43,16 +43,16 @@ public:
     bool is_driven(const Contact& contact) const;
     /// To be called after system.begin(), for each island: the next evaluation puts its members (indices into system.bodies()) half a step
     /// ahead.
-    void lead(GroupSystem& system, std::span<const std::uint32_t> members, double h);
-    /// To be called after that evaluation: gives the contacts at the indices `places` (ascending) of `all`, which are those of the led
-    /// bodies, their normals, points and Contact::turning of the midpoint. Orientations are reset to those of the start; positions stay
-    /// at the midpoint.
-    void bend(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h);
-    /// To be called when the step is made: removes the lead from the positions.
+    void advance_to_midpoint(GroupSystem& system, std::span<const std::uint32_t> members, double h);
+    /// To be called after that evaluation: gives the contacts at the indices `places` (ascending) of `all`, which are those of the
+    /// advanced bodies, their normals, points and Contact::turning of the midpoint. Orientations are reset to those of the start; positions
+    /// stay at the midpoint.
+    void update_contacts(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h);
+    /// To be called when the step is made: removes the half step from the positions.
     void take_back();
 
 private:
-    struct Led
+    struct Advanced
     {
         std::uint32_t body = 0;  ///< host row
         Vec3 displacement;       ///< m
@@ -63,7 +63,7 @@ private:
 
     StepState& step_;
     ContactBook& contacts_;
-    std::vector<Led> led_;
+    std::vector<Advanced> advanced_;
     std::vector<Vec3> displacements_;  ///< m, by host row; zero between steps
     std::vector<FoundContact> midpoint_;
     std::vector<PersistentPair> persistent_;

@@ -253,7 +253,7 @@ bool EventLocator::stop_bouncing(const Candidate& candidate, double time, double
     PairState* pair = contacts_.cache().find(detector.component, candidate.a, candidate.b, step_.world);
     if (!pair) return false;
     if (pair->impacts_tick != step_.frame.tick) pair->impacts = 0, pair->impacts_tick = step_.frame.tick;
-    if (++pair->impacts > kMostOfHeldPair && stands_)
+    if (++pair->impacts > kMostOfHeldPair && any_rests_)
     {
         if (pair->impacts == kMostOfHeldPair + 1)
         {
@@ -298,8 +298,8 @@ void EventLocator::answer()
     }
     const std::size_t own = impact_.size();
     seen_.clear();
-    stands_ = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
-    if (stands_) contacts_.touching_pairs_of(scope_, seen_);
+    any_rests_ = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
+    if (any_rests_) contacts_.touching_pairs_of(scope_, seen_);
     const auto is_chosen = [&](const FoundContact& f)
     {
         return std::any_of(chosen_.begin(), chosen_.end(),

@@ -54,7 +54,7 @@ bool EventLocator::find_jointed()
 
 /// Asks the response which contacts come to rest: it answers the whole impact as if there were no joints, then the velocities are put
 /// back. Compression and restitution by themselves would not show it.
-void EventLocator::note_who_rests()
+void EventLocator::note_resting_contacts()
 {
     Jointed& j = jointed_;
     Bodies& bodies = step_.world.host().bodies;
@@ -165,7 +165,7 @@ void EventLocator::respond(double time)
         contacts_.respond(impact_, ImpactMode::Impact, 0, step_.book());
         return;
     }
-    note_who_rests();
+    note_resting_contacts();
     jointed_.last.assign(impact_.size(), Vec3{});
     compress(time);
     give_back(time);

@@ -195,7 +195,7 @@ private:
     // event_joints.cpp: impacts of bodies that joints hold.
     bool find_jointed();
     void respond(double time);
-    void note_who_rests();
+    void note_resting_contacts();
     void join(double time);
     double closing() const;
     void compress(double time);
@@ -217,7 +217,7 @@ private:
     std::vector<std::uint32_t> scope_;                ///< groups that are rewound, ascending
     std::vector<std::uint8_t> in_scope_, disturbed_;  ///< by group; disturbed_: belongs to the last answer's pairs or rests on them
     std::vector<std::uint8_t> rests_;                 ///< by group: it takes part in a persistent contact
-    bool stands_ = false;                             ///< a group in the scope of the present answer takes part in a persistent contact
+    bool any_rests_ = false;                          ///< a group in the scope of the present answer takes part in a persistent contact
     bool rewound_ = false;                            ///< the last answer rewound groups
     bool answers_at_end_ = false;                     ///< the work budget is spent: nothing is located any more
     WorkBudget budget_;

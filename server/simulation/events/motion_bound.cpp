@@ -186,7 +186,7 @@ double Clearance::by_points(const Vec3& n, double gap, const Vec3& turn) const
 
 double Clearance::by_points_in(const Frame& frame, const Vec3& n, double gap) const
 {
-    const auto width = [&](double s) { return linear_width(frame, n, gap, s) + 0.5 * frame.bend * s * s; };
+    const auto width = [&](double s) { return linear_width(frame, n, gap, s) + 0.5 * frame.acceleration * s * s; };
     // The width is concave: positive at both ends means positive between them. Otherwise approach its zero from the clear side by
     // bisection and secants.
     double high = left_, at_high = width(high);
@@ -227,9 +227,9 @@ double Clearance::by_chord(const Vec3& n, double gap) const
         width -= support_of(m, m.motion->last.orientation, outward) - support_of(m, m.now.orientation, outward);
     };
     grow(a_, n), grow(b_, -n);
-    const double bend = std::max(0.0, dot(acceleration_, n) + unsure_ + swirl_);
-    // gap + (width - gap) s/T - bend s (T - s)/2
-    return quadratic(gap, (width - gap) / left_ - 0.5 * bend * left_, bend);
+    const double acceleration = std::max(0.0, dot(acceleration_, n) + unsure_ + swirl_);
+    // gap + (width - gap) s/T - acceleration s (T - s)/2
+    return quadratic(gap, (width - gap) / left_ - 0.5 * acceleration * left_, acceleration);
 }
 
 double Clearance::along(const Vec3& n, double gap, const Vec3& turn) const
@@ -290,7 +290,7 @@ double Clearance::fastest_closing(const Vec3& n) const
 bool Clearance::was_clear(const Vec3& n, double gap, double ago, const Vec3& turn) const
 {
     if (turning_ > 0 && !(a_.extent->convex && b_.extent->convex)) return false;
-    const auto was = [&](const Frame& frame) { return linear_width(frame, n, gap, -ago) + 0.5 * frame.bend * ago * ago > 0; };
+    const auto was = [&](const Frame& frame) { return linear_width(frame, n, gap, -ago) + 0.5 * frame.acceleration * ago * ago > 0; };
     for (const Mover* m : {&a_, &b_})
         if (m->extent->is_plane && m->motion->turning.spin > 0) return was(frame_of(*m));
     if (was(world_frame(n)) || a_.extent->is_plane || b_.extent->is_plane) return was(world_frame(n));

@@ -108,7 +108,7 @@ private:
     struct Frame
     {
         Vec3 spin;
-        double bend = 0;
+        double acceleration = 0;
     };
     Frame world_frame(const Vec3& n) const;
     Frame frame_of(const Mover& mover) const;

@@ -23,13 +23,13 @@ constexpr double kSameSpeed = 1e-3;
 
 void RowEquations::weigh(Member& m) const
 {
-    if (m.who.facet == Facet::Body)
+    if (m.participant.facet == Facet::Body)
     {
-        m.inverse_mass = host_->bodies.inverse_mass[m.who.index];
+        m.inverse_mass = host_->bodies.inverse_mass[m.participant.index];
         return;
     }
-    const ShaftTree* tree = graph_->tree_of(m.who.index);
-    m.inertia = tree ? tree->inertia : host_->shafts.inertia[m.who.index];
+    const ShaftTree* tree = graph_->tree_of(m.participant.index);
+    m.inertia = tree ? tree->inertia : host_->shafts.inertia[m.participant.index];
 }
 
 void RowEquations::fill(Slot& slot, const ConstraintRow& row)
@@ -39,19 +39,19 @@ void RowEquations::fill(Slot& slot, const ConstraintRow& row)
     std::uint32_t next = 0;
     for (std::uint32_t k = 0; k < row.count; ++k)
     {
-        if (!pattern_[slot.held].who[k].mobile) continue;
+        if (!pattern_[slot.held].participants[k].mobile) continue;
         // Blocks on the same member share one entry, for example two shafts of one train.
         std::uint32_t e = 0;
-        while (e < next && members_[entries[e].member].who != row.blocks[k].who) ++e;
+        while (e < next && members_[entries[e].member].participant != row.blocks[k].participant) ++e;
         if (e == next) ++next;
         std::array<double, 6>& j = entries[e].j;
         const RowBlock& block = row.blocks[k];
-        if (block.who.facet == Facet::Shaft)
+        if (block.participant.facet == Facet::Shaft)
         {
             j[0] += block.angular.x;
             continue;
         }
-        const Vec3 angular_B = rotate_back(host_->bodies.orientation[block.who.index], block.angular);
+        const Vec3 angular_B = rotate_back(host_->bodies.orientation[block.participant.index], block.angular);
         j[0] += block.linear.x, j[1] += block.linear.y, j[2] += block.linear.z;
         j[3] += angular_B.x, j[4] += angular_B.y, j[5] += angular_B.z;
     }
@@ -64,10 +64,10 @@ double RowEquations::mobility_of(const Entry& entry) const
 {
     const Member& m = members_[entry.member];
     const auto& j = entry.j;
-    if (m.who.facet == Facet::Shaft) return j[0] * j[0] / m.inertia;
+    if (m.participant.facet == Facet::Shaft) return j[0] * j[0] / m.inertia;
     const Vec3 angular{j[3], j[4], j[5]};
     return (j[0] * j[0] + j[1] * j[1] + j[2] * j[2]) * m.inverse_mass +
-           dot(angular, host_->bodies.inverse_inertia_B[m.who.index] * angular);
+           dot(angular, host_->bodies.inverse_inertia_B[m.participant.index] * angular);
 }
 
 void RowEquations::fill_masses()
@@ -76,13 +76,13 @@ void RowEquations::fill_masses()
     {
         double* d = factors_.diagonal(i);
         const Member& m = members_[i];
-        if (m.who.facet == Facet::Shaft)
+        if (m.participant.facet == Facet::Shaft)
         {
             d[0] = m.inertia;
             continue;
         }
-        const double mass = host_->bodies.mass[m.who.index];
-        const Mat3& inertia = host_->bodies.inertia_B[m.who.index];
+        const double mass = host_->bodies.mass[m.participant.index];
+        const Mat3& inertia = host_->bodies.inertia_B[m.participant.index];
         for (int r = 0; r < 3; ++r) d[r * 7] = mass;
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c <= r; ++c) d[(3 + r) * 6 + 3 + c] = inertia(r, c);
@@ -191,24 +191,24 @@ double RowEquations::worst_of_members() const
 
 void RowEquations::times_mass(const Member& m, const double* x, double* out) const
 {
-    if (m.who.facet == Facet::Shaft)
+    if (m.participant.facet == Facet::Shaft)
     {
         out[0] = m.inertia * x[0];
         return;
     }
-    const double mass = host_->bodies.mass[m.who.index];
-    const Vec3 spin = host_->bodies.inertia_B[m.who.index] * Vec3{x[3], x[4], x[5]};
+    const double mass = host_->bodies.mass[m.participant.index];
+    const Vec3 spin = host_->bodies.inertia_B[m.participant.index] * Vec3{x[3], x[4], x[5]};
     out[0] = mass * x[0], out[1] = mass * x[1], out[2] = mass * x[2], out[3] = spin.x, out[4] = spin.y, out[5] = spin.z;
 }
 
 void RowEquations::over_mass(const Member& m, const double* g, double* out) const
 {
-    if (m.who.facet == Facet::Shaft)
+    if (m.participant.facet == Facet::Shaft)
     {
         out[0] = g[0] / m.inertia;
         return;
     }
-    const Vec3 spin = host_->bodies.inverse_inertia_B[m.who.index] * Vec3{g[3], g[4], g[5]};
+    const Vec3 spin = host_->bodies.inverse_inertia_B[m.participant.index] * Vec3{g[3], g[4], g[5]};
     out[0] = m.inverse_mass * g[0], out[1] = m.inverse_mass * g[1], out[2] = m.inverse_mass * g[2];
     out[3] = spin.x, out[4] = spin.y, out[5] = spin.z;
 }

@@ -55,7 +55,7 @@ public:
     /// A body or shaft that rows can move. Its node in the matrix has the same index.
     struct Member
     {
-        Ref who;
+        Ref participant;
         double inertia = 0;       ///< of a shaft's whole train, reduced to its root, kg m^2
         double inverse_mass = 0;  ///< 1/kg
     };
@@ -142,7 +142,7 @@ private:
     };
     struct Participant
     {
-        Ref who;
+        Ref ref;
         bool mobile = false;
         friend bool operator==(const Participant&, const Participant&) = default;
     };
@@ -156,14 +156,15 @@ private:
     struct Pattern
     {
         std::uint32_t component = 0;
-        Participants who;
+        Participants participants;
         friend bool operator==(const Pattern&, const Pattern&) = default;
     };
 
     class Analysis;
-    bool is_mobile(Ref who) const
+    bool is_mobile(Ref participant) const
     {
-        return who.facet == Facet::Body ? host_->bodies.dynamic(who.index) : who.facet == Facet::Shaft && host_->shafts.dynamic(who.index);
+        return participant.facet == Facet::Body ? host_->bodies.dynamic(participant.index)
+                                                : participant.facet == Facet::Shaft && host_->shafts.dynamic(participant.index);
     }
     Participants participants_of(const ConstraintRow& row) const;
     void list_held(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces);
@@ -183,7 +184,7 @@ private:
     void subtract_rows();
     double worst_of_rows() const;
     double worst_of_members() const;
-    std::uint32_t size_of(const Member& m) const { return m.who.facet == Facet::Body ? 6u : 1u; }
+    std::uint32_t size_of(const Member& m) const { return m.participant.facet == Facet::Body ? 6u : 1u; }
     std::uint32_t unknown_of(const Slot& s) const
     {
         return factors_.offset(static_cast<std::uint32_t>(members_.size()) + s.joint) + s.place;

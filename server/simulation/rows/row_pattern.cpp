@@ -44,11 +44,11 @@ private:
     std::vector<std::uint32_t> members_of(std::uint32_t held)
     {
         std::vector<std::uint32_t> members;
-        for (const Participant& p : out_.pattern_[held].who)
+        for (const Participant& p : out_.pattern_[held].participants)
         {
             if (!p.mobile) continue;
-            const auto [at, fresh] = member_of_.emplace(p.who, static_cast<std::uint32_t>(out_.members_.size()));
-            if (fresh) out_.members_.push_back({p.who, 0, 0});
+            const auto [at, fresh] = member_of_.emplace(p.ref, static_cast<std::uint32_t>(out_.members_.size()));
+            if (fresh) out_.members_.push_back({p.ref, 0, 0});
             if (std::find(members.begin(), members.end(), at->second) == members.end()) members.push_back(at->second);
         }
         return members;
@@ -58,7 +58,7 @@ private:
     {
         if (members < 2) return true;
         for (std::uint32_t k = 0; k < rows_[out_.held_[held].row].count; ++k)
-            if (!out_.pattern_[held].who[k].mobile) return true;
+            if (!out_.pattern_[held].participants[k].mobile) return true;
         return false;
     }
 
@@ -206,7 +206,7 @@ void RowEquations::find_loops()
 RowEquations::Participants RowEquations::participants_of(const ConstraintRow& row) const
 {
     Participants out;
-    for (std::uint32_t k = 0; k < row.count; ++k) out[k] = {row.blocks[k].who, is_mobile(row.blocks[k].who)};
+    for (std::uint32_t k = 0; k < row.count; ++k) out[k] = {row.blocks[k].participant, is_mobile(row.blocks[k].participant)};
     return out;
 }
 
@@ -227,8 +227,10 @@ bool RowEquations::same_pattern(std::span<const ConstraintRow> rows) const
         const Pattern& known = pattern_[i];
         if (row.component != known.component) return false;
         for (std::uint32_t k = 0; k < row.count; ++k)
-            if (row.blocks[k].who != known.who[k].who || is_mobile(row.blocks[k].who) != known.who[k].mobile) return false;
-        if (row.count < known.who.size() && known.who[row.count].who.valid()) return false;
+            if (row.blocks[k].participant != known.participants[k].ref ||
+                is_mobile(row.blocks[k].participant) != known.participants[k].mobile)
+                return false;
+        if (row.count < known.participants.size() && known.participants[row.count].ref.valid()) return false;
     }
     return true;
 }

@@ -41,10 +41,10 @@ double RowSystem::position_scale(const ConstraintRow& row) const
     for (std::uint32_t k = 0; k < row.count; ++k)
     {
         const RowBlock& b = row.blocks[k];
-        if (b.who.facet == Facet::Body)
-            scale += length(b.linear) * length(host_->bodies.position[b.who.index]) + length(b.angular);
+        if (b.participant.facet == Facet::Body)
+            scale += length(b.linear) * length(host_->bodies.position[b.participant.index]) + length(b.angular);
         else
-            scale += std::fabs(b.angular.x) * std::fmax(1.0, std::fabs(host_->shafts.angle[b.who.index]));
+            scale += std::fabs(b.angular.x) * std::fmax(1.0, std::fabs(host_->shafts.angle[b.participant.index]));
     }
     return scale;
 }
@@ -57,11 +57,11 @@ double RowSystem::speed_scale(const ConstraintRow& row, double dt) const
     for (std::uint32_t k = 0; k < row.count; ++k)
     {
         const RowBlock& b = row.blocks[k];
-        if (b.who.facet == Facet::Body)
-            scale += length(b.linear) * length(host_->bodies.velocity[b.who.index]) +
-                     length(b.angular) * length(host_->bodies.angular_velocity[b.who.index]);
+        if (b.participant.facet == Facet::Body)
+            scale += length(b.linear) * length(host_->bodies.velocity[b.participant.index]) +
+                     length(b.angular) * length(host_->bodies.angular_velocity[b.participant.index]);
         else
-            scale += std::fabs(b.angular.x * host_->shafts.speed[b.who.index]);
+            scale += std::fabs(b.angular.x * host_->shafts.speed[b.participant.index]);
     }
     return scale;
 }
@@ -72,9 +72,9 @@ namespace
 /// sqrt(J M^-1 J^T) of one block on a dynamic body.
 double root_of_mobility(const Bodies& bodies, const RowBlock& b)
 {
-    const Vec3 angular_B = rotate_back(bodies.orientation[b.who.index], b.angular);
-    return std::sqrt(length_squared(b.linear) * bodies.inverse_mass[b.who.index] +
-                     dot(angular_B, bodies.inverse_inertia_B[b.who.index] * angular_B));
+    const Vec3 angular_B = rotate_back(bodies.orientation[b.participant.index], b.angular);
+    return std::sqrt(length_squared(b.linear) * bodies.inverse_mass[b.participant.index] +
+                     dot(angular_B, bodies.inverse_inertia_B[b.participant.index] * angular_B));
 }
 
 }  // namespace
@@ -87,9 +87,9 @@ double RowSystem::position_at_hand(const ConstraintRow& row) const
     for (std::uint32_t k = 0; k < row.count; ++k)
     {
         const RowBlock& b = row.blocks[k];
-        if (b.who.facet != Facet::Body || !is_mobile(b.who)) continue;
-        const Mat3& I = host_->bodies.inertia_B[b.who.index];
-        scale += length(b.linear) * std::sqrt(0.5 * (I(0, 0) + I(1, 1) + I(2, 2)) * host_->bodies.inverse_mass[b.who.index]);
+        if (b.participant.facet != Facet::Body || !is_mobile(b.participant)) continue;
+        const Mat3& I = host_->bodies.inertia_B[b.participant.index];
+        scale += length(b.linear) * std::sqrt(0.5 * (I(0, 0) + I(1, 1) + I(2, 2)) * host_->bodies.inverse_mass[b.participant.index]);
     }
     return scale;
 }
@@ -106,15 +106,15 @@ double RowSystem::speed_at_hand(std::size_t index, double dt) const
     {
         if (lambda_[i] == 0) continue;
         for (std::uint32_t k = 0; k < rows_[i].count; ++k)
-            if (const RowBlock& b = rows_[i].blocks[k]; b.who.facet == Facet::Body && is_mobile(b.who))
+            if (const RowBlock& b = rows_[i].blocks[k]; b.participant.facet == Facet::Body && is_mobile(b.participant))
                 held = std::fmax(held, std::fabs(lambda_[i]) * root_of_mobility(host_->bodies, b));
     }
     double scale = speed_scale(row, dt);
     for (std::uint32_t k = 0; k < row.count; ++k)
     {
         const RowBlock& b = row.blocks[k];
-        if (b.who.facet == Facet::Body && is_mobile(b.who))
-            scale += root_of_mobility(host_->bodies, b) * (std::sqrt(2 * host_->bodies.kinetic_energy(b.who.index)) + dt * held);
+        if (b.participant.facet == Facet::Body && is_mobile(b.participant))
+            scale += root_of_mobility(host_->bodies, b) * (std::sqrt(2 * host_->bodies.kinetic_energy(b.participant.index)) + dt * held);
     }
     return scale;
 }
@@ -170,24 +170,24 @@ void RowSystem::move_members(const StepContext& context)
     for (std::size_t i = 0; i < members.size(); ++i)
     {
         const double* x = equations_.result(i);
-        if (members[i].who.facet == Facet::Body) turn = std::fmax(turn, length(Vec3{x[3], x[4], x[5]}));
+        if (members[i].participant.facet == Facet::Body) turn = std::fmax(turn, length(Vec3{x[3], x[4], x[5]}));
     }
     const double share = turn > kMostTurn ? kMostTurn / turn : 1.0;
     bool any_shaft = false;
     for (std::size_t i = 0; i < members.size(); ++i)
     {
         const double* x = equations_.result(i);
-        const std::uint32_t who = members[i].who.index;
-        if (members[i].who.facet == Facet::Shaft)
+        const std::uint32_t index = members[i].participant.index;
+        if (members[i].participant.facet == Facet::Shaft)
         {
-            host_->shafts.angle[who] += share * x[0];
+            host_->shafts.angle[index] += share * x[0];
             any_shaft = true;
             continue;
         }
         Bodies& bodies = host_->bodies;
-        bodies.position[who] += share * Vec3{x[0], x[1], x[2]};
-        bodies.orientation[who] = normalized(bodies.orientation[who] * exp_rotation(share * Vec3{x[3], x[4], x[5]}));
-        bodies.refresh_spin(who);
+        bodies.position[index] += share * Vec3{x[0], x[1], x[2]};
+        bodies.orientation[index] = normalized(bodies.orientation[index] * exp_rotation(share * Vec3{x[3], x[4], x[5]}));
+        bodies.refresh_spin(index);
     }
     if (any_shaft) graph_->derive(host_->shafts, context.active_shafts);
 }
@@ -199,21 +199,21 @@ void RowSystem::change_speeds(const StepContext& context)
     for (std::size_t i = 0; i < members.size(); ++i)
     {
         const double* x = equations_.result(i);
-        const std::uint32_t who = members[i].who.index;
-        if (members[i].who.facet == Facet::Shaft)
+        const std::uint32_t index = members[i].participant.index;
+        if (members[i].participant.facet == Facet::Shaft)
         {
-            host_->shafts.speed[who] += x[0];
+            host_->shafts.speed[index] += x[0];
             any_shaft = true;
             continue;
         }
         Bodies& bodies = host_->bodies;
         const Vec3 spin{x[3], x[4], x[5]};
-        bodies.velocity[who] += Vec3{x[0], x[1], x[2]};
-        if (bodies.needle[who] != 0)
-            bodies.angular_velocity[who] += rotate(bodies.orientation[who], spin);
+        bodies.velocity[index] += Vec3{x[0], x[1], x[2]};
+        if (bodies.needle[index] != 0)
+            bodies.angular_velocity[index] += rotate(bodies.orientation[index], spin);
         else
-            bodies.angular_momentum[who] += rotate(bodies.orientation[who], bodies.inertia_B[who] * spin);
-        bodies.refresh_spin(who);
+            bodies.angular_momentum[index] += rotate(bodies.orientation[index], bodies.inertia_B[index] * spin);
+        bodies.refresh_spin(index);
     }
     if (any_shaft) graph_->derive(host_->shafts, context.active_shafts);
 }
@@ -246,10 +246,10 @@ void RowSystem::relax_positions(const StepContext& context, ProjectionReport& re
         equations_.set_rows(rows_, pieces_);
         const double error = measure_positions();
         if (!(error > kProjectionRounding) || report.iterations == kMostIterations) break;
-        const bool stands = fresh && error > 0.5 * before;
-        if (stands && error < kContradiction) break;
+        const bool stagnates = fresh && error > 0.5 * before;
+        if (stagnates && error < kContradiction) break;
         if (soft && std::fabs(error - before) < 1e-10 * error) break;
-        soft = soft || stands;
+        soft = soft || stagnates;
         if (error > kGoodContraction * before) factored_ = false;
         fresh = correct_positions(context, soft ? RowEquations::kSoftCompliance : RowEquations::kCompliance);
         before = error;
@@ -345,7 +345,7 @@ ProjectionReport RowSystem::project(const StepContext& context, const RowBook& b
     // Rows that nothing can satisfy because all participants are prescribed or static cannot be corrected, only reported.
     const auto nothing_moves = [this](const ConstraintRow& row)
     {
-        const auto mobile = [this](const RowBlock& b) { return is_mobile(b.who); };
+        const auto mobile = [this](const RowBlock& b) { return is_mobile(b.participant); };
         return !row.may_yield() && std::none_of(row.blocks.begin(), row.blocks.begin() + row.count, mobile);
     };
     double left = measure_positions();

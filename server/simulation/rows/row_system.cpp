@@ -87,12 +87,12 @@ public:
 private:
     void reduce(RowBlock& block, std::uint32_t row, std::uint32_t k)
     {
-        if (block.who.facet != Facet::Shaft || !block.who.valid()) return;
-        const std::uint32_t root = shafts_.root[block.who.index];
-        if (root == block.who.index) return;
-        out_.geared_.push_back({row, k, block.who, block.angular.x});
-        block.angular.x *= shafts_.ratio[block.who.index];
-        block.who.index = root;
+        if (block.participant.facet != Facet::Shaft || !block.participant.valid()) return;
+        const std::uint32_t root = shafts_.root[block.participant.index];
+        if (root == block.participant.index) return;
+        out_.geared_.push_back({row, k, block.participant, block.angular.x});
+        block.angular.x *= shafts_.ratio[block.participant.index];
+        block.participant.index = root;
     }
 
     RowSystem& out_;
@@ -136,15 +136,15 @@ void RowSystem::collect(const StepContext& context)
     source_->constrain(context, sink);
 }
 
-bool RowSystem::is_mobile(Ref who) const
+bool RowSystem::is_mobile(Ref participant) const
 {
-    return who.facet == Facet::Body ? host_->bodies.dynamic(who.index) : host_->shafts.dynamic(who.index);
+    return participant.facet == Facet::Body ? host_->bodies.dynamic(participant.index) : host_->shafts.dynamic(participant.index);
 }
 
 double RowSystem::speed_of(const RowBlock& b) const
 {
-    if (b.who.facet == Facet::Shaft) return b.angular.x * host_->shafts.speed[b.who.index];
-    return dot(b.linear, host_->bodies.velocity[b.who.index]) + dot(b.angular, host_->bodies.angular_velocity[b.who.index]);
+    if (b.participant.facet == Facet::Shaft) return b.angular.x * host_->shafts.speed[b.participant.index];
+    return dot(b.linear, host_->bodies.velocity[b.participant.index]) + dot(b.angular, host_->bodies.angular_velocity[b.participant.index]);
 }
 
 double RowSystem::speed_of(const ConstraintRow& row) const
@@ -158,7 +158,7 @@ double RowSystem::speed_of_others(const ConstraintRow& row) const
 {
     double sum = 0;
     for (std::uint32_t k = 0; k < row.count; ++k)
-        if (!is_mobile(row.blocks[k].who)) sum += speed_of(row.blocks[k]);
+        if (!is_mobile(row.blocks[k].participant)) sum += speed_of(row.blocks[k]);
     return sum;
 }
 
@@ -169,19 +169,19 @@ void RowSystem::load_forces(const Wrenches& wrenches)
     for (std::size_t i = 0; i < members.size(); ++i)
     {
         double* g = equations_.load(i);
-        const std::uint32_t who = members[i].who.index;
-        if (members[i].who.facet == Facet::Body)
+        const std::uint32_t index = members[i].participant.index;
+        if (members[i].participant.facet == Facet::Body)
         {
-            const Quat& q = bodies.orientation[who];
-            const Vec3 w_B = rotate_back(q, bodies.angular_velocity[who]);
-            const Vec3 torque_B = rotate_back(q, wrenches.torque[who]) - cross(w_B, bodies.inertia_B[who] * w_B);
-            const Vec3& f = wrenches.force[who];
+            const Quat& q = bodies.orientation[index];
+            const Vec3 w_B = rotate_back(q, bodies.angular_velocity[index]);
+            const Vec3 torque_B = rotate_back(q, wrenches.torque[index]) - cross(w_B, bodies.inertia_B[index] * w_B);
+            const Vec3& f = wrenches.force[index];
             g[0] = f.x, g[1] = f.y, g[2] = f.z, g[3] = torque_B.x, g[4] = torque_B.y, g[5] = torque_B.z;
             continue;
         }
-        const ShaftTree* tree = graph_->tree_of(who);
+        const ShaftTree* tree = graph_->tree_of(index);
         if (!tree)
-            g[0] = wrenches.shaft_torque[who];
+            g[0] = wrenches.shaft_torque[index];
         else
             for (const ShaftNode& node : graph_->nodes(*tree)) g[0] += node.ratio * wrenches.shaft_torque[node.shaft];
     }
@@ -233,8 +233,9 @@ double RowSystem::speed_norm() const
 {
     double sum = 0;
     for (const RowEquations::Member& m : equations_.members())
-        sum += m.who.facet == Facet::Body ? 2 * host_->bodies.kinetic_energy(m.who.index)
-                                          : m.inertia * host_->shafts.speed[m.who.index] * host_->shafts.speed[m.who.index];
+        sum += m.participant.facet == Facet::Body
+                   ? 2 * host_->bodies.kinetic_energy(m.participant.index)
+                   : m.inertia * host_->shafts.speed[m.participant.index] * host_->shafts.speed[m.participant.index];
     return std::sqrt(sum);
 }
 
@@ -247,13 +248,14 @@ void RowSystem::add_reactions(Wrenches& wrenches) const
             const RowBlock& b = rows_[i].blocks[k];
             const bool geared = next < geared_.size() && geared_[next].row == i && geared_[next].block == k;
             const Geared* as_given = geared ? &geared_[next++] : nullptr;
-            if (!is_mobile(b.who)) continue;
-            if (b.who.facet == Facet::Body)
-                wrenches.force[b.who.index] += b.linear * lambda_[i], wrenches.torque[b.who.index] += b.angular * lambda_[i];
+            if (!is_mobile(b.participant)) continue;
+            if (b.participant.facet == Facet::Body)
+                wrenches.force[b.participant.index] += b.linear * lambda_[i],
+                    wrenches.torque[b.participant.index] += b.angular * lambda_[i];
             else if (as_given)
-                wrenches.shaft_torque[as_given->who.index] += as_given->coefficient * lambda_[i];
+                wrenches.shaft_torque[as_given->participant.index] += as_given->coefficient * lambda_[i];
             else
-                wrenches.shaft_torque[b.who.index] += b.angular.x * lambda_[i];
+                wrenches.shaft_torque[b.participant.index] += b.angular.x * lambda_[i];
         }
 }
 
@@ -261,10 +263,10 @@ void RowSystem::add_reactions(Wrenches& wrenches) const
 bool RowSystem::books(const ConstraintRow& row, const RowBook& book) const
 {
     const auto end = row.blocks.begin() + row.count;
-    const auto moved = std::find_if(row.blocks.begin(), end, [&](const RowBlock& b) { return is_mobile(b.who); });
+    const auto moved = std::find_if(row.blocks.begin(), end, [&](const RowBlock& b) { return is_mobile(b.participant); });
     if (moved == end) return false;
-    const auto& flags = moved->who.facet == Facet::Body ? book.bodies : book.shafts;
-    return flags.empty() || flags[moved->who.index] != 0;
+    const auto& flags = moved->participant.facet == Facet::Body ? book.bodies : book.shafts;
+    return flags.empty() || flags[moved->participant.index] != 0;
 }
 
 void RowSystem::account(const RowBook& book, double share) const
@@ -324,7 +326,7 @@ void RowSystem::keep_reactions()
         for (std::uint32_t i = piece.first; i < piece.first + piece.count && i < lambda_.size(); ++i)
         {
             const RowBlock& b = rows_[i].blocks[rows_[i].count - 1];
-            if (b.who != first.blocks[last].who) continue;
+            if (b.participant != first.blocks[last].participant) continue;
             r.force += b.linear * lambda_[i], r.torque += b.angular * lambda_[i];
         }
         // Report the torque on the shaft itself, not on the root of its train.

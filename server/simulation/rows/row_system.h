@@ -119,7 +119,7 @@ private:
     struct Geared
     {
         std::uint32_t row = 0, block = 0;
-        Ref who;
+        Ref participant;
         double coefficient = 0;
     };
 
@@ -155,7 +155,7 @@ private:
     bool positions_contradict() const;
     bool speeds_contradict(double dt) const;
     double speed_of_others(const ConstraintRow& row) const;
-    bool is_mobile(Ref who) const;
+    bool is_mobile(Ref participant) const;
     void count_redundant(ProjectionReport& report);
     void name_contradictory(std::span<const double> errors, ProjectionReport& report) const;
 

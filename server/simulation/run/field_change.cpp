@@ -41,13 +41,13 @@ void keep_motion(world::World& world, std::uint32_t component, const BodyMotion&
 Result<void> prepare_dependents(world::World& world, std::uint32_t component, std::set<std::uint32_t>& prepared)
 {
     if (world.component(component).facet != Facet::Shape) return {};
-    for (const std::uint32_t who : world.referrers(component))
+    for (const std::uint32_t referrer : world.referrers(component))
     {
-        const BodyMotion before = motion_of(world, who);
-        prepared.insert(who);
-        if (auto done = world.prepare(who); !done) return done;
-        keep_motion(world, who, before);
-        if (auto done = prepare_dependents(world, who, prepared); !done) return done;
+        const BodyMotion before = motion_of(world, referrer);
+        prepared.insert(referrer);
+        if (auto done = world.prepare(referrer); !done) return done;
+        keep_motion(world, referrer, before);
+        if (auto done = prepare_dependents(world, referrer, prepared); !done) return done;
     }
     return {};
 }

@@ -122,8 +122,8 @@ void CouplingWatch::emit(const char* kind, std::uint32_t component, std::string 
     events_->emit(std::move(e));
 }
 
-void CouplingWatch::tell(const world::World& world, const ShaftSystem& system, const CouplingReport& done, double time, EventSink& events,
-                         std::vector<std::uint8_t>& reported)
+void CouplingWatch::report(const world::World& world, const ShaftSystem& system, const CouplingReport& done, double time, EventSink& events,
+                           std::vector<std::uint8_t>& reported)
 {
     time_ = time, events_ = &events;
     report_conflict(world, done, reported);

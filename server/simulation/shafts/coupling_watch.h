@@ -33,8 +33,8 @@ public:
     /// command does not correct the ratio of two shafts are not watched.
     void rebuild(const world::World& world, const Schedule& schedule, const ConstraintGraph& graph, const ShaftDirectory& directory);
     /// To be called after the speeds were made consistent. `done`: the report of ShaftSystem::solve_speeds. `reported`: by component.
-    void tell(const world::World& world, const ShaftSystem& system, const CouplingReport& done, double time, EventSink& events,
-              std::vector<std::uint8_t>& reported);
+    void report(const world::World& world, const ShaftSystem& system, const CouplingReport& done, double time, EventSink& events,
+                std::vector<std::uint8_t>& reported);
 
 private:
     struct Fault

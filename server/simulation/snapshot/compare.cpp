@@ -264,28 +264,28 @@ private:
         return weight == Weight::State || (weight == Weight::Param && how_.params) || (weight == Weight::Output && how_.outputs) ||
                (weight == Weight::Ledger && how_.ledger);
     }
-    void add(const std::string& who, const std::string& field, std::string first, std::string second)
+    void add(const std::string& component, const std::string& field, std::string first, std::string second)
     {
-        if (!full()) out_.push_back({who, field, std::move(first), std::move(second)});
+        if (!full()) out_.push_back({component, field, std::move(first), std::move(second)});
     }
     static const Fact* find(const Facts& facts, const std::string& name)
     {
         const auto at = std::find_if(facts.begin(), facts.end(), [&](const Fact& f) { return f.name == name; });
         return at == facts.end() ? nullptr : &*at;
     }
-    void look(const std::string& who, const Facts& first, const Facts& second)
+    void look(const std::string& component, const Facts& first, const Facts& second)
     {
         for (const Fact& a : first)
         {
             if (!counts(a.weight)) continue;
             const Fact* b = find(second, a.name);
             if (!b)
-                add(who, a.name, model::format_value(a.value), "-");
+                add(component, a.name, model::format_value(a.value), "-");
             else if (!world::same_bits(a.value, b->value))
-                add(who, a.name, model::format_value(a.value), model::format_value(b->value));
+                add(component, a.name, model::format_value(a.value), model::format_value(b->value));
         }
         for (const Fact& b : second)
-            if (counts(b.weight) && !find(first, b.name)) add(who, b.name, "-", model::format_value(b.value));
+            if (counts(b.weight) && !find(first, b.name)) add(component, b.name, "-", model::format_value(b.value));
     }
 
     const Comparison& how_;

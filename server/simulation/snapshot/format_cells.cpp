@@ -127,8 +127,8 @@ void add_given(Cells& cells, const std::vector<const model::ComponentSpec*>& spe
 
 Result<void> find_places(Cells& cells)
 {
-    const NamedColumn* who = cells.section->find(kComponent);
-    const auto* rows = who ? std::get_if<std::vector<std::uint32_t>>(&who->data) : nullptr;
+    const NamedColumn* components = cells.section->find(kComponent);
+    const auto* rows = components ? std::get_if<std::vector<std::uint32_t>>(&components->data) : nullptr;
     if (!rows) return reason("the snapshot has no section '" + cells.section->name + "' with its components");
     for (std::size_t i = 0; i < rows->size(); ++i) cells.place[(*rows)[i]] = i;
     return {};

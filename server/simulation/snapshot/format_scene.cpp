@@ -94,10 +94,10 @@ public:
     }
 
 private:
-    void refuse(const std::string& who, const std::string& why)
+    void refuse(const std::string& component, const std::string& why)
     {
         constexpr std::size_t kMost = 100;
-        if (errors_.size() < kMost) errors_.push_back({{}, who, why});
+        if (errors_.size() < kMost) errors_.push_back({{}, component, why});
     }
 
     void parents(const model::ComponentSpec& c)

@@ -146,7 +146,7 @@ void History::thin()
     next_ = checkpoints_.back().time + interval_;
 }
 
-Result<History::WayBack> History::way_back(const Run& run, double time) const
+Result<History::RewindPlan> History::plan_rewind(const Run& run, double time) const
 {
     if (options_.interval <= 0) return reason("no history is kept: start plabd with --history SECONDS");
     const double half = 0.5 * run.clock.dt.seconds, now = run.clock.time();
@@ -157,7 +157,7 @@ Result<History::WayBack> History::way_back(const Run& run, double time) const
                       " s is before the earliest kept state of this run, t = " + model::format_real(earliest()) + " s");
     const auto after = std::find_if(checkpoints_.begin(), checkpoints_.end(), [&](const Point& p) { return p.time > time + half; });
     const Point& from = *(after - 1);
-    WayBack out{from.snapshot, {}};
+    RewindPlan out{from.snapshot, {}};
     for (const Asked& a : asked_)
         if (a.step >= from.step) out.requests.push_back(a);
     return out;

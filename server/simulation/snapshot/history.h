@@ -68,13 +68,13 @@ public:
         std::size_t bytes = 0;
     };
     /// How to reach an earlier step again: restore the checkpoint, then make steps and carry out the requests at theirs.
-    struct WayBack
+    struct RewindPlan
     {
         Snapshot from;
         std::vector<Asked> requests;  ///< since then, in the order of steps
     };
     /// The way back to a time of this run, s. Errors: no history is kept, the time is in the future or is not kept any more.
-    Result<WayBack> way_back(const Run& run, double time) const;
+    Result<RewindPlan> plan_rewind(const Run& run, double time) const;
     /// While an earlier time is computed again nothing is recorded.
     void suspend(bool is_rewinding) { is_rewinding_ = is_rewinding; }
     /// The run is at this step again: drops the checkpoints after it, and the requests at it or later.

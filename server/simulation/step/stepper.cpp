@@ -74,7 +74,7 @@ void Stepper::couple_speeds()
     StepContext context = step_.context();
     context.seed = step_.frame.seed;
     const CouplingReport done = speed_system_.solve_speeds(context, shafts, step_.work);
-    coupling_watch_.tell(step_.world, speed_system_, done, step_.frame.start_time, step_, step_.reported.contradictory);
+    coupling_watch_.report(step_.world, speed_system_, done, step_.frame.start_time, step_, step_.reported.contradictory);
 }
 
 void Stepper::advance_all() { advance_.advance_all(); }

@@ -169,9 +169,9 @@ Result<void> Transaction::apply_one(const RemoveOperation& op)
     const std::vector<std::string> going = subtree_of(run_->world().scene(), op.id);
     Errors errors;
     for (const std::string& id : going)
-        for (const std::uint32_t who : run_->world().referrers(run_->world().find(id)))
-            if (std::find(going.begin(), going.end(), run_->world().id_of(who)) == going.end())
-                errors.push_back({{}, id, "is still used by '" + run_->world().id_of(who) + "'"});
+        for (const std::uint32_t referrer : run_->world().referrers(run_->world().find(id)))
+            if (std::find(going.begin(), going.end(), run_->world().id_of(referrer)) == going.end())
+                errors.push_back({{}, id, "is still used by '" + run_->world().id_of(referrer) + "'"});
     if (!errors.empty()) return errors;
     for (const std::string& id : going)
     {

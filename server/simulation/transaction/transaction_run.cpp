@@ -40,7 +40,7 @@ std::size_t Transaction::held_points(std::uint32_t component) const
 
 void Transaction::report_contacts()
 {
-    const auto tell = [](SwapReport& report, std::size_t n, FieldTransfer transfer)
+    const auto report_points = [](SwapReport& report, std::size_t n, FieldTransfer transfer)
     {
         if (n > 0) report.fields.push_back({"contacts (" + std::to_string(n) + " points)", transfer});
     };
@@ -50,10 +50,10 @@ void Transaction::report_contacts()
         const std::uint32_t i = run_->world().find(report.id);
         if (i == kNoIndex) continue;
         const std::size_t converted = run_->stepper().forces().converted(i), held = held_points(i);
-        tell(report, converted, FieldTransfer::Converted);
+        report_points(report, converted, FieldTransfer::Converted);
         if (converted > 0) continue;
-        tell(report, held, FieldTransfer::Kept);
-        if (k < held_before_.size() && held_before_[k] > held) tell(report, held_before_[k] - held, FieldTransfer::Lost);
+        report_points(report, held, FieldTransfer::Kept);
+        if (k < held_before_.size() && held_before_[k] > held) report_points(report, held_before_[k] - held, FieldTransfer::Lost);
     }
 }
 

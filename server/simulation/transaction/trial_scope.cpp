@@ -65,7 +65,7 @@ void TrialScope::visit(std::uint32_t component)
         for (const Ref r : world_->participants(component, role)) (void)mark(r);
     }
     if (any) return;
-    for (const std::uint32_t who : world_->referrers(component)) visit(who);
+    for (const std::uint32_t referrer : world_->referrers(component)) visit(referrer);
 }
 
 bool TrialScope::holds(Ref object) const

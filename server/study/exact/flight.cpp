@@ -4,7 +4,7 @@
 // circles about axis 3 (else exchange 1 and 3):
 //   w1 = A1 cn, w2 = +-A2 sn, w3 = +-A3 dn,  tau' = sqrt((I3 - I2) b / (I1 I2 I3)),
 //   mc = (I3 - I1)(L^2 - 2 E I2) / ((I3 - I2) b).
-// The angular momentum stands still in W; about it the body precesses by phi' = L (I1 w1^2 + I2 w2^2)/(I1^2 w1^2 + I2^2 w2^2).
+// The angular momentum is constant in W; about it the body precesses by phi' = L (I1 w1^2 + I2 w2^2)/(I1^2 w1^2 + I2^2 w2^2).
 // Source: Landau and Lifshitz, Mechanics, section 37.
 #include <algorithm>
 #include <array>

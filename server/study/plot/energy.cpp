@@ -1,4 +1,4 @@
-// Energy over time, and what is made of all pictures of a study.
+// Energy over time, and the list of all pictures of a study.
 #include <algorithm>
 #include <cmath>
 

@@ -47,7 +47,7 @@ struct Case
     std::vector<Scene> scenes;  ///< of several, each figure is the worst, and the cost is the mean
     Sampling sampling = Sampling::Rate60;
     std::vector<Metric> metrics;
-    /// A figure per metric; not finite where the run failed in what the metric asks.
+    /// A figure per metric; not finite if the run failed in this respect.
     std::function<std::vector<double>(const Scene&, const Trace&)> measure;
     std::vector<Step> ladder;  ///< the peers' steps
     double cpu_limit = 60;     ///< s of processor time per run

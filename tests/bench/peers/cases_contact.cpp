@@ -13,7 +13,7 @@ namespace
 
 constexpr double kFailed = std::numeric_limits<double>::infinity();
 
-/// Chance that is the same on every machine: std's distributions are not.
+/// Random numbers that are the same on every machine: those of std's distributions are not.
 class Chance
 {
 public:
@@ -69,7 +69,7 @@ Case ball_case(const char* id, const char* title, const Scene& scene)
     {
         std::vector<double> f = measure_balls(s, t);
         if (elastic) return std::vector<double>{f[1], f[0]};
-        return std::vector<double>{f[0]};  // what plastic impacts take is no error
+        return std::vector<double>{f[0]};  // the energy that plastic impacts dissipate is not an error
     };
     if (!elastic) c.metrics.pop_back();
     return c;

@@ -29,7 +29,7 @@ Scene chain(JointKind kind, double duration)
 
 std::vector<double> measure_chain(const Scene& scene, const Trace& trace)
 {
-    double scale = 0;  // J: what the links would lose if the chain hung straight down
+    double scale = 0;  // J: the potential energy that the links would lose if the chain hung straight down
     for (int i = 0; i < kLinks; ++i) scale += 9.81 * kLink * (i + 0.5);
     double energy = 0, gap = 0;
     for (std::size_t k = 0; k < trace.size(); ++k)

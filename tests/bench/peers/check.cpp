@@ -20,7 +20,7 @@ struct Known
     double tolerance;  ///< relative
 };
 
-// Sources: measured beforehand with programs that share no code with this one; the machine plays no part in them.
+// Sources: measured beforehand with programs that share no code with this one; the figures do not depend on the machine.
 const std::vector<Known>& known_figures()
 {
     static const std::vector<Known> table{

@@ -14,8 +14,8 @@ struct Checked
     bool good = false;
 };
 
-/// Reaches known figures that do not depend on the machine: closed forms of first-order methods, and what the peers showed in
-/// measurements made with other programs. Also that the reference of case a does not change when its step is halved.
+/// Checks known figures that do not depend on the machine: closed forms of first-order methods, and results of the peers in
+/// measurements made with other programs. Also checks that the reference of case a does not change when its step is halved.
 std::vector<Checked> check_adapters();
 
 }  // namespace plab::peers

@@ -1,4 +1,4 @@
-/// What the comparison asks of an engine: build a scene, step it, tell where the bodies are.
+/// What the comparison requires of an engine: build a scene, step it, return the states of the bodies.
 #pragma once
 
 #include <functional>
@@ -20,7 +20,7 @@ struct BodyState
     Quat orientation;       ///< q_WB
     Vec3 velocity;          ///< m/s
     Vec3 angular_velocity;  ///< in W, rad/s
-    /// rad about the body's hinge since the start, where the engine counts turns; NaN: to be unwound from the orientation.
+    /// rad about the body's hinge since the start, if the engine counts turns; NaN: to be unwound from the orientation.
     double turned = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -47,8 +47,8 @@ struct Run
 
 struct Case;
 
-/// The runs that an engine offers for a case, each with settings that its users would choose for it. What it
-/// leaves out and why goes to `notes`.
+/// The runs that an engine offers for a case, each with settings that its users would choose for it. `notes` receives what it
+/// leaves out, and why.
 using Adapter = std::vector<Run> (*)(const Case& which, std::vector<std::string>& notes);
 
 std::vector<Run> ode_runs(const Case& which, std::vector<std::string>& notes);

@@ -77,7 +77,7 @@ private:
             place_of(p), look.shape, filled ? 5 : 3.5, Ink::series(look.series), filled,
             p.run.label() + ": " + figures::short_number(p.figures[metric_]) + " at " + figures::short_number(p.cost) + " ms/s");
     }
-    /// A staircase: the least error that is to be had at no more cost.
+    /// A staircase: the least error available at no more cost.
     void draw_front(bool of_plab, const Ink& ink)
     {
         const auto kept = front(*points_, metric_, of_plab);
@@ -94,7 +94,7 @@ private:
         for (const std::size_t i : kept) mark((*points_)[i], true);
         name_points(kept, of_plab);
     }
-    /// Each setting once, where the front first has it, unless the name would stand on another.
+    /// Each setting once, at its first point on the front, unless the name would overlap another.
     void name_points(const std::vector<std::size_t>& kept, bool of_plab)
     {
         std::string last;

@@ -53,7 +53,7 @@ std::vector<std::string> split(const std::string& text)
     return out;
 }
 
-/// Takes the option `name` with its value; false if it is none of ours.
+/// Takes the option `name` with its value; false if it is not an option of this program.
 bool take(Options& o, std::string_view name, const std::string& value)
 {
     if (name == "--case") return o.cases = split(value), true;
@@ -122,7 +122,7 @@ int repetitions_for(const Measurement& first, const Case& which, int wanted)
     return seconds > 2 ? std::min(wanted, 3) : wanted;
 }
 
-void tell(const Case& which, const Point& p)
+void print_point(const Case& which, const Point& p)
 {
     if (p.outcome != Outcome::Done)
         std::printf("%-12s %-44s %s: %s\n", which.id.c_str(), p.run.label().c_str(), name_of(p.outcome), p.why.c_str());
@@ -146,7 +146,7 @@ CaseResult compare(const Case& which, const Options& options)
         result.points.push_back({run, m.outcome, m.why, m.figures, m.cost, m.cost, m.memory, 1});
         costs.push_back({m.cost});
         wanted.push_back(repetitions_for(m, which, options.repeat));
-        tell(which, result.points.back());
+        print_point(which, result.points.back());
     }
     for (int round = 1; round < options.repeat; ++round)
         for (std::size_t i = 0; i < result.points.size(); ++i)
@@ -183,7 +183,7 @@ bool write_results(const std::string& folder, const std::vector<CaseResult>& res
     return good;
 }
 
-int tell_checks()
+int print_checks()
 {
     bool good = true;
     std::printf("| run | figure | known | here | |\n|---|---|---:|---:|---|\n");
@@ -206,7 +206,7 @@ int main(int argc, char** argv)
         std::fputs(kUsage, options.help ? stdout : stderr);
         return options.help ? 0 : 2;
     }
-    if (options.check) return tell_checks();
+    if (options.check) return print_checks();
     std::vector<CaseResult> results;
     for (Case& which : make_cases(options.cases))
     {

@@ -28,7 +28,7 @@ double seconds_of(clockid_t clock)
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Sums what passes between start and stop, by both clocks.
+/// Sums the times between start and stop, by both clocks.
 class Stopwatch
 {
 public:
@@ -193,7 +193,7 @@ void work(const Case& which, const Run& run, Look look, Outbox& out)
     {
         work(which, run, look, out);
     }
-    catch (const std::exception& e)  // Simbody reports a failed step so
+    catch (const std::exception& e)  // Simbody's report of a failed step
     {
         out.say("threw " + std::string(e.what(), 0, std::string(e.what()).find('\n')));
     }

@@ -12,7 +12,7 @@ namespace plab::peers
 enum class Outcome
 {
     Done,
-    Refused,  ///< the engine did not take the scene
+    Refused,  ///< the engine did not accept the scene
     Cut,      ///< took longer than the case allows
     Crashed,
 };
@@ -22,9 +22,9 @@ struct Measurement
 {
     Outcome outcome = Outcome::Done;
     std::string why;              ///< unless done
-    std::vector<double> figures;  ///< per metric of the case, worst of its scenes; empty unless asked for
+    std::vector<double> figures;  ///< per metric of the case, worst of its scenes; empty unless requested
     double cost = 0;              ///< ms of processor time per simulated second, mean of the case's scenes
-    double memory = 0;            ///< MB, largest resident set of the process beyond what it was born with
+    double memory = 0;            ///< MB, largest resident set of the process beyond that at its start
 };
 
 enum class Look

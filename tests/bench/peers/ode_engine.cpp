@@ -143,7 +143,7 @@ private:
         const JointSpec& b = scene_.joints[static_cast<std::size_t>(spec.second)];
         const dJointID joint = dJointCreateTransmission(world_, nullptr);
         dJointAttach(joint, body(a.child), body(b.child));
-        // Wheels side by side turn against one another, a chain's turn alike; the ratio itself has no sign.
+        // Wheels side by side turn in opposite directions, those of a chain in the same one; the ratio itself has no sign.
         dJointSetTransmissionMode(joint, spec.ratio < 0 ? dTransmissionParallelAxes : dTransmissionChainDrive);
         dJointSetTransmissionAnchor1(joint, a.anchor.x, a.anchor.y, a.anchor.z);
         dJointSetTransmissionAnchor2(joint, b.anchor.x, b.anchor.y, b.anchor.z);
@@ -215,7 +215,7 @@ std::vector<Run> ode_runs(const Case& which, std::vector<std::string>& notes)
         offered.erase(offered.begin());
     }
     const bool free = !which.scenes[0].ground && which.scenes[0].joints.empty();
-    if (free) offered.resize(1);  // nothing to solve: all do the same
+    if (free) offered.resize(1);  // nothing to solve: all give the same result
     std::vector<Run> runs;
     for (const Named& o : offered)
         for (const Step& step : which.ladder)

@@ -11,7 +11,7 @@ namespace
 
 using Ladder = std::vector<Step>;
 
-/// A algorithm with the steps that make sense for it.
+/// An algorithm with suitable steps.
 struct Entry
 {
     Algorithm algorithm;
@@ -37,7 +37,7 @@ Algorithm smooth(const std::string& name, const std::string& attributes)
 }
 Algorithm smooth(const std::string& name) { return smooth(name, solver(name)); }
 
-/// Methods that choose their own steps, at several tolerances, looked at as the case's samples ask.
+/// Methods that choose their own steps, at several tolerances, sampled at the times of the case.
 void add_adaptive(Entries& out, const std::string& name, const Step& look)
 {
     for (const char* tolerance : {"1e-3", "1e-5", "1e-7", "1e-9", "1e-11"})
@@ -62,7 +62,7 @@ Entries flight_algorithms()
     return out;
 }
 
-/// Impacts as events: a solver between them, a resolution that finds them, impulses that answer them.
+/// Impacts as events: a solver between them, a resolution that locates them, a response by impulses.
 Algorithm by_events(const std::string& solver_name, const std::string& resolution, const std::string& more = "")
 {
     Algorithm r = smooth(solver_name + "+" + resolution, solver(solver_name));
@@ -71,7 +71,7 @@ Algorithm by_events(const std::string& solver_name, const std::string& resolutio
     return r;
 }
 
-/// Contacts as rows that a manager holds.
+/// Contacts as rows that a manager satisfies.
 Algorithm by_rows(const std::string& manager, const std::string& resolution, const std::string& more = "", const std::string& label = "")
 {
     Algorithm r = smooth(manager + (label.empty() ? "" : " " + label) + "+" + resolution, solver("RungeKutta4"));
@@ -201,7 +201,7 @@ Entries algorithms_for(const Case& which)
     }
 }
 
-/// Whether this build has what the algorithm names; if not, `notes` says what it lacks.
+/// Whether this build has the types that the algorithm names; if not, `notes` receives what is missing.
 bool is_there(const Entry& entry, const Case& which, std::set<std::string>& reported, std::vector<std::string>& notes)
 {
     const auto missing = missing_types(blueprint_text(which.scenes[0], entry.algorithm, {1, 60}));

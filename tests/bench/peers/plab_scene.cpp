@@ -61,7 +61,7 @@ void add_bodies(const Scene& scene, std::string& out)
     }
 }
 
-/// Half-spaces look along +z of their frame.
+/// The normal of a half-space is +z of its frame.
 void add_half_spaces(const Scene& scene, std::string& out)
 {
     if (!scene.ground) return;
@@ -130,7 +130,7 @@ void add_joints(const Scene& scene, const Algorithm& algorithm, std::string& out
     {
         const JointSpec& j = scene.joints[i];
         if (j.stiffness > 0) add_spring(scene, j, algorithm, out);
-        if (j.stiffness > 0 && j.parent != kWorld) continue;  // two free bodies: nothing pushes them off their line
+        if (j.stiffness > 0 && j.parent != kWorld) continue;  // two free bodies: no force pushes them off their line
         const std::string place = attribute("anchor", text(j.anchor)) + (j.kind == JointKind::Ball ? "" : attribute("axis", text(j.axis)));
         out += "<component id=\"" + id_of('j', i) + "\" type=\"" + type_of(j.kind) + "\"" + pair_of(j) + place + "/>\n";
     }

@@ -8,7 +8,7 @@
 namespace plab::peers
 {
 
-/// One choice of algorithms: fragments that stand in the blueprint.
+/// One choice of algorithms: fragments of the blueprint.
 struct Algorithm
 {
     std::string name;      ///< as in the results

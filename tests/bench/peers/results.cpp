@@ -13,7 +13,7 @@ namespace
 
 /// An error has to be less than this share of the one before for a point to be ahead: settings that do the same differ by rounding.
 constexpr double kGain = 0.995;
-/// A figure that is no answer any more. Not a number compares as false as well.
+/// A figure too large to count as a result. NaN compares as false as well.
 constexpr double kBlownUp = 1e6;
 
 /// For machines.

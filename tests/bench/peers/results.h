@@ -1,4 +1,4 @@
-/// What was measured, and how it is written down.
+/// The measurements and their output.
 #pragma once
 
 #include <string>
@@ -40,7 +40,7 @@ constexpr double kRounding = 1e-15;
 std::string csv_of(const std::vector<CaseResult>& results);
 std::string json_of(const std::vector<CaseResult>& results);
 
-/// Indices of the points that no other beats in both cost and error, cheapest first; equal errors (half a percent) count once.
+/// Indices of the points that no other point beats in both cost and error, cheapest first; equal errors (half a percent) count once.
 std::vector<std::size_t> front(const std::vector<Point>& points, std::size_t metric, bool of_plab);
 
 /// A table with one line per case and metric: at how many points of the peers' front pLab leads, and where it lags.

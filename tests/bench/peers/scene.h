@@ -9,7 +9,7 @@
 namespace plab::peers
 {
 
-/// Length of a step as a fraction, so that pLab's exact time and the peers' doubles mean the same.
+/// Length of a step as a fraction, so that pLab's exact time and the peers' doubles agree.
 struct Step
 {
     int num = 1;  ///< s
@@ -64,7 +64,7 @@ struct JointSpec
     double rest = 0;       ///< m
 };
 
-/// The turning of one hinge's child is `ratio` times that of another's. Both hinges are on the world.
+/// The rotation of one hinge's child is `ratio` times that of another's. Both hinges are on the world.
 struct GearSpec
 {
     int first = 0, second = 1;  ///< joints

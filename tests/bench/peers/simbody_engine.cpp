@@ -1,6 +1,6 @@
 // Simbody 3.7 as Debian builds it: double precision, reduced coordinates.
 //
-// Settings: `rkm` is Runge-Kutta-Merson with fixed steps; with a tolerance it chooses its own steps (setAccuracy) and is looked at
+// Settings: `rkm` is Runge-Kutta-Merson with fixed steps; with a tolerance it chooses its own steps (setAccuracy) and is sampled
 // 60 times per second without interpolation; `cpodes` is CVODE's BDF, for stiff scenes. Contact is left out: Simbody's is compliant,
 // which is another model.
 #include <cmath>

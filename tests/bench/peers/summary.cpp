@@ -1,4 +1,4 @@
-/// pLab beside its peers, in words: who leads at which cost.
+/// pLab beside its peers, in words: which of them is the more accurate at which cost.
 
 #include <cmath>
 #include <cstdio>
@@ -26,7 +26,7 @@ std::string setting_of(const Point& p)
     return p.run.settings + (p.run.control.empty() ? " dt " + p.run.step.text() : " tol " + p.run.control);
 }
 
-/// A point of the peers' front and what pLab has for it.
+/// A point of the peers' front and pLab's best result for it.
 struct Standing
 {
     const Point* peer = nullptr;
@@ -118,7 +118,7 @@ std::string overview_line(const CaseResult& result, std::size_t metric)
 }
 
 /// One line per settings and reason.
-void tell_failures(const CaseResult& result, std::string& out)
+void report_failures(const CaseResult& result, std::string& out)
 {
     for (const std::string& note : result.notes) out += "- " + note + "\n";
     std::vector<std::pair<std::string, std::string>> reported;  // line, steps
@@ -154,7 +154,7 @@ std::string summary_of(const std::vector<CaseResult>& results)
         out += "\n## Case " + r.which.id + "\n";
         for (std::size_t m = 0; m < r.which.metrics.size(); ++m) summarize(r, m, out);
         std::string failures;
-        tell_failures(r, failures);
+        report_failures(r, failures);
         if (!failures.empty()) out += "\nLeft out or failed:\n\n" + failures;
     }
     return out;

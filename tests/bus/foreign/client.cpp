@@ -1,5 +1,5 @@
-// A client by another vendor (eProsima Fast DDS) that has nothing of pLab but idl/plab.idl: reads frames, exchanges an
-// interaction and gets the reply. It prints what it saw, one "name value" a line.
+// A client of another vendor (eProsima Fast DDS) that uses nothing of pLab but idl/plab.idl: it reads frames, exchanges an
+// interaction and gets the reply. It prints its results, one "name value" per line.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <plabPubSubTypes.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -28,7 +28,7 @@ namespace dds = eprosima::fastdds::dds;
 using Clock = std::chrono::steady_clock;
 using namespace plab::v2;
 
-/// Loopback, UDP over IPv4, no multicast: what the server speaks. Peers are asked at the ports of participants 0 to 60.
+/// Loopback, UDP over IPv4, no multicast, like the server. Peers are contacted at the ports of participants 0 to 60.
 dds::DomainParticipantQos loopback(std::uint32_t domain)
 {
     dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
@@ -83,7 +83,7 @@ public:
         dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
         qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
         if (late_too) qos.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
-        // Samples are as large as the scene: nothing is set aside for the largest one.
+        // Samples are as large as the scene: no memory is reserved for the largest one.
         qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
         return subscriber_->create_datareader(made<Type>(topic), qos);
     }
@@ -112,7 +112,7 @@ private:
     dds::Subscriber* subscriber_;
 };
 
-/// Samples that have come, one after the other.
+/// Received samples, one after the other.
 template <class T, class Handle>
 void take(dds::DataReader* reader, Handle handle)
 {
@@ -188,7 +188,7 @@ int run(std::uint32_t domain, const std::string& server, const std::string& targ
             answered = true, done = r.outcome() == "done";
             if (!r.reasons().empty()) why = r.reasons()[0];
         };
-        // As every client does: again until there is an answer; the number makes that harmless.
+        // Like every client, it repeats the request until there is an answer; the number makes that harmless.
         for (int i = 0; i < 5 && !answered; ++i)
         {
             requests->write(const_cast<Request*>(&request));

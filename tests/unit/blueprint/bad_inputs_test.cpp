@@ -1,5 +1,5 @@
-/// The table of bad inputs: bad_inputs.txt holds blueprints and, behind each, all errors that reading and compiling it
-/// must give, to the letter.
+/// The table of bad inputs: bad_inputs.txt holds blueprints and, after each, all errors that reading and compiling it must report,
+/// word for word.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -18,10 +18,10 @@ struct BadInput
 {
     int line = 0;  ///< in the table
     std::string text;
-    std::string errors;  ///< one a line
+    std::string errors;  ///< one per line
 };
 
-/// Cases are separated by empty lines. Lines that begin with "-> " are the errors, with "# " words for readers; a case
+/// Cases are separated by empty lines. Lines that begin with "-> " are the errors, those with "# " are comments; a case
 /// that begins with "whole document:" is one, others are put into a <plab>, in whose second line they begin.
 std::vector<BadInput> read_table(const std::string& path)
 {
@@ -68,7 +68,7 @@ std::string errors_of(const std::string& text)
 
 }  // namespace
 
-TEST_CASE("each bad input is refused with its own words and place")
+TEST_CASE("each bad input is refused with its own message and position")
 {
     const std::vector<BadInput> table = read_table(PLAB_SOURCE_DIR "/tests/unit/blueprint/bad_inputs.txt");
     CHECK(table.size() >= 80);
@@ -94,7 +94,7 @@ TEST_CASE("the bad parts of one scene are all reported at once, in document orde
           "'solver')\n");
 }
 
-TEST_CASE("a fragment may not redefine what is there, nor change the scene's settings")
+TEST_CASE("a fragment may not redefine existing components or change the scene's settings")
 {
     test::SampleTypes types;
     const auto scene = blueprint::read_blueprint("<component id='a' type='State/Static'/>", "scene.xml");

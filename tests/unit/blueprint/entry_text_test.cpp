@@ -32,7 +32,7 @@ TEST_CASE("truth values, numbers, words and quoted texts")
     CHECK(*parse_entry("\"\"") == EntryValue(std::string()));
 }
 
-TEST_CASE("what looks like a number and is none is not taken for a text")
+TEST_CASE("text that looks like a number but is not one is refused as text")
 {
     CHECK(refusal("") == "needs a value; \"\" is the empty text");
     CHECK(refusal("1,5") ==
@@ -46,7 +46,7 @@ TEST_CASE("what looks like a number and is none is not taken for a text")
     CHECK(refusal("\"") == "the quote of the text '\"' is not closed");
 }
 
-TEST_CASE("what is written reads back the same")
+TEST_CASE("written values read back the same")
 {
     for (const EntryValue& v : {EntryValue(true), EntryValue(false), EntryValue(0.1), EntryValue(-0.0), EntryValue(5e-324),
                                 EntryValue(1.7976931348623157e308), EntryValue(std::string()), EntryValue(std::string("true")),

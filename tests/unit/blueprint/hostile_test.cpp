@@ -1,4 +1,4 @@
-/// Input that wants to break the reader: each ends in an error with its own words, quickly.
+/// Input that is made to break the reader: each case quickly ends in an error with its own message.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -37,7 +37,7 @@ double seconds_for(const std::string& text)
 
 }  // namespace
 
-TEST_CASE("a billion laughs stop at the first one")
+TEST_CASE("the billion-laughs attack stops at the first entity")
 {
     std::string text = "<?xml version='1.0'?>\n<!DOCTYPE lolz [\n<!ENTITY lol 'lol'>\n";
     for (int i = 1; i < 10; ++i)
@@ -122,7 +122,7 @@ TEST_CASE("sizes of text, of values, of the whole, and the number of elements")
     CHECK(result.error().text() == "h.xml:1:24: more than 2 elements");
 }
 
-TEST_CASE("encodings other than UTF-8 are refused where they show")
+TEST_CASE("encodings other than UTF-8 are refused where they are declared")
 {
     CHECK(refusal("<?xml version='1.0' encoding='ISO-8859-1'?><plab version='1'/>") ==
           "h.xml:1:1: <?xml?>: encoding 'ISO-8859-1' is not supported; a blueprint must be UTF-8");
@@ -131,7 +131,7 @@ TEST_CASE("encodings other than UTF-8 are refused where they show")
     CHECK(refusal("\xEF\xBB\xBF<plab version='1'/>") == "accepted");
 }
 
-TEST_CASE("bytes that are no UTF-8")
+TEST_CASE("bytes that are not UTF-8")
 {
     const auto with = [](std::string_view bytes) { return refusal("<plab version='1'>\n<!--a" + std::string(bytes) + "--></plab>"); };
     const std::string at = "h.xml:2:6: the text is not valid UTF-8";
@@ -154,7 +154,7 @@ TEST_CASE("NUL and other characters that XML does not have")
     CHECK(refusal("<plab version='1'>&#0;</plab>") == "h.xml:1:19: not well-formed XML: reference to invalid character number");
 }
 
-TEST_CASE("torn XML")
+TEST_CASE("incomplete XML")
 {
     CHECK(refusal("") == "h.xml:1:1: not well-formed XML: the document has no elements");
     CHECK(refusal("<plab version='1'>\n<component>\n") == "h.xml:3:1: not well-formed XML: <component> of line 2 is never closed");
@@ -166,7 +166,7 @@ TEST_CASE("torn XML")
     CHECK(refusal("<plab version='1'><![CDATA[") == "h.xml:1:28: not well-formed XML: unclosed CDATA section");
 }
 
-TEST_CASE("a document torn at any byte or with any byte changed is answered, not suffered")
+TEST_CASE("a document cut at any byte or with any byte changed gives a result or an error")
 {
     const std::string good =
         "<?xml version='1.0'?><plab version='1'><scene dt='1/60'/><component id='m'><MESH><P ID='1'>0,0,0</P><P "
@@ -187,7 +187,7 @@ TEST_CASE("a document torn at any byte or with any byte changed is answered, not
         }
 }
 
-TEST_CASE("large and strange input is answered quickly")
+TEST_CASE("large and unusual input is handled quickly")
 {
     CHECK(seconds_for("<plab version='1'>" + repeated("<x/>", 100'000) + "</plab>") < kQuickly);
     CHECK(seconds_for(repeated("<?x?>", 1'000'000)) < kQuickly);

@@ -1,4 +1,4 @@
-/// The paper's listings, made whole in scenes/paper: what they must say once they are read.
+/// The paper's listings, completed in scenes/paper: what they must contain once they are read.
 #include <doctest/doctest.h>
 
 #include "blueprint/reader.h"

@@ -13,7 +13,7 @@ using blueprint::read_blueprint_file;
 namespace
 {
 
-/// The blueprint, which the test says is good.
+/// The blueprint, which must be free of errors.
 model::Blueprint read(const std::string& text)
 {
     auto result = read_blueprint(text, "s.xml");
@@ -31,7 +31,7 @@ std::string first_error(const std::string& text)
 
 }  // namespace
 
-TEST_CASE("an empty scene is a scene")
+TEST_CASE("an empty scene is valid")
 {
     const auto b = read("<plab version=\"1\"/>");
     CHECK(b.file == "s.xml");
@@ -39,7 +39,7 @@ TEST_CASE("an empty scene is a scene")
     CHECK(place(b.where) == "s.xml:1:1");
 }
 
-TEST_CASE("components keep attributes, order, nesting and places")
+TEST_CASE("components keep attributes, order, nesting and positions in the text")
 {
     const auto b = read(
         "<?xml version='1.0' encoding='utf-8'?>\n"
@@ -110,7 +110,7 @@ TEST_CASE("states are gathered into one parameter with entries")
     CHECK(p[1].entries == Entries{{"x", -1500.0}});
 }
 
-TEST_CASE("text of code is kept to the letter")
+TEST_CASE("text of code is kept literally")
 {
     const auto b = read(
         "<plab version='1'><component id='s'><param name='code'>\n  if a &lt; b then <![CDATA[x = a < b & "
@@ -136,7 +136,7 @@ TEST_CASE("figure 2 and 4: exported commands, composites and stage lists")
     CHECK(commands[1].children[1].children.empty());
 }
 
-TEST_CASE("figure 6: parameters that follow a command are that command's")
+TEST_CASE("figure 6: parameters that follow a command belong to that command")
 {
     const auto b = read(
         "<plab version='1'><component id='c'><command name='C/Simulation'><command name='Stage/Step'>\n"
@@ -226,7 +226,7 @@ TEST_CASE("very many errors are counted, not listed")
     CHECK(result.errors().back().text() == "s.xml: 150 more errors are not shown");
 }
 
-TEST_CASE("files: read, missing, a folder")
+TEST_CASE("files: one that is read, a missing one, a folder")
 {
     const std::string path = (std::filesystem::temp_directory_path() / "plab_reader_test.xml").string();
     std::ofstream(path) << "<plab version='1'>\n<component id='f'/></plab>";
@@ -244,7 +244,7 @@ TEST_CASE("files: read, missing, a folder")
     CHECK(folder.error().reason == "cannot be read: Is a directory");
 }
 
-TEST_CASE("misplaced words are told where they belong")
+TEST_CASE("for misplaced words the message says where they belong")
 {
     const auto in_component = [](const std::string& inner)
     { return first_error("<plab version='1'><component id='a'>" + inner + "</component></plab>"); };

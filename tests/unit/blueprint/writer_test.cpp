@@ -24,8 +24,7 @@ SceneSpec load(const std::string& text)
     return scene.take();
 }
 
-/// Commands that take part, in the order of their declaration. Those that always run (Init) count where they are
-/// listed.
+/// Commands that are selected, in the order of their declaration. Those that always run (Init) count where they are listed.
 std::vector<std::string> active_commands(const ComponentSpec& c, test::SampleTypes& types)
 {
     std::vector<std::string> out;
@@ -85,7 +84,7 @@ void check_same(const SceneSpec& a, const SceneSpec& b)
     }
 }
 
-/// The long form of a scene, after checking that it means the same and is its own long form.
+/// The long form of a scene, after checking that it is equivalent and is its own long form.
 std::string round_trip(const std::string& text)
 {
     test::SampleTypes types;
@@ -139,7 +138,7 @@ TEST_CASE("generated components, defaults of roles and commands are written out"
     CHECK(!contains(text, "Shape/Prepare"));
 }
 
-TEST_CASE("numbers keep their bits")
+TEST_CASE("numbers are written without loss of bits")
 {
     round_trip(
         in_plab("<scene dt='0.0123456789' seed='18446744073709551615'><camera id='c' position='0.1 0.2 0.3' field_of_view='33 "
@@ -177,7 +176,7 @@ TEST_CASE("members whose list would read as another id are written one by one")
     CHECK(contains(text, "<compref>b</compref>"));
 }
 
-TEST_CASE("texts and entries: code to the letter, quotes, line ends")
+TEST_CASE("texts and entries: literal code, quotes, line ends")
 {
     round_trip(
         in_plab("<component id='s' type='Script/Lua'><param name='code'>\n  if a &lt; b and c > d then\r\n\tx = ']]&gt;' end "
@@ -198,7 +197,7 @@ TEST_CASE("meshes are written as XGL")
     CHECK(!contains(round_trip(in_plab("<component id='m' type='Shape/Mesh' vertices='0 0' triangles='1'/>")), "<MESH>"));
 }
 
-TEST_CASE("a simulation command that leaves commands out stays so")
+TEST_CASE("a simulation command that leaves commands out still does so")
 {
     const std::string objects =
         "<component id='b'><component id='b.state' type='State/RigidBody'>"
@@ -248,7 +247,7 @@ TEST_CASE("characters that XML cannot hold are replaced, the others escaped")
     CHECK(blueprint::escape_text(std::string("x\0y\x1f", 4)) == "x\xEF\xBF\xBDy\xEF\xBF\xBD");
 }
 
-TEST_CASE("the reference manual has every type with fields, roles, commands and facts")
+TEST_CASE("the reference manual has every type with fields, roles, commands and properties")
 {
     test::SampleTypes types;
     const std::string manual = blueprint::write_reference(types);
@@ -266,7 +265,7 @@ TEST_CASE("the reference manual has every type with fields, roles, commands and 
     CHECK(contains(manual, "- exchangeable within: `State/Body`\n"));
 }
 
-TEST_CASE("an id as long as ids may be")
+TEST_CASE("an id of the largest length")
 {
     const std::string id(200, 'x');
     CHECK(contains(round_trip(in_plab("<component id='" + id + "' type='State/Static'/>")), "<command name=\"Simulation\">"));

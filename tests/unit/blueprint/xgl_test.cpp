@@ -44,7 +44,7 @@ TEST_CASE("a tetrahedron: points in file order, triangles counted from 0")
     CHECK(component.values[1].value == Value(Integers{0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2}));
 }
 
-TEST_CASE("order of elements, names of points and looks do not matter")
+TEST_CASE("order of elements, names of points and appearance do not matter")
 {
     const auto result = mesh(
         "<MAT ID='0'><AMB>.1,.1,.1</AMB></MAT><SURFACE/><EXT_tool>x</EXT_tool><N ID='7'>0,0,1</N><TC ID='7'>0,0</TC>"
@@ -83,7 +83,7 @@ TEST_CASE("bad coordinates")
     }
 }
 
-TEST_CASE("a bad point is blamed once, not at each face")
+TEST_CASE("a bad point is reported once, not at each face")
 {
     const auto result = mesh("<P ID='1'>0 0 0</P><P ID='2'>1,0,0</P><P ID='3'>0,1,0</P>" + face("1", "2", "3") + face("3", "2", "1"));
     REQUIRE(!result.ok());
@@ -98,7 +98,7 @@ TEST_CASE("a second mesh in a component is refused")
     CHECK(result.error().text() == "m.xml:8:1: <MESH>: the component has its vertices already");
 }
 
-TEST_CASE("what is written reads back to the same bits")
+TEST_CASE("written meshes read back to the same bits")
 {
     const Reals vertices{0.1, -0.0, 1e-300, 1.0 / 3, 12345678.901234567, -2e17, 5, 6, 7, 8, 9, 10};
     const Integers triangles{0, 1, 2, 3, 2, 1};
@@ -111,7 +111,7 @@ TEST_CASE("what is written reads back to the same bits")
     CHECK(back->components[0].values[1].value == Value(triangles));
 }
 
-TEST_CASE("lists that are no mesh are known")
+TEST_CASE("lists that are not a mesh are recognised")
 {
     const Reals points{0, 0, 0, 1, 0, 0, 0, 1, 0};
     CHECK(blueprint::is_xgl_mesh(points, {0, 1, 2}));

@@ -1,4 +1,4 @@
-// Requests before and after the step loop: form, exactly once, replies that do not go out at once. No DDS here.
+// Requests before and after the step loop: form, exactly once, replies that are not sent at once. No DDS here.
 #include "bus/process/outbox.h"
 #include "bus/process/request_read.h"
 #include "bus/request_book.h"
@@ -23,9 +23,9 @@ publish::Answer answer(const publish::ClientId& id, std::uint64_t number, Tick s
     return a;
 }
 
-RequestBook::Decision open(RequestBook& book, std::uint16_t who, std::uint64_t number, const RequestBook::Load& load = {})
+RequestBook::Decision open(RequestBook& book, std::uint16_t client_number, std::uint64_t number, const RequestBook::Load& load = {})
 {
-    return book.open(client(who), number, load, std::nullopt);
+    return book.open(client(client_number), number, load, std::nullopt);
 }
 
 constexpr RequestBook::Load kFar{.names_step = true}, kShutdown{.shutdown = true};
@@ -48,12 +48,12 @@ struct RawRequest
 
 }  // namespace
 
-TEST_CASE("a request is new once: under way it is waited for, answered it is answered again")
+TEST_CASE("a request is new once: while it is carried out its answer is awaited, afterwards the answer is repeated")
 {
     RequestBook book({});
     CHECK(open(book, 1, 1).verdict == Verdict::New);
     CHECK(open(book, 1, 1).verdict == Verdict::Waiting);
-    CHECK(open(book, 2, 1).verdict == Verdict::New);  // another client's first
+    CHECK(open(book, 2, 1).verdict == Verdict::New);  // the first one of another client
     CHECK(book.waiting() == 2);
     CHECK(book.close(answer(client(1), 1, 77)));
     CHECK(book.waiting() == 1);
@@ -65,7 +65,7 @@ TEST_CASE("a request is new once: under way it is waited for, answered it is ans
     CHECK_FALSE(book.close(answer(client(9), 1)));  // never asked
 }
 
-TEST_CASE("numbers may leave gaps but must rise")
+TEST_CASE("numbers may leave gaps but must increase")
 {
     RequestBook book({});
     CHECK(open(book, 1, 5).verdict == Verdict::New);
@@ -92,7 +92,7 @@ TEST_CASE("the last answers are kept, and a request whose answer is forgotten is
     CHECK(why(forgotten).find("its reply is no longer kept") != std::string::npos);
 }
 
-TEST_CASE("a refusal is an answer like any other: the same request does not slip in later")
+TEST_CASE("a refusal is an answer like any other: the same request is not accepted later")
 {
     RequestBook book({.waiting = 1});
     CHECK(open(book, 1, 1).verdict == Verdict::New);
@@ -110,7 +110,7 @@ TEST_CASE("a refusal is an answer like any other: the same request does not slip
     CHECK(why(again) == "bad");
 }
 
-TEST_CASE("one client has a share of those that may wait, and has it back when they are answered")
+TEST_CASE("one client has a share of the requests that may wait, and regains it when they are answered")
 {
     RequestBook book({.waiting_per_client = 2});
     CHECK(open(book, 1, 1, kFar).verdict == Verdict::New);
@@ -127,7 +127,8 @@ TEST_CASE("one client has a share of those that may wait, and has it back when t
 TEST_CASE("requests that name a step leave room for those that do not")
 {
     RequestBook book({.waiting = 5, .kept_for_next_step = 2});
-    for (std::uint16_t who = 1; who <= 3; ++who) CHECK(open(book, who, 1, kFar).verdict == Verdict::New);
+    for (std::uint16_t client_number = 1; client_number <= 3; ++client_number)
+        CHECK(open(book, client_number, 1, kFar).verdict == Verdict::New);
     const auto far = open(book, 4, 1, kFar);
     CHECK(far.verdict == Verdict::Refused);
     CHECK(why(far).find("3 requests that name a step, the maximum of these, are already waiting") == 0);
@@ -146,13 +147,13 @@ TEST_CASE("a shutdown for the next step finds room when nothing else does")
     CHECK(open(book, 1, 1, {.bytes = 50}).verdict == Verdict::New);
     CHECK(open(book, 1, 2, {.bytes = 50}).verdict == Verdict::New);
     CHECK(open(book, 1, 3).verdict == Verdict::Refused);
-    CHECK(open(book, 1, 5, {.shutdown = true, .bytes = 500}).verdict == Verdict::New);        // by the client that took it all
-    CHECK(open(book, 2, 1, {.names_step = true, .shutdown = true}).verdict == Verdict::New);  // to hear that it names no step
+    CHECK(open(book, 1, 5, {.shutdown = true, .bytes = 500}).verdict == Verdict::New);        // by the client that used all of it
+    CHECK(open(book, 2, 1, {.names_step = true, .shutdown = true}).verdict == Verdict::New);  // to be told that it may not name a step
     CHECK(book.waiting() == 4);
     CHECK(why(open(book, 3, 1, kShutdown)) == "2 requests to shut down are already waiting: one is enough");
     CHECK(book.close(answer(client(1), 5)));
     CHECK(open(book, 3, 2, kShutdown).verdict == Verdict::New);
-    CHECK(open(book, 3, 3).verdict == Verdict::Refused);  // the others' room is what it was
+    CHECK(open(book, 3, 3).verdict == Verdict::Refused);  // the room of the others is unchanged
 }
 
 TEST_CASE("all requests that wait have a bounded number of bytes, some of them for those that name no step")
@@ -170,7 +171,7 @@ TEST_CASE("all requests that wait have a bounded number of bytes, some of them f
     CHECK(open(book, 3, 2, {.bytes = 70}).verdict == Verdict::New);
 }
 
-TEST_CASE("what a request counts for is its text, and something for each text; shutdown stands alone")
+TEST_CASE("a request counts for the size of its texts plus a fixed amount for each; shutdown may not be combined with others")
 {
     publish::RequestText request;
     request.operations = {{"set", "ball", "", "", {{"mass", "2"}}}};
@@ -178,14 +179,14 @@ TEST_CASE("what a request counts for is its text, and something for each text; s
     CHECK_FALSE(bus::is_shutdown(request));
     request.operations = {{"shutdown", "", "", "", {}}};
     CHECK(bus::is_shutdown(request));
-    request.operations[0].blueprint = "x";  // it is refused for that, but takes no room that others have not
+    request.operations[0].blueprint = "x";  // it is refused for that, but takes no room from others
     CHECK_FALSE(bus::is_shutdown(request));
     request.operations[0].blueprint.clear();
     request.operations.push_back(request.operations[0]);
     CHECK_FALSE(bus::is_shutdown(request));
 }
 
-TEST_CASE("without id or number a request is refused, and leaves nothing behind")
+TEST_CASE("without id or number a request is refused, and leaves no trace")
 {
     RequestBook book({});
     CHECK(book.open({}, 1, {}, std::nullopt).verdict == Verdict::Refused);
@@ -198,25 +199,25 @@ TEST_CASE("the client that was silent for longest is forgotten, but none that st
 {
     RequestBook book({.clients = 3});
     CHECK(open(book, 1, 1).verdict == Verdict::New);  // stays open
-    for (std::uint16_t who = 2; who <= 4; ++who)
+    for (std::uint16_t client_number = 2; client_number <= 4; ++client_number)
     {
-        CHECK(open(book, who, 1).verdict == Verdict::New);
-        CHECK(book.close(answer(client(who), 1)));
+        CHECK(open(book, client_number, 1).verdict == Verdict::New);
+        CHECK(book.close(answer(client(client_number), 1)));
     }
     CHECK(book.clients() == 3);
     CHECK(open(book, 1, 1).verdict == Verdict::Waiting);
     CHECK(open(book, 4, 1).verdict == Verdict::Answered);
-    CHECK(open(book, 2, 1).verdict == Verdict::New);  // nobody knows it any more
+    CHECK(open(book, 2, 1).verdict == Verdict::New);  // it has been forgotten
 }
 
 TEST_CASE("answers take a bounded amount of memory, however long they are")
 {
     RequestBook book({.answer_bytes = 100000});
-    for (std::uint16_t who = 1; who <= 50; ++who)
+    for (std::uint16_t client_number = 1; client_number <= 50; ++client_number)
         for (std::uint64_t n = 1; n <= 10; ++n)
         {
-            CHECK(open(book, who, n).verdict == Verdict::New);
-            publish::Answer long_one = answer(client(who), n);
+            CHECK(open(book, client_number, n).verdict == Verdict::New);
+            publish::Answer long_one = answer(client(client_number), n);
             long_one.reply.errors.push_back(reason(std::string(5000, 'x')));
             CHECK(book.close(long_one));
             CHECK(book.answer_bytes() <= 100000);
@@ -282,7 +283,7 @@ TEST_CASE("the text of a request is limited, and so is the number of its values"
     CHECK(second.refusal() == "operation 2 has 257 values: at most 256 are allowed");
 }
 
-TEST_CASE("UTF-8 is what RFC 3629 says")
+TEST_CASE("UTF-8 is as defined by RFC 3629")
 {
     for (const char* good : {"", "a", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xf4\x8f\xbf\xbf", "\xed\x9f\xbf", "\xee\x80\x80"})
         CHECK(bus::is_utf8(good));
@@ -291,7 +292,7 @@ TEST_CASE("UTF-8 is what RFC 3629 says")
         CHECK_FALSE(bus::is_utf8(bad));
 }
 
-TEST_CASE("a reply that cannot be written is tried again, and given up with a word after a while")
+TEST_CASE("a reply that cannot be written is tried again, and after a while given up with a message")
 {
     std::vector<std::string> log;
     bus::Trouble trouble([](void* to, const char* line) { static_cast<std::vector<std::string>*>(to)->emplace_back(line); }, &log);

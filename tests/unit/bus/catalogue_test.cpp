@@ -1,4 +1,4 @@
-// What the scene consists of, for those who were there and for those who come late; and the server itself.
+// What the scene consists of, for early and for late readers; and the server itself.
 #include <map>
 #include <set>
 
@@ -92,7 +92,7 @@ using LiveServers = Alive<plab_v2_Server, &plab_v2_Server::name>;
 
 }  // namespace
 
-TEST_CASE("who comes late finds the whole catalogue, and nothing of what was removed before")
+TEST_CASE("a late reader finds the whole catalogue, and nothing that was removed before")
 {
     TestBus bus;
     REQUIRE(bus->catalogue(everything()));
@@ -147,7 +147,7 @@ TEST_CASE("catalogue samples carry what was recorded")
         });
 }
 
-TEST_CASE("what is removed is disposed of; a new scene disposes of what it does not name; types stay unless given")
+TEST_CASE("removed instances are disposed of; a new scene disposes of those that it does not name; types stay unless they are given")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -172,14 +172,14 @@ TEST_CASE("what is removed is disposed of; a new scene disposes of what it does 
     CHECK(interactions.becomes({}));
     CHECK(types.becomes({"G/A"}));
 
-    publish::CatalogueChange back;  // what was gone may come again, and as another kind
+    publish::CatalogueChange back;  // an instance that was removed may come again, also as another kind
     back.objects = {object("b")}, back.interactions = {interaction("z", "G/A")};
     REQUIRE(bus->catalogue(std::move(back)));
     CHECK(interactions.becomes({"z"}));
     CHECK(objects.becomes({"b"}));
 }
 
-TEST_CASE("a catalogue change that finds no room is refused, and the whole catalogue puts everything right")
+TEST_CASE("a catalogue change that finds no room is refused, and the whole catalogue then restores a consistent state")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -196,7 +196,7 @@ TEST_CASE("a catalogue change that finds no room is refused, and the whole catal
     CHECK(objects.becomes({"a", "b"}));
 }
 
-TEST_CASE("the server says that it is there at least once a second")
+TEST_CASE("the server announces itself at least once a second")
 {
     TestBus bus;
     const link::Session session = bus.session();

@@ -1,4 +1,4 @@
-// The way between plabd and plab-bus: what goes in comes out, and what cannot be is seen.
+// The channel between plabd and plab-bus: messages arrive as they were sent, and impossible values are detected.
 #include <unistd.h>
 
 #include <cstring>
@@ -44,7 +44,7 @@ RequestMessage some_request()
 
 }  // namespace
 
-TEST_CASE("records come back as they were")
+TEST_CASE("records are read back as they were written")
 {
     publish::Batch<publish::EventRecord> events;
     events.run = 3, events.first = 9;
@@ -76,7 +76,7 @@ TEST_CASE("records come back as they were")
     CHECK_FALSE(without.whole());
 }
 
-TEST_CASE("whatever the bytes: nothing beyond them is read, and no request of bytes takes more memory than a multiple of them")
+TEST_CASE("for any bytes, nothing beyond them is read, and a request takes no more memory than a multiple of its bytes")
 {
     std::mt19937_64 random(5);
     const auto good = bytes_of(some_request());
@@ -137,7 +137,7 @@ TEST_CASE("messages of all sizes go through, in order, also those that are large
     }
 }
 
-TEST_CASE("counters and lengths that cannot be are seen, and nothing is touched")
+TEST_CASE("impossible counters and lengths are detected, and nothing is read or written")
 {
     const PipeMemory shared = memory();
     MessageWriter writer(PipeWriter(shared.down_state(), shared.down()));
@@ -149,7 +149,7 @@ TEST_CASE("counters and lengths that cannot be are seen, and nothing is touched"
     }
     shared.down_state().read.store(16);
     REQUIRE(writer.send(Down::End));
-    shared.down_state().read.store(0);  // back again
+    shared.down_state().read.store(0);  // restored
     CHECK_FALSE(writer.send(Down::End));
 
     MessageReader reader(PipeReader(shared.up_state(), shared.up()), 1000, true);
@@ -166,14 +166,14 @@ TEST_CASE("counters and lengths that cannot be are seen, and nothing is touched"
     CHECK(reader.next(message) == MessageReader::State::Broken);
 }
 
-TEST_CASE("the shared memory keeps its size, whoever has it")
+TEST_CASE("the shared memory keeps its size in either process")
 {
     const PipeMemory shared = memory();
     CHECK(ftruncate(shared.descriptor(), 0) != 0);
     CHECK(ftruncate(shared.descriptor(), 1 << 30) != 0);
 }
 
-TEST_CASE("a request is looked at again, whatever plab-bus says of it")
+TEST_CASE("a request is checked again, whatever plab-bus reports about it")
 {
     RequestDesk desk;
     std::uint64_t strays = 0;
@@ -200,20 +200,20 @@ TEST_CASE("a request is looked at again, whatever plab-bus says of it")
     CHECK(why([](auto& m) { m.request.at = -2; }).find("step -2") != std::string::npos);
     CHECK(why([](auto& m) { m.wrong = "\xff"; }) == "the request cannot be decoded");
     CHECK(why([](auto& m) { m.wrong = "too long"; }) == "too long");
-    CHECK(why([](auto& m) { m.request.number = 7; }) == "no answer");  // it waits already
+    CHECK(why([](auto& m) { m.request.number = 7; }) == "no answer");  // it is already waiting
     CHECK_FALSE(desk.take(request));
     publish::Answer answer;
     answer.client = {1, 2, 3}, answer.number = 7, answer.reply.done = true;
     desk.answer(std::move(answer));
     CHECK(desk.next_answer(strays)->answer.reply.done);
-    CHECK_FALSE(desk.receive(some_request(), 2).is_new);  // the reply was lost: again, and not carried out again
+    CHECK_FALSE(desk.receive(some_request(), 2).is_new);  // the reply was lost: the request comes again and is not carried out again
     const auto again = desk.next_answer(strays);
     REQUIRE(again.has_value());
     CHECK(again->repeated);
     CHECK(again->answer.reply.done);
 }
 
-TEST_CASE("a desk whose answers nobody fetches is full, until they are fetched")
+TEST_CASE("a desk whose answers are not fetched is full until they are fetched")
 {
     RequestDesk desk;
     std::uint64_t strays = 0, number = 1000;
@@ -232,7 +232,7 @@ TEST_CASE("a desk whose answers nobody fetches is full, until they are fetched")
     CHECK(fetched == 1024);
 }
 
-TEST_CASE("the catalogue that is kept is the one that was told")
+TEST_CASE("the catalogue that is kept is the one that was sent")
 {
     CatalogueMirror mirror;
     CHECK(mirror.empty());

@@ -38,7 +38,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("the last participant to leave closes the domain: no thread and no socket stays")
+TEST_CASE("the last participant to leave closes the domain: no thread and no socket remains")
 {
     const WithoutConfiguration unset;
     const wire::DomainOptions options{160 + static_cast<std::uint32_t>(getpid()) % 40, {}};
@@ -53,7 +53,7 @@ TEST_CASE("the last participant to leave closes the domain: no thread and no soc
         CHECK(threads_of(getpid()) > before);
         CHECK(wire::make_publisher(*second, "still").ok());
     }
-    // The kernel lists a thread that was joined for a moment longer.
+    // The kernel lists a joined thread for a moment longer.
     for (int i = 0; i < 200 && threads_of(getpid()) != before; ++i) std::this_thread::sleep_for(Milliseconds(5));
     CHECK(threads_of(getpid()) == before);
     auto again = wire::join(options);

@@ -18,7 +18,7 @@ plab_v2_Server server_sample(const std::string& name, const std::string& host, s
 
 }  // namespace
 
-TEST_CASE("a second server of one name on a host is refused, and told by whom, until the first is gone")
+TEST_CASE("a second server of one name on a host is refused until the first has ended; the message names the first")
 {
     TestBus first;
     const auto second = bus::ServerBus::open(first.options());
@@ -33,7 +33,7 @@ TEST_CASE("a second server of one name on a host is refused, and told by whom, u
     CHECK(bus::ServerBus::open(first.options()).ok());
 }
 
-TEST_CASE("a name that is no partition, a domain that is none and an interface that is none are refused")
+TEST_CASE("invalid names, domains and interfaces are refused")
 {
     bus::BusOptions options;
     for (const char* name : {"", "a b", "*", "x/y"})
@@ -57,12 +57,12 @@ TEST_CASE("of two servers the one that started first keeps the name; at the same
     CHECK(wire::keeps_the_name(server_sample("s", "host-a", 30, 1000), self));
     CHECK_FALSE(wire::keeps_the_name(server_sample("s", "host-c", 10, 1000), self));
     CHECK(wire::keeps_the_name(server_sample("s", "host-b", 19, 1000), self));
-    CHECK_FALSE(wire::keeps_the_name(server_sample("s", "host-b", 20, 1000), self));  // that is us
+    CHECK_FALSE(wire::keeps_the_name(server_sample("s", "host-b", 20, 1000), self));  // this is the server itself
     CHECK_FALSE(wire::keeps_the_name(server_sample("t", "host-a", 10, 1), self));
-    CHECK_FALSE(wire::keeps_the_name(server_sample("s", "host-a", 10, 0), self));  // says nothing
+    CHECK_FALSE(wire::keeps_the_name(server_sample("s", "host-a", 10, 0), self));  // has no information
 }
 
-TEST_CASE("a server that meets an older one of its name from elsewhere says that it is lost")
+TEST_CASE("a server that finds an older one of its name on another host reports that it has lost the name")
 {
     TestBus bus;
     const link::Session elsewhere = bus.session();

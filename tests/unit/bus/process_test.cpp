@@ -1,4 +1,4 @@
-// What needs another process: a reader that is stopped, and the module as the daemon loads it.
+// Tests that need another process: a reader that is stopped, and the module as the daemon loads it.
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ double at(const std::vector<double>& sorted, double quantile)
 
 }  // namespace
 
-TEST_CASE("a reader that is stopped holds up neither the step thread nor other readers nor the end")
+TEST_CASE("a reader that is stopped delays neither the step thread nor other readers nor the shutdown")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -51,7 +51,7 @@ TEST_CASE("a reader that is stopped holds up neither the step thread nor other r
     const auto stopped = push_many(bus, number, 1000);
     MESSAGE("handing over, reader awake: median " << at(awake, 0.5) << " us, 99 % " << at(awake, 0.99) << " us");
     MESSAGE("handing over, reader stopped: median " << at(stopped, 0.5) << " us, 99 % " << at(stopped, 0.99) << " us");
-    CHECK(at(stopped, 0.99) < 20000);  // who waited for it would wait for seconds
+    CHECK(at(stopped, 0.99) < 20000);  // a thread that waited for the reader would wait for seconds
 
     auto other = reader_of<plab_v2_Frame>(session);
     REQUIRE(eventually([&] { return other.writers() > 0; }));
@@ -73,7 +73,7 @@ TEST_CASE("a reader that is stopped holds up neither the step thread nor other r
     CHECK(took < 3);
 }
 
-TEST_CASE("the module opens a bus, and says why it does not")
+TEST_CASE("the module opens a bus, or reports why it cannot")
 {
     void* const module = dlopen(PLAB_BUS_MODULE, RTLD_NOW | RTLD_LOCAL);
     REQUIRE_MESSAGE(module != nullptr, dlerror());

@@ -53,7 +53,7 @@ std::pair<std::uint64_t, link::Reply> reply(link::Caller& caller, std::chrono::m
     return out;
 }
 
-/// Writes what no client of ours would, and hears all replies, to whomever they go.
+/// Writes requests that no client of pLab would send, and reads the replies to all clients.
 class Rogue
 {
 public:
@@ -90,7 +90,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("a request arrives as it was sent, and its reply as it was given")
+TEST_CASE("a request arrives as it was sent, and so does its reply")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -123,7 +123,7 @@ TEST_CASE("a request arrives as it was sent, and its reply as it was given")
     CHECK(r.swaps[0].with_new.momentum[2] == 3);
 }
 
-TEST_CASE("a repeated request is handed out once; its answer comes again")
+TEST_CASE("a repeated request is handed out once; its answer is repeated")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -147,7 +147,7 @@ TEST_CASE("a repeated request is handed out once; its answer comes again")
     CHECK_FALSE(bus->take(other));
 }
 
-TEST_CASE("call() repeats until there is an answer, and it is carried out once")
+TEST_CASE("call() repeats the request until there is an answer, and it is carried out once")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -201,7 +201,7 @@ TEST_CASE("clients do not see each other's replies")
     CHECK(to_b == std::map<std::uint64_t, Tick>{{1, 21}, {2, 22}});
 }
 
-TEST_CASE("garbage is refused with a reason, and never reaches the step loop")
+TEST_CASE("malformed requests are refused with a reason and never reach the step loop")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -227,13 +227,13 @@ TEST_CASE("garbage is refused with a reason, and never reaches the step loop")
     CHECK(rogue.refused(request).find("more than 4194304 bytes") != std::string::npos);
     publish::RequestText none;
     CHECK_FALSE(bus->take(none));
-    // And who behaves is served.
+    // A well-behaved client is still served.
     link::Caller caller = caller_of(session);
     REQUIRE(caller.send(a_pause()).ok());
     CHECK(next(bus).operations[0].verb == "pause");
 }
 
-TEST_CASE("more requests than one may have waiting are refused; none that was accepted is lost")
+TEST_CASE("requests beyond the number that may wait are refused; none that was accepted is lost")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -291,7 +291,7 @@ TEST_CASE("clients whose requests never become due do not lock out the others")
         CHECK(eventually(
             [&]
             {
-                while (bus->take(request)) ++taken;  // as the loop does: it keeps them until they are due
+                while (bus->take(request)) ++taken;  // like the loop, which keeps them until they are due
                 return taken == all;
             }));
     };
@@ -305,13 +305,13 @@ TEST_CASE("clients whose requests never become due do not lock out the others")
     fill(a_pause(), wire::kRequestsKeptForNextStep);
     REQUIRE(caller.send(a_pause()).ok());
     CHECK(reply(caller).second.reasons.at(0).find("1024 requests, the maximum for all clients together,") == 0);
-    for (link::Caller* who : {&caller, &greedy.front()})
+    for (link::Caller* asking : {&caller, &greedy.front()})
     {
-        REQUIRE(who->send({{{"shutdown"}}, std::nullopt, std::nullopt}).ok());
+        REQUIRE(asking->send({{{"shutdown"}}, std::nullopt, std::nullopt}).ok());
         const publish::RequestText got = next(bus);
         CHECK(got.operations[0].verb == "shutdown");
         answer(bus, got, 2);
-        CHECK(reply(*who).second.done());
+        CHECK(reply(*asking).second.done());
     }
 }
 
@@ -334,7 +334,7 @@ TEST_CASE("large requests that never become due do not lock out the others")
     CHECK(next(bus).operations[0].verb == "pause");
 }
 
-TEST_CASE("whoever has the reply finds in the catalogue what the request did")
+TEST_CASE("a client that has received the reply finds the effect of the request in the catalogue")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -346,14 +346,14 @@ TEST_CASE("whoever has the reply finds in the catalogue what the request did")
     {
         REQUIRE(caller.send(a_pause()).ok());
         const publish::RequestText request = next(bus);
-        publish::Batch<publish::EventRecord> work;  // keeps the bus thread busy: it meets both of the next two at once
+        publish::Batch<publish::EventRecord> work;  // keeps the bus thread busy, so that it finds the next two together
         work.entries.resize(20000);
         bus->events(std::move(work));
         publish::CatalogueChange change;
         for (int k = 0; k < 200; ++k) change.objects.emplace_back().component = "o" + std::to_string(i) + "-" + std::to_string(k);
         REQUIRE(bus->catalogue(std::move(change)));
         answer(bus, request, i);
-        // Without a pause: the reply must not be ahead by a moment either.
+        // Without a pause: the reply must not come even a moment earlier.
         bool answered = false;
         const auto end = std::chrono::steady_clock::now() + 5s;
         while (!answered && std::chrono::steady_clock::now() < end)

@@ -1,4 +1,4 @@
-// What flows while somebody reads: frames, events, collisions, metrics, images.
+// What is published while there are readers: frames, events, collisions, metrics, images.
 #include <algorithm>
 
 #include "support.h"
@@ -9,7 +9,7 @@ using namespace plab::test;
 namespace
 {
 
-/// Keeps what came: numbers of frames, in order.
+/// Keeps the numbers of the frames received, in order.
 struct FrameLog
 {
     std::vector<std::uint64_t> numbers;
@@ -35,7 +35,7 @@ publish::CatalogueChange scene_with(const std::string& type)
 
 }  // namespace
 
-TEST_CASE("nothing is wanted until somebody reads it, and again once he is gone")
+TEST_CASE("nothing is wanted until there is a reader, nor after the last one has left")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -46,7 +46,7 @@ TEST_CASE("nothing is wanted until somebody reads it, and again once he is gone"
     {
         const auto reader = reader_of<plab_v2_Frame>(session);
         CHECK(eventually([&] { return bus->wants(publish::Stream::States); }));
-        CHECK(eventually([&] { return bus.wakes() == before + 1; }));  // a paused server may show where it stands
+        CHECK(eventually([&] { return bus.wakes() == before + 1; }));  // a paused server may publish its state
         CHECK_FALSE(bus->wants(publish::Stream::Events));
     }
     CHECK(eventually([&] { return !bus->wants(publish::Stream::States); }));
@@ -85,7 +85,7 @@ TEST_CASE("a frame arrives as it was filled")
     CHECK(frames == 1);
 }
 
-TEST_CASE("frames that come too fast are given up oldest first: numbers rise, gaps are counted, the last one arrives")
+TEST_CASE("frames that come too fast are dropped, the oldest first: numbers increase, gaps are counted, the last one arrives")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -123,7 +123,7 @@ TEST_CASE("frames that come too fast are given up oldest first: numbers rise, ga
     CHECK(log.numbers.size() + dropped <= kFrames);
 }
 
-TEST_CASE("a reader that never takes holds nobody up")
+TEST_CASE("a reader that never takes samples delays nobody")
 {
     TestBus bus;
     const link::Session session = bus.session();
@@ -144,7 +144,7 @@ TEST_CASE("a reader that never takes holds nobody up")
     }
     std::sort(us.begin(), us.end());
     MESSAGE("handing over a frame and an event: median " << us[1000] << " us, 99 % " << us[1980] << " us, longest " << us.back() << " us");
-    CHECK(us[1980] < 10000);  // generous: the machine may be busy, but nobody waits for the reader
+    CHECK(us[1980] < 10000);  // generous: the machine may be busy, but no thread waits for the reader
 }
 
 TEST_CASE("events arrive with all their parts")

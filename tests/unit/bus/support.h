@@ -20,7 +20,7 @@ namespace plab::test
 
 using namespace std::chrono_literals;
 
-/// Polls until it holds. False when it did not in time.
+/// Polls until the condition holds; false if it did not in time.
 inline bool eventually(const std::function<bool()>& holds, std::chrono::milliseconds longest = 5s)
 {
     const auto end = std::chrono::steady_clock::now() + longest;
@@ -32,7 +32,7 @@ inline bool eventually(const std::function<bool()>& holds, std::chrono::millisec
     return true;
 }
 
-/// A bus whose name nobody else has, with what it told the daemon.
+/// A bus with a unique name, and the messages that it sent to the daemon.
 class TestBus
 {
 public:

@@ -1,10 +1,10 @@
-// Figures of the bus, no test. Two processes on loopback:
+// Measurements of the bus, not a test. Two processes on loopback:
 //
-//   bus_traffic read NAME [SECONDS]                        a reader of states; says what came when the time is over
+//   bus_traffic read NAME [SECONDS]                        a reader of states; reports what it received when the time is over
 //   bus_traffic write NAME BODIES RATE|max SECONDS         a server's end that writes frames; RATE in Hz
-//   bus_traffic raw NAME BODIES RATE|max SECONDS           the same frames by dds_write alone: what DDS can do here and now
-//   bus_traffic answer NAME SECONDS                        answers requests at once, as a step loop would
-//   bus_traffic ask NAME COUNT                             asks so often, and says how long replies took
+//   bus_traffic raw NAME BODIES RATE|max SECONDS           the same frames by dds_write alone: the limit of DDS on this machine
+//   bus_traffic answer NAME SECONDS                        answers requests at once, like a step loop
+//   bus_traffic ask NAME COUNT                             sends COUNT requests, and reports how long replies took
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -123,7 +123,7 @@ int write(const std::string& name, std::size_t bodies, double rate, double secon
         if (rate > 0)
             std::this_thread::sleep_until(next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / rate)));
         else
-            std::this_thread::sleep_for(50us);  // faster than anybody reads; without it this thread takes the bus thread's core
+            std::this_thread::sleep_for(50us);  // faster than any reader; without it this thread takes the bus thread's core
     }
     const double producer = thread_seconds() - own, all = cpu_seconds() - cpu;
     bus.status({});

@@ -1,4 +1,4 @@
-/// When a camera draws, what it shows, and how it complains.
+/// When a camera draws, what it shows, and which errors it reports.
 #include <doctest/doctest.h>
 
 #include <set>
@@ -25,9 +25,9 @@ struct Viewer final : ImageSink
     std::uint32_t width = 0, height = 0;
 
     bool wanted() const override { return looks; }
-    void show(std::uint32_t who, std::uint32_t w, std::uint32_t h, std::vector<std::uint8_t> rgba) override
+    void show(std::uint32_t camera, std::uint32_t w, std::uint32_t h, std::vector<std::uint8_t> rgba) override
     {
-        component = who, width = w, height = h;
+        component = camera, width = w, height = h;
         pictures.push_back(std::move(rgba));
     }
     /// Red, green, blue of the picture's middle.
@@ -78,7 +78,7 @@ bool is_red(const Vec3& c) { return c.x > 2 * c.y && c.x > 2 * c.z; }
 
 }  // namespace
 
-TEST_CASE("pictures come at their rate in simulated time, at most one a step")
+TEST_CASE("pictures are drawn at their rate in simulated time, at most one per step")
 {
     Room room;
     room.camera.rows.frames_per_second[0] = 25;
@@ -97,7 +97,7 @@ TEST_CASE("pictures come at their rate in simulated time, at most one a step")
     CHECK(room.viewer.pictures.size() == 11);
 }
 
-TEST_CASE("nobody looks: nothing is drawn, not even a renderer made; the next picture comes as soon as somebody does")
+TEST_CASE("without a viewer nothing is drawn and no renderer is created; the next picture is drawn as soon as there is one")
 {
     Room room;
     room.viewer.looks = false;
@@ -109,7 +109,7 @@ TEST_CASE("nobody looks: nothing is drawn, not even a renderer made; the next pi
     CHECK(room.viewer.pictures.size() == 1);
 }
 
-TEST_CASE("the view is the scene's camera of that name, the camera's own place, or one that sees everything")
+TEST_CASE("the view is the scene's camera of that name, the camera's own pose, or one that shows everything")
 {
     Room room;
     room.step(1);
@@ -124,7 +124,7 @@ TEST_CASE("the view is the scene's camera of that name, the camera's own place, 
     room.camera.rows.position[0] = *std::get_if<Vec3>(&room.camera.schema.find_field("position")->fallback);
     room.step(4);
     CHECK(is_red(room.viewer.middle()));
-    // It stands still while the ball leaves, until something comes or goes.
+    // It does not move while the ball leaves, until an object is added or removed.
     room.visuals[0].pose.p = {0, 0, 50};
     room.step(5);
     CHECK_FALSE(is_red(room.viewer.middle()));
@@ -133,7 +133,7 @@ TEST_CASE("the view is the scene's camera of that name, the camera's own place, 
     CHECK(is_red(room.viewer.middle()));
 }
 
-TEST_CASE("all kinds of geometry, and shafts without any, are seen")
+TEST_CASE("all kinds of geometry, and shafts without any, are visible")
 {
     Room room;
     room.camera.rows.position[0] = {0, -5, 1};
@@ -155,7 +155,7 @@ TEST_CASE("all kinds of geometry, and shafts without any, are seen")
     CHECK(room.events.all.empty());
 }
 
-TEST_CASE("captions show the time and the algorithms, parts in the line of their owner")
+TEST_CASE("captions show the time and the algorithms, sub-components in the line of their owner")
 {
     Room room;
     room.step(1);
@@ -176,7 +176,7 @@ TEST_CASE("captions show the time and the algorithms, parts in the line of their
     CHECK(pictures[1] != pictures[2]);
 }
 
-TEST_CASE("a size that changes makes another renderer")
+TEST_CASE("a change of size creates another renderer")
 {
     Room room;
     room.step(1);
@@ -186,7 +186,7 @@ TEST_CASE("a size that changes makes another renderer")
     CHECK(room.viewer.pictures.back().size() == 4 * 80 * 48);
 }
 
-TEST_CASE("a camera that cannot draw says so once, and draws when it can")
+TEST_CASE("a camera that cannot draw reports that once, and draws as soon as it can")
 {
     Room room;
     room.camera.rows.view[0] = "behind";

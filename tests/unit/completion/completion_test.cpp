@@ -58,10 +58,10 @@ using Words = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("commands, options and words out of a list are told where they may stand")
+TEST_CASE("commands, options and words from a list are offered where they may stand")
 {
     CHECK(words({}) == Words{"swap", "play"});
-    CHECK(words({"sw"}) == Words{"swap", "play"});  // completion_lines() leaves what does not begin so
+    CHECK(words({"sw"}) == Words{"swap", "play"});  // completion_lines() removes words with another beginning
     CHECK(words({"-"}) == Words{"--help", "--server", "--mode"});
     CHECK(words({"swap", "--"}) == Words{"--help", "--to", "--force", "--help", "--server", "--mode"});
     CHECK(words({"--mode", ""}) == Words{"slow", "fast"});
@@ -70,7 +70,7 @@ TEST_CASE("commands, options and words out of a list are told where they may sta
     CHECK(words({"--unknown", "x", ""}) == Words{"swap", "play"});
 }
 
-TEST_CASE("a value is wanted by its name, option and command, and what stands before it is known")
+TEST_CASE("a value is requested by its name, option and command, and the words before it are known")
 {
     CHECK(wanted({"-s", ""}) == "NAME of --server in ");
     CHECK(wanted({"swap", ""}) == "ID of id in swap");
@@ -86,7 +86,7 @@ TEST_CASE("a value is wanted by its name, option and command, and what stands be
     CHECK(w.begun == "Solver");
 }
 
-TEST_CASE("lines for shells: what begins as it should, sorted, once, without control characters")
+TEST_CASE("lines for shells: words with the given beginning, sorted, without duplicates and control characters")
 {
     const auto values = [](const Wanted& w)
     {
@@ -103,7 +103,7 @@ TEST_CASE("lines for shells: what begins as it should, sorted, once, without con
     CHECK(completion_lines(program(), {"swap", "b"}, {}).empty());
 }
 
-TEST_CASE("scripts name the program, and there is none for a shell that is not known")
+TEST_CASE("scripts name the program, and there is none for an unknown shell")
 {
     for (const char* shell : {"bash", "zsh", "fish"})
     {
@@ -115,7 +115,7 @@ TEST_CASE("scripts name the program, and there is none for a shell that is not k
     CHECK(completion_script("prog", "csh").empty());
 }
 
-TEST_CASE("the page of the manual has all options and commands, and titles out of the footer")
+TEST_CASE("the man page has all options and commands, and the titles of the footer")
 {
     const std::string page = man_page(program(), "1.2");
     const auto has = [&](const std::string& part) { return page.find(part) != std::string::npos; };

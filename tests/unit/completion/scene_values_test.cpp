@@ -1,4 +1,4 @@
-// Values out of the scene that a command line names.
+// Values from the scene that a command line names.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ bool has(const Values& values, const std::string& word)
 
 }  // namespace
 
-TEST_CASE("ids of a scene, then types of their family, behind a step and in a list")
+TEST_CASE("ids of a scene, then types of their family, after a step and in a list")
 {
     const Values ids = values("--swap", "ge");
     CHECK(ids.go_on);
@@ -41,7 +41,7 @@ TEST_CASE("ids of a scene, then types of their family, behind a step and in a li
     CHECK(values("--swap", "nothing=").candidates.empty());
 }
 
-TEST_CASE("quantities with their outputs, values that can be set without")
+TEST_CASE("quantities include outputs, settable values do not")
 {
     CHECK(has(values("--quantity", ""), "red."));
     CHECK(has(values("--quantity", "red."), "red.position"));
@@ -49,7 +49,7 @@ TEST_CASE("quantities with their outputs, values that can be set without")
     CHECK(!has(values("--set", "10:gears."), "10:gears.torque="));
 }
 
-TEST_CASE("files, types of the reference, and nothing where nothing is known")
+TEST_CASE("files, types of the reference, and nothing where no values are known")
 {
     CHECK(values("scene", "", "TEXT").are_files);
     CHECK(values("--out", "", "FILE").are_files);

@@ -9,7 +9,7 @@
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("a catalogue is complete when it says so, and follows the server")
+TEST_CASE("a catalogue knows when it is complete, and follows the server")
 {
     auto server = std::make_unique<FakeServer>(test_domain(), "lab");
     link::SessionOptions options;
@@ -31,7 +31,7 @@ TEST_CASE("a catalogue is complete when it says so, and follows the server")
     CHECK(catalogue->find_object(8) == nullptr);
     const std::uint64_t version = catalogue->version();
     const std::int64_t step = now.server->step;
-    // What wakes it may be another topic's: the server's own record comes ten times a second.
+    // It may be woken by another topic: the server's own record comes ten times a second.
     for (int i = 0; i < 50 && now.server->step == step; ++i) CHECK(catalogue->wait(link::Seconds(2)));
     CHECK(now.server->step > step);
     CHECK(catalogue->version() == version);
@@ -57,7 +57,7 @@ TEST_CASE("a catalogue without a server gives up and says what is missing")
     CHECK_FALSE(catalogue->server_is_gone());
 }
 
-TEST_CASE("no wait overflows, whatever it is given")
+TEST_CASE("no wait overflows, whatever duration is given")
 {
     const double nan = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
     CHECK(link::duration_of(link::Seconds(0.25)) == 250'000'000);
@@ -69,7 +69,7 @@ TEST_CASE("no wait overflows, whatever it is given")
     CHECK(link::moment_after(link::Seconds(endless), now) - now == std::chrono::seconds(100'000'000));
 }
 
-TEST_CASE("nearest names: slips of the keyboard, capitals, last parts")
+TEST_CASE("nearest names: typing errors, capitals, last parts")
 {
     const std::vector<std::string> known{"Resolution/Bisection", "Resolution/None", "Response/Impulse", "Response/None", "red", "green"};
     CHECK(link::nearest_names("rde", known) == std::vector<std::string>{"red"});

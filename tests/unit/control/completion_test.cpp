@@ -1,4 +1,4 @@
-// What plabctl tells shells: values out of a running server.
+// What plabctl offers to shells: values from a running server.
 #include <algorithm>
 #include <chrono>
 
@@ -46,7 +46,7 @@ TEST_CASE("ids, types of the family, fields and servers come from the server")
     CHECK(complete("info ''") == Words{":files"});
 }
 
-TEST_CASE("where nobody answers there are no candidates, soon and in silence")
+TEST_CASE("without an answer there are no candidates, quickly and silently")
 {
     const auto start = std::chrono::steady_clock::now();
     CHECK(complete("swap ''").empty());

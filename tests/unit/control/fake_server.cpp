@@ -284,7 +284,7 @@ void FakeServer::reply(const plab_v2_Request& request, const std::vector<std::st
     r.run = 1, r.revision = 4, r.step = step_, r.time = static_cast<double>(r.step) * kDt, r.pause_ns = 243100, r.waited_ns = 900;
     r.trial = text("made: 2 objects, 0.3 ms");
     if (std::strcmp(first.verb, "swap") == 0 && reasons.empty() && !is_late) r.swaps = {1, 1, &swap, false};
-    // As a server does that gets a request once more: its first answer came too late, or was lost.
+    // Like a server that receives a request again because its first answer came too late or was lost.
     r.repeated = std::strcmp(first.verb, "step") == 0;
     (void)ends_->replies.write(r);
 }

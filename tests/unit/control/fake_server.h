@@ -36,7 +36,7 @@ public:
     FakeServer& operator=(const FakeServer&) = delete;
 
     const std::string& name() const { return name_; }
-    /// The last request, taken away.
+    /// Takes the last request.
     Asked last();
     /// Sequence numbers of events and collisions jump over so many.
     void skip_numbers(std::uint64_t count) { skip_ += count; }

@@ -64,7 +64,7 @@ inline Outcome plabctl(const std::string& arguments, const std::string& before =
     return shell(before, "--domain " + std::to_string(test_domain()) + " " + arguments);
 }
 
-/// For the server "lab": found at once, where without a name others get the time to show themselves.
+/// For the server "lab": it is found at once, whereas without a name plabctl waits for other servers.
 inline Outcome lab(const std::string& arguments, const std::string& before = "") { return plabctl("--server lab " + arguments, before); }
 
 inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -31,12 +31,12 @@ TEST_CASE("no line is wider than the terminal, however narrow, and none is lost"
     }
     CHECK(has(on_terminal(200, "interactions")[0], "participants"));
     CHECK(has(on_terminal(200, "interactions")[1], "between red a_fan_with_a_very_long_name"));
-    // Prose goes before ids become unreadable.
+    // Prose is dropped before ids become unreadable.
     CHECK_FALSE(has(on_terminal(70, "interactions")[0], "participants"));
     CHECK(has(on_terminal(70, "interactions")[2], "contact.response"));
 }
 
-TEST_CASE("every list fits 40, 60 and 80 columns; what matters least goes first")
+TEST_CASE("every list fits 40, 60 and 80 columns; the least important columns are dropped first")
 {
     FakeServer server(test_domain(), "lab");
     for (const int columns : {40, 60, 80})
@@ -60,7 +60,7 @@ TEST_CASE("every list fits 40, 60 and 80 columns; what matters least goes first"
     CHECK(on_terminal(10, "objects")[0].size() <= 10);
 }
 
-TEST_CASE("note and participants stand below their titles")
+TEST_CASE("note and participants are below their titles")
 {
     FakeServer server(test_domain(), "lab");
     const std::vector<std::string> lines = on_terminal(200, "interactions");

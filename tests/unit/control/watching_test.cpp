@@ -3,7 +3,7 @@
 
 using namespace plab::test;
 
-TEST_CASE("watch prints one JSON object on each line and ends by count")
+TEST_CASE("the command watch prints one JSON object on each line and ends by count")
 {
     FakeServer server(test_domain(), "lab");
     const Outcome events = lab("watch events -n 3 --json");
@@ -23,7 +23,7 @@ TEST_CASE("watch prints one JSON object on each line and ends by count")
     CHECK(metrics.json()["interactions"]["contact"]["cost_ns"] == 1234);
 }
 
-TEST_CASE("watch for people, thinned out and selected")
+TEST_CASE("watch in readable form, thinned out and filtered")
 {
     FakeServer server(test_domain(), "lab");
     CHECK(has(lab("watch events -n 1").out, "warning  script.print  wind: it blows"));
@@ -39,7 +39,7 @@ TEST_CASE("watch for people, thinned out and selected")
     CHECK(Json::parse(states.lines()[0])["shafts"].empty());
 }
 
-TEST_CASE("watch --only of who is not there: refused where nothing would ever come, told where it may be added")
+TEST_CASE("watch --only with an unknown name: refused if it can never match, noted if the component may be added later")
 {
     FakeServer server(test_domain(), "lab");
     const Outcome states = lab("watch states --only rde -n 1");
@@ -56,7 +56,7 @@ TEST_CASE("watch --only of who is not there: refused where nothing would ever co
     CHECK(lab("watch collisions --only red -n 1").err.empty());
 }
 
-TEST_CASE("watch ends by duration with 0, by Ctrl-C with 130, and when the server goes with 3")
+TEST_CASE("watch ends by duration with 0, by Ctrl-C with 130, and when the server ends with 3")
 {
     auto server = std::make_unique<FakeServer>(test_domain(), "lab");
     CHECK(lab("watch events -d 0.3 --json").code == 0);
@@ -74,7 +74,7 @@ TEST_CASE("watch ends by duration with 0, by Ctrl-C with 130, and when the serve
     CHECK(has(gone.err, "server 'lab' has gone"));
 }
 
-TEST_CASE("missed numbers are told")
+TEST_CASE("missed numbers are reported")
 {
     FakeServer server(test_domain(), "lab");
     std::thread skips(
@@ -89,7 +89,7 @@ TEST_CASE("missed numbers are told")
     CHECK(has(events.err, "missed 5 events before number"));
 }
 
-TEST_CASE("wrong use ends with 2 and says what would be right")
+TEST_CASE("wrong use ends with 2, and the message says what would be right")
 {
     CHECK(plabctl("").code == 2);
     const Outcome command = plabctl("objcts");

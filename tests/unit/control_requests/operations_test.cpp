@@ -1,4 +1,4 @@
-// Requests in words: what each verb becomes, and that nothing that a client wrote is passed over.
+// Requests as text: which operation each verb becomes, and that nothing that a client wrote is ignored.
 #include "control/operations.h"
 
 #include <doctest/doctest.h>
@@ -76,7 +76,7 @@ TEST_CASE("set makes one operation of each value")
     CHECK(std::get<simulation::SetOperation>(out->request.operations[1]).name == "color");
 }
 
-TEST_CASE("a push in N s at a point, or of a shaft in N m s")
+TEST_CASE("a push at a point in N s, or of a shaft in N m s")
 {
     const auto push = only<simulation::PushOperation>({"push", "red", "", "", {{"impulse", "1 2 3"}, {"point", "0 0 5 cm"}}});
     CHECK(push.impulse == Vec3{1, 2, 3});
@@ -85,7 +85,7 @@ TEST_CASE("a push in N s at a point, or of a shaft in N m s")
     CHECK(only<simulation::PushOperation>({"push", "axle", "", "", {{"impulse", "0.5"}}}).impulse == Vec3{0.5, 0, 0});
 }
 
-TEST_CASE("what a verb does not use is refused, and so is what it lacks")
+TEST_CASE("unused arguments of a verb are refused, and so are missing ones")
 {
     CHECK(refusal({"pause", "red", "", "", {}}) == "operation 1 (pause): takes no target");
     CHECK(refusal({"remove", "red", "now", "", {}}) == "operation 1 (remove): takes no argument");
@@ -105,7 +105,7 @@ TEST_CASE("what a verb does not use is refused, and so is what it lacks")
     CHECK(refusal({"swpa", "a", "T", "", {}}) == "operation 1 (swpa): 'swpa' is not an operation, did you mean 'swap'?");
 }
 
-TEST_CASE("errors of a blueprint keep their place, all of them are told, and shutdown stands alone")
+TEST_CASE("errors of a blueprint keep their position, all of them are reported, and shutdown may not be combined with others")
 {
     const auto out = wanted({{"load", "", "bad.xml", "<plab version=\"1\">\n  <component id=\"x\" type=\"No/Such\"/>\n</plab>", {}},
                              {"step", "", "0", "", {}}});
@@ -120,7 +120,7 @@ TEST_CASE("errors of a blueprint keep their place, all of them are told, and shu
     CHECK_FALSE(control::wanted_of(later, library).ok());
 }
 
-TEST_CASE("step and revision that a request names")
+TEST_CASE("the step and the revision that a request names")
 {
     plugins::PluginLibrary library;
     publish::RequestText text;
@@ -136,7 +136,7 @@ TEST_CASE("step and revision that a request names")
     CHECK_FALSE(free->request.revision.has_value());
 }
 
-TEST_CASE("a sign is no way to go back, and names of snapshots are as those of servers")
+TEST_CASE("a sign does not name an earlier time, and names of snapshots follow the rules for those of servers")
 {
     for (const char* time : {"-1", "-0", "-2 s", "back -1", "back -0 s"})
         CHECK(refusal({"rewind", "", time, "", {}}).find("is negative") != std::string::npos);
@@ -145,7 +145,7 @@ TEST_CASE("a sign is no way to go back, and names of snapshots are as those of s
         CHECK(refusal({"snapshot", name, "", "", {}}).find("is not a valid snapshot name") != std::string::npos);
 }
 
-TEST_CASE("trial and energy say how a request is proved, cancel names a request; none of them is an operation")
+TEST_CASE("trial and energy set how a request is checked, cancel names a request; none of them is an operation")
 {
     using Budget = simulation::TrialChoice::Budget;
     const OperationText swap{"swap", "gears.*", "Constraint/X", "", {}};

@@ -41,13 +41,13 @@ TEST_CASE("plab-hello prints positions of the first body and ends")
     const std::string text = hello.output();
     CHECK(has(text, " s  body 4     0.000    0.000    1.500 m\n"));
     CHECK(std::count(text.begin(), text.end(), '\n') == 3);
-    // The server is there, but sends no frames.
+    // The server runs, but sends no frames.
     const Outcome paused = run({program("plab-hello")}, 15s, where);
     CHECK(paused.code == 3);
     CHECK(has(paused.errors, "paused"));
 }
 
-TEST_CASE("plab-hello says what is wrong")
+TEST_CASE("plab-hello reports errors")
 {
     const std::string domain = "PLAB_DOMAIN=" + std::to_string(test_domain());
     const Outcome none = run({program("plab-hello")}, 20s, {domain, "PLAB_SERVER=nobody"});
@@ -67,7 +67,7 @@ TEST_CASE("the README's lines build a program in C against the idl alone, and it
     const Outcome built = run({"bash", "-ec", "OUT='" + out + "'; cd '" + PLAB_SOURCE_DIR + "'\n" + blocks[0]}, 60s);
     REQUIRE_MESSAGE(built.code == 0, built.errors);
 
-    // As the README has it, but for the name and for the domain, which is this test's own.
+    // As in the README, except for the name and the domain, which is this test's own.
     PlayedServer server(test_domain(), unique_name("hello"), 1);
     std::string script = blocks[1];
     const auto replace = [&](const std::string& from, const std::string& to)

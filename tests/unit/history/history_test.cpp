@@ -1,4 +1,4 @@
-// Going back: snapshots by name, and rewinding a run, with what was asked in between.
+// Going back: snapshots by name, and rewinding a run, with the requests made in between.
 #include "simulation/snapshot/history.h"
 
 #include "support/ball.h"
@@ -35,7 +35,7 @@ std::string refusal(const simulation::Reply& reply)
     return reply.errors.empty() ? "" : reply.errors.front().text();
 }
 
-/// Types of this build, but for one that can be taken away: as with a plugin whose file has gone.
+/// Types of this build, except for one that can be removed, as if the file of its plugin were deleted.
 class Fickle final : public model::TypeSource
 {
 public:
@@ -57,7 +57,7 @@ simulation::Request mass_at(std::uint64_t id, Tick step, const std::string& mass
     return request;
 }
 
-/// 60 steps, with a type that comes before step 45, a request before step 42 and one that waits for step 90.
+/// 60 steps, with a type that is added before step 45, a request before step 42 and one that waits for step 90.
 struct Sixty
 {
     Sixty() : s(types)
@@ -92,7 +92,7 @@ struct Sixty
 
 }  // namespace
 
-TEST_CASE("a rewound run stands where it stood, to the last bit, and goes on as it went")
+TEST_CASE("a rewound run has the earlier state, to the last bit, and continues as before")
 {
     Kept kept(every(0.1));
     std::vector<std::uint64_t> hashes{kept.scene.hash()};
@@ -112,7 +112,7 @@ TEST_CASE("a rewound run stands where it stood, to the last bit, and goes on as 
         CHECK(kept.scene.hash() == hashes[static_cast<std::size_t>(step)]);
     }
     CHECK(kept.s().run() > run);
-    // What came later is forgotten: without the requests the run takes another course from step 37 on, the same until then.
+    // Everything later is forgotten: without the requests the run differs from step 37 on, and is the same until then.
     for (int i = 1; i <= 37; ++i)
     {
         kept.scene.step();
@@ -122,7 +122,7 @@ TEST_CASE("a rewound run stands where it stood, to the last bit, and goes on as 
     CHECK(kept.scene.hash() != hashes[67]);
 }
 
-TEST_CASE("what was asked takes bounded room: who asks for long gives up the beginning, and the rest is the same again")
+TEST_CASE("recorded requests take bounded memory: after many requests the beginning is dropped, and the rest is reproduced")
 {
     simulation::HistoryOptions options = every(0.1);
     options.most_asked_bytes = 20000;
@@ -149,7 +149,7 @@ TEST_CASE("what was asked takes bounded room: who asks for long gives up the beg
     }
 }
 
-TEST_CASE("what is asked at the step that is rewound to can be asked otherwise")
+TEST_CASE("after rewinding to a step, other requests can be made at it")
 {
     Kept kept(every(0.1));
     kept.scene.step(50);
@@ -162,7 +162,7 @@ TEST_CASE("what is asked at the step that is rewound to can be asked otherwise")
     CHECK(kept.scene.real("ball", "mass") == 1.0);
 }
 
-TEST_CASE("pause and rate stay those of the present, and no request is answered twice")
+TEST_CASE("pause and rate keep their present values, and no request is answered twice")
 {
     Kept kept(every(0.1));
     simulation::Request later;
@@ -189,7 +189,7 @@ TEST_CASE("pause and rate stay those of the present, and no request is answered 
     CHECK(kept.s().pending_requests() == 1);
 }
 
-TEST_CASE("what cannot be reached is refused, and nothing has changed")
+TEST_CASE("times that cannot be reached are refused, and nothing changes")
 {
     Kept kept(every(0.1));
     kept.scene.step(20);
@@ -207,14 +207,14 @@ TEST_CASE("what cannot be reached is refused, and nothing has changed")
     CHECK(refusal(plain.ask(simulation::RewindOperation{0, false})).find("no history is kept") != std::string::npos);
 }
 
-TEST_CASE("a past that cannot be made again leaves the present as it is: its number, who waits, and what comes")
+TEST_CASE("a failed rewind leaves the present unchanged: the run number, the waiting requests and the future")
 {
     Sixty plain, tried;
     REQUIRE(plain.s.take_replies().size() == 1);
     REQUIRE(tried.s.take_replies().size() == 1);
     const std::uint64_t run = tried.s.run(), revision = tried.s.revision();
     tried.types.taken_away = "Shape/Box";
-    // On the way from the snapshot at 0.4 s, after the request of step 42; and at the snapshot of 0.5 s itself.
+    // Between the snapshot at 0.4 s and there, after the request of step 42; and at the snapshot of 0.5 s itself.
     CHECK(refusal(tried.rewind(0.48)).find("a request of step 45 cannot be carried out again") != std::string::npos);
     CHECK(refusal(tried.rewind(0.5)).find("the file of 'Shape/Box' has gone") != std::string::npos);
     CHECK(tried.s.run() == run);
@@ -231,14 +231,14 @@ TEST_CASE("a past that cannot be made again leaves the present as it is: its num
     REQUIRE(replies.size() == 1);
     CHECK(replies.front().request == 7);
     CHECK(replies.front().done);
-    // And what could be reached before can be reached still.
+    // Times that could be reached before can still be reached.
     tried.types.taken_away.clear();
     CHECK(tried.rewind(0.48).done);
     CHECK(tried.s.tick() == 48);
     CHECK(tried.s.run() == run + 1);
 }
 
-TEST_CASE("named snapshots outlive runs and swaps, and are given up by name")
+TEST_CASE("named snapshots outlive runs and swaps, and are released by name")
 {
     Kept kept(every(0));
     kept.scene.step(30);
@@ -260,7 +260,7 @@ TEST_CASE("named snapshots outlive runs and swaps, and are given up by name")
     CHECK(kept.s().history().named().empty());
 }
 
-TEST_CASE("memory stays bounded, and the whole run stays within reach")
+TEST_CASE("memory stays bounded, and the whole run can be reached")
 {
     constexpr std::size_t kBytes = 200'000;
     Kept kept(every(0.01, kBytes));
@@ -272,7 +272,7 @@ TEST_CASE("memory stays bounded, and the whole run stays within reach")
     }
     const std::size_t each = simulation::bytes_of(kept.s().capture());
     REQUIRE(each > 0);
-    CHECK_MESSAGE(each * 1500 > 2 * kBytes, "the bound was never met: ", each);
+    CHECK_MESSAGE(each * 1500 > 2 * kBytes, "the bound was never reached: ", each);
     CHECK(kept.s().history().earliest() == 0);
     CHECK(kept.s().history().bytes() <= kBytes);
     for (const int step : {1400, 777, 12})

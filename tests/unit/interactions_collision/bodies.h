@@ -1,4 +1,4 @@
-/// Small worlds by hand: bodies, shapes, a sink, and rows of the collision types with their declared defaults.
+/// Small worlds made by hand: bodies, shapes, a sink, and rows of the collision types with their declared defaults.
 #pragma once
 
 #include <doctest/doctest.h>

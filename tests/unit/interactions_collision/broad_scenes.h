@@ -1,4 +1,4 @@
-/// Random scenes of boxes and half-spaces, and the broad phase beside a search by brute force.
+/// Random scenes of boxes and half-spaces, and the broad phase compared with a search by brute force.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ using namespace plab::detection;
 
 inline constexpr const char* kSearches[] = {"tree", "sweep_and_prune", "quadtree", "simple"};
 
-/// Boxes along the axes, some static, some only against the others, and half-spaces on top.
+/// Axis-aligned boxes, some static, some only against the others, and half-spaces in addition.
 struct Crowd
 {
     struct Part
@@ -21,7 +21,7 @@ struct Crowd
         std::size_t collider = 0;
         Membership membership;
         Pose pose;
-        Vec3 half;  // m; of a half-space: nothing
+        Vec3 half;  // m; unused for a half-space
         bool half_space = false;
     };
     std::uint64_t seed = 0;
@@ -120,7 +120,7 @@ inline void compare(Crowd crowd, std::span<const char* const> searches)
             const std::vector<PartPair>& found = broad[s].find_pairs(margin);
             CHECK_MESSAGE(std::includes(found.begin(), found.end(), must.begin(), must.end()), std::string(searches[s]), " lost a pair of ",
                           crowd.parts.size(), " at share ", share);
-            CHECK_MESSAGE(std::includes(may.begin(), may.end(), found.begin(), found.end()), std::string(searches[s]), " made up a pair");
+            CHECK_MESSAGE(std::includes(may.begin(), may.end(), found.begin(), found.end()), std::string(searches[s]), " invented a pair");
         }
     }
 }
@@ -133,7 +133,7 @@ inline void compare_scenes(int scenes, std::size_t largest)
         const double ratio = static_cast<double>(largest) / 10;
         const auto count = static_cast<std::size_t>(10 * std::pow(ratio, next_uniform(seed)));
         const std::uint64_t of_scene = next_random(seed);
-        // All pairs of many boxes are what the brute force is for: ODE's space for that, the last one, is left out there.
+        // With many boxes, ODE's space that tests all pairs, the last one, is left out: brute force does that already.
         const bool many = count > 1000;
         compare(i % 2 == 0 ? Crowd::pile(of_scene, count) : Crowd::mixture(of_scene, count), std::span(kSearches).first(many ? 3 : 4));
     }

@@ -6,7 +6,7 @@ using namespace plab::test;
 
 TEST_CASE("a hundred random scenes: every kind of search finds what brute force finds") { compare_scenes(100, 1000); }
 
-TEST_CASE("a thousand piled cubes, and five thousand, lose no pair on the default")
+TEST_CASE("among a thousand piled cubes, and five thousand, the default search loses no pair")
 {
     const char* const tree[] = {"tree"};
     compare(Crowd::pile(3, 1000), tree);

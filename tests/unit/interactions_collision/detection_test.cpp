@@ -1,4 +1,4 @@
-// The detection component: who is looked at, in what order, and what a standing pair changes.
+// The detection component: which pairs are tested, in what order, and the effect of persistent pairs.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -90,7 +90,7 @@ struct Events final : EventSink
 };
 }  // namespace
 
-TEST_CASE("no order of creation or of moves, and no kind of space, reaches the contacts")
+TEST_CASE("no order of creation or of moves, and no kind of space, affects the contacts")
 {
     std::vector<std::uint32_t> order(40);
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -111,7 +111,7 @@ TEST_CASE("no order of creation or of moves, and no kind of space, reaches the c
     }
 }
 
-TEST_CASE("the spaces lose no pair: all of a brute-force search are found")
+TEST_CASE("the spaces lose no pair: they find all pairs of a brute-force search")
 {
     std::uint64_t seed = 23;
     Bodies bodies;
@@ -136,7 +136,7 @@ TEST_CASE("the spaces lose no pair: all of a brute-force search are found")
     }
 }
 
-TEST_CASE("depth is right to the last bit near the ground and to 1e-8 m ten thousand kilometres away")
+TEST_CASE("depth is exact to the last bit near the ground and to 1e-8 m ten thousand kilometres away")
 {
     BallOnPlane ball(0.1 - 1e-15);
     REQUIRE(ball.look().size() == 1);
@@ -148,7 +148,7 @@ TEST_CASE("depth is right to the last bit near the ground and to 1e-8 m ten thou
     CHECK(std::fabs(ball.look()[0].depth - 1e-9) < 1e-16);
 }
 
-TEST_CASE("a standing pair is looked at closer by its shift, and its gap is told")
+TEST_CASE("a persistent pair is tested after its shift, and its gap is reported")
 {
     BallOnPlane ball(0.1 + 3e-10);
     CHECK(ball.look().empty());
@@ -160,13 +160,13 @@ TEST_CASE("a standing pair is looked at closer by its shift, and its gap is told
     ball.bodies.position[1].z = 0.1 - 1e-6;
     REQUIRE(ball.look().size() == 1);  // once, not twice
     CHECK(ball.look()[0].depth == near(1e-6, 1e-9));
-    ball.d.sink.pairs = {{body(1), body(0), {0, 0, 1e-9}}};  // the other way round means the same
+    ball.d.sink.pairs = {{body(1), body(0), {0, 0, 1e-9}}};  // the reverse order gives the same
     REQUIRE(ball.look().size() == 1);
     CHECK(ball.look()[0].a == body(0));
     CHECK(ball.look()[0].depth == near(1e-6, 1e-9));
 }
 
-TEST_CASE("a standing box keeps its four corners, with the same features, through rounding")
+TEST_CASE("a resting box keeps its four corners, with the same features, despite rounding")
 {
     Bodies bodies;
     Shapes shapes;
@@ -195,7 +195,7 @@ TEST_CASE("a standing box keeps its four corners, with the same features, throug
     }
 }
 
-TEST_CASE("only pairs with an active body are looked at, and never two that nothing moves")
+TEST_CASE("only pairs with an active body are tested, and never two bodies that do not move")
 {
     BallOnPlane ball(0.05);
     add_sphere(ball.bodies, 1, 0.1, {0.05, 0, 0.05});
@@ -232,7 +232,7 @@ TEST_CASE("`against` collides with `between` only")
     CHECK(d.look(bodies, shapes).empty());
 }
 
-TEST_CASE("a change of shape, pose or membership is seen at the next look")
+TEST_CASE("a change of shape, pose or membership takes effect at the next detection")
 {
     BallOnPlane ball(0.15);
     CHECK(ball.look().empty());
@@ -258,7 +258,7 @@ TEST_CASE("a change of shape, pose or membership is seen at the next look")
     CHECK(ball.look().empty());
 }
 
-TEST_CASE("a plane tilts with its body, and a centre of mass beside the origin is minded")
+TEST_CASE("a plane tilts with its body, and a centre of mass off the origin is taken into account")
 {
     BallOnPlane ball(0.1);
     const double angle = 0.3;
@@ -285,7 +285,7 @@ TEST_CASE("a mesh without volume is reported, once per build")
     CHECK(events.all[0].a == Ref{Facet::Shape, 1});
 }
 
-TEST_CASE("two scenes in one process do not know of one another")
+TEST_CASE("two scenes in one process do not affect one another")
 {
     BallOnPlane one(0.05), two(0.07);
     const Contact alone = one.look()[0];

@@ -1,4 +1,4 @@
-// Frictional impacts whose slip turns, stops or reverses, against a plain integration of Mirtich's equations.
+// Frictional impacts whose slip changes direction, stops or reverses, against a direct integration of Mirtich's equations.
 #include <doctest/doctest.h>
 
 #include "bodies.h"
@@ -35,7 +35,7 @@ Vec3 reference(const Mat3& K, Vec3 u, double mu, double e, double dj)
     return {NAN, NAN, NAN};
 }
 
-/// Collision matrix of a rod of mass 1, length 2, tilted by `angle` in the plane of x and z, met at its lower end.
+/// Collision matrix of a rod of mass 1, length 2, tilted by `angle` in the plane of x and z, hit at its lower end.
 Mat3 rod(double angle)
 {
     Bodies b;
@@ -65,7 +65,7 @@ void check_against_reference(const Mat3& K, const Vec3& u, double mu, double e, 
 }
 }  // namespace
 
-TEST_CASE("a rod with friction: slip that stops, reverses or goes on agrees with the plain integration")
+TEST_CASE("a rod with friction: slip that stops, reverses or continues agrees with the direct integration")
 {
     for (const double angle : {-0.9, -0.3, 0.0, 0.5, 1.1})
         for (const double slip : {-3.0, -0.2, 0.0, 0.4, 5.0})
@@ -78,7 +78,7 @@ TEST_CASE("a rod with friction: slip that stops, reverses or goes on agrees with
             }
 }
 
-TEST_CASE("slip that turns in three dimensions agrees with the plain integration")
+TEST_CASE("slip that changes direction in three dimensions agrees with the direct integration")
 {
     std::uint64_t seed = 3;
     for (int i = 0; i < 40; ++i)
@@ -90,7 +90,7 @@ TEST_CASE("slip that turns in three dimensions agrees with the plain integration
     }
 }
 
-TEST_CASE("the impulse turns with the scene")
+TEST_CASE("the impulse rotates with the scene")
 {
     std::uint64_t seed = 5;
     for (int i = 0; i < 20; ++i)
@@ -105,7 +105,7 @@ TEST_CASE("the impulse turns with the scene")
     }
 }
 
-TEST_CASE("energy is never gained by the law, for any matrix, friction and restitution")
+TEST_CASE("the law never gains energy, for any matrix, friction and restitution")
 {
     std::uint64_t seed = 11;
     double worst = -1, lost = 0;

@@ -76,7 +76,7 @@ TEST_CASE("C2: an oblique impact slides or sticks, alike at all azimuths")
     CHECK(spread(fast) < 1e-15);
 }
 
-TEST_CASE("C2: slip ends within the impact just where the closed form says")
+TEST_CASE("C2: slip ends within the impact exactly where the closed form requires")
 {
     CHECK(oblique(7.56 * (1 - 1e-9), 0).spin == near(oblique(7.56, 0).speed / 0.1, 1e-8));
     CHECK(oblique(7.56 * (1 + 1e-6), 0).speed > oblique(7.56 * (1 + 1e-6), 0).spin * 0.1);
@@ -96,7 +96,7 @@ TEST_CASE("C3: the end of a rod hits an edge")
     CHECK(b.velocity_at(1, {}).z == near(0.5, 1e-14));
 }
 
-TEST_CASE("random impacts never gain energy, keep momentum and part at the right speed")
+TEST_CASE("random impacts never gain energy, conserve momentum and separate at the right speed")
 {
     std::uint64_t seed = 7;
     double worst_gain = 0, worst_momentum = 0, worst_spin = 0;
@@ -126,8 +126,8 @@ TEST_CASE("random impacts never gain energy, keep momentum and part at the right
         const double closing = dot(n, b.velocity_at(1, c[0].point) - b.velocity_at(0, c[0].point));
         const Impact impact = respond(b, c);
         REQUIRE(impact.converged);
-        const double parting = dot(n, b.velocity_at(1, c[0].point) - b.velocity_at(0, c[0].point));
-        CHECK(parting >= -1e-12 * 20);
+        const double separation_speed = dot(n, b.velocity_at(1, c[0].point) - b.velocity_at(0, c[0].point));
+        CHECK(separation_speed >= -1e-12 * 20);
         if (closing >= 0) CHECK(c[0].impulse == Vec3{});
         worst_gain = std::max(worst_gain, (total_energy(b) - before) / before);
         worst_momentum = std::max(worst_momentum, length(momentum() - p) / p_size);
@@ -139,7 +139,7 @@ TEST_CASE("random impacts never gain energy, keep momentum and part at the right
     CHECK(worst_spin < 1e-14);
 }
 
-TEST_CASE("a bounce too low to see does not happen")
+TEST_CASE("a bounce below the visible height is suppressed")
 {
     Bodies b;
     add_body(b, 0, {}, {});
@@ -155,7 +155,7 @@ TEST_CASE("a bounce too low to see does not happen")
     CHECK(b.velocity[1].z == near(9e-7, 1e-12));
 }
 
-TEST_CASE("without a force that presses, a plastic impact leaves the bodies in contact")
+TEST_CASE("without a pressing force, a plastic impact leaves the bodies in contact")
 {
     Bodies b;
     add_sphere(b, 1, 1, {-1, 0, 0}, {1, 0, 0});
@@ -178,7 +178,7 @@ TEST_CASE("Newton's cradle: with e = 1 one ball in, one ball out")
     CHECK(b.velocity[4].x == 1);
 }
 
-TEST_CASE("of several impacts at one time the fastest comes first, whatever the ids")
+TEST_CASE("of several simultaneous impacts the fastest is answered first, whatever the ids")
 {
     for (const bool swapped : {false, true})
     {

@@ -1,4 +1,4 @@
-// Points of contact: how many, where, how deep, and under which features, of solids that lie, stand, roll and slide.
+// Contact points: how many, where, how deep, and with which features, of solids that lie, stand, roll and slide.
 #include <doctest/doctest.h>
 
 #include <numbers>
@@ -45,7 +45,7 @@ Quat about(const Vec3& axis, double angle)
 const Quat kLying = about({0, 1, 0}, std::numbers::pi / 2);
 }  // namespace
 
-TEST_CASE("stacked boxes: four points, their corners, to the last bit, with a gap as with a depth")
+TEST_CASE("stacked boxes: four points at their corners, to the last bit, for a gap as for a depth")
 {
     const Collider cube = solid(GeometryKind::Box, {0.5, 0.5, 0.5});
     for (const double depth : {1e-3, 1e-9, 1e-15, -1e-9, -1e-4})
@@ -79,7 +79,7 @@ TEST_CASE("an overhanging block ends exactly at the edge below it")
     }
 }
 
-TEST_CASE("features stay while boxes slide, turn and rock a little")
+TEST_CASE("features stay the same while boxes slide, turn and rock a little")
 {
     const Collider slab = solid(GeometryKind::Box, {2, 2, 0.1}), cube = solid(GeometryKind::Box, {0.3, 0.3, 0.3});
     const auto first = features(contact_points(slab, {}, cube, {{0, 0, 0.4}, {}}, 1e-3));
@@ -93,7 +93,7 @@ TEST_CASE("features stay while boxes slide, turn and rock a little")
     }
 }
 
-TEST_CASE("edges that cross: one point, square to both; nothing prefers a face")
+TEST_CASE("crossing edges: one point, with a normal perpendicular to both; no face is preferred")
 {
     const Collider beam = solid(GeometryKind::Box, {1, 0.1, 0.1});
     const Quat on_edge = about({1, 0, 0}, std::numbers::pi / 4);
@@ -108,7 +108,7 @@ TEST_CASE("edges that cross: one point, square to both; nothing prefers a face")
     }
 }
 
-TEST_CASE("(b, a) is the mirror of (a, b) to the last bit, features changed over")
+TEST_CASE("(b, a) is the mirror of (a, b) to the last bit, with features exchanged")
 {
     std::uint64_t seed = 9;
     const std::vector<Collider> solids{solid(GeometryKind::Box, {0.4, 0.3, 0.2}), solid(GeometryKind::Capsule, {0.2, 0, 0.4}),
@@ -171,7 +171,7 @@ TEST_CASE("a capsule lies on two points, and stands on one")
     CHECK(std::fabs(side[0].point.z - side[1].point.z) == doctest::Approx(0.5).epsilon(1e-12));
 }
 
-TEST_CASE("a cylinder stands on four points, leans on the exact edge, rolls on two")
+TEST_CASE("a cylinder stands on four points, leans on the exact edge, and rolls on two")
 {
     const Collider can = solid(GeometryKind::Cylinder, {0.2, 0, 0.3}), slab = solid(GeometryKind::Box, {1, 1, 0.1});
     for (const bool on_plane : {true, false})
@@ -182,7 +182,7 @@ TEST_CASE("a cylinder stands on four points, leans on the exact edge, rolls on t
         const auto rolling = contact_points(can, {{0, 0, level + 0.2 - 1e-9}, about({0, 0, 1}, 0.3) * kLying}, ground, {});
         REQUIRE(rolling.size() == 2);
         CHECK(length(rolling[0].point - rolling[1].point) == doctest::Approx(0.6).epsilon(1e-12));
-        // Leaning by a in a direction between the four: the lowest point of the rim carries it.
+        // Tilted by a in a direction between the four: the lowest point of the rim carries it.
         const double a = 0.2, low = 0.3 * std::cos(a) + 0.2 * std::sin(a);
         const auto leaning = contact_points(can, {{0, 0, level + low - 1e-6}, about({1, 0.4, 0}, a)}, ground, {});
         REQUIRE(leaning.size() == 1);
@@ -190,7 +190,7 @@ TEST_CASE("a cylinder stands on four points, leans on the exact edge, rolls on t
     }
 }
 
-TEST_CASE("a can on the edge of a table: its points are inside both, on the rim, the edge and where they cross")
+TEST_CASE("a can on the edge of a table: its points are inside both, on the rim, on the edge and at their intersections")
 {
     const Collider can = solid(GeometryKind::Cylinder, {0.2, 0, 0.3}), slab = solid(GeometryKind::Box, {1, 1, 0.1});
     const auto t = contact_points(can, {{1.1, 0, 0.4 - 1e-9}, {}}, slab, {});
@@ -207,7 +207,7 @@ TEST_CASE("a can on the edge of a table: its points are inside both, on the rim,
     CHECK(widest == doctest::Approx(std::sqrt(0.04 - 0.01)).epsilon(1e-8));
 }
 
-TEST_CASE("a compound's parts collide, each under features of its own")
+TEST_CASE("a compound's parts collide, each with features of its own")
 {
     Bodies bodies;
     Shapes shapes;
@@ -228,6 +228,6 @@ TEST_CASE("a compound's parts collide, each under features of its own")
         CHECK(c.depth == doctest::Approx(0.01).epsilon(1e-13));
         CHECK(std::fabs(c.point.x) == doctest::Approx(0.5).epsilon(1e-13));
     }
-    shapes.geometry[right].pose.p.z = 1;  // a change of a part is seen
+    shapes.geometry[right].pose.p.z = 1;  // a change of a part takes effect
     CHECK(detection.look(bodies, shapes).size() == 1);
 }

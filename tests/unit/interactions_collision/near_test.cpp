@@ -1,4 +1,4 @@
-// Who may meet within a step, how far bodies are apart, and contacts that are gaps still.
+// Which pairs may meet within a step, how far bodies are apart, and contacts that are still gaps.
 #include <algorithm>
 #include <deque>
 
@@ -52,7 +52,7 @@ struct Crowd
 };
 }  // namespace
 
-TEST_CASE("all kinds of search give the same contacts, quadtree too, while bodies leave the bounds it was made for")
+TEST_CASE("all kinds of search give the same contacts, also the quadtree while bodies leave the bounds for which it was made")
 {
     Crowd crowd(300, 1.2);
     std::deque<Detection> spaces;
@@ -74,13 +74,13 @@ TEST_CASE("all kinds of search give the same contacts, quadtree too, while bodie
                 CHECK(got[i].depth == want[i].depth);
             }
         }
-        // Everybody a little, somebody far.
+        // All bodies a little, one of them far.
         for (std::uint32_t b = 1; b < crowd.bodies.size(); ++b) crowd.bodies.position[b] += random_vector(crowd.seed, 0.05);
         for (std::uint32_t b = 1; b < 20; ++b) crowd.bodies.position[b] += random_vector(crowd.seed, 3);
     }
 }
 
-TEST_CASE("pairs that may meet are all those whose bounds, grown by their reach, overlap; half-spaces too")
+TEST_CASE("the pairs that may meet are all those whose bounds, expanded by their reach, overlap; half-spaces too")
 {
     for (const char* space : {"simple", "tree", "sweep_and_prune", "quadtree"})
     {
@@ -100,7 +100,7 @@ TEST_CASE("pairs that may meet are all those whose bounds, grown by their reach,
                 for (std::uint32_t b = a + 1; b < crowd.bodies.size(); ++b)
                 {
                     const bool named = std::find(sink.pairs.begin(), sink.pairs.end(), std::pair(a, b)) != sink.pairs.end();
-                    // Balls that hold a shape wherever it turns: no pair closer than that may be left out.
+                    // Balls that contain a shape in any orientation: no pair closer than that may be left out.
                     const double inner = b % 2 == 1 ? 0.1 : 0.05, outer = b % 2 == 1 ? 0.1 : 0.23,
                                  method = sink.how_far[a] + sink.how_far[b];
                     const double inner_a = a % 2 == 1 ? 0.1 : 0.05, outer_a = a % 2 == 1 ? 0.1 : 0.23;
@@ -115,7 +115,7 @@ TEST_CASE("pairs that may meet are all those whose bounds, grown by their reach,
     }
 }
 
-TEST_CASE("gaps: sphere, box and plane, apart and in one another")
+TEST_CASE("gaps: sphere, box and plane, apart and overlapping")
 {
     Bodies bodies;
     Shapes shapes;
@@ -147,7 +147,7 @@ TEST_CASE("gaps: sphere, box and plane, apart and in one another")
     CHECK(gap(0, 1).gap == near(1e-9, 1e-6));
 }
 
-TEST_CASE("contacts with a gap up to the margin come with a negative depth")
+TEST_CASE("contacts with a gap up to the margin are reported with a negative depth")
 {
     Bodies bodies;
     Shapes shapes;

@@ -9,7 +9,7 @@ using namespace plab::test;
 
 namespace
 {
-/// Plays the host: brackets the zero of `gap`, which is > 0 at the start of the step and < 0 at its end.
+/// Takes the host's part: brackets the zero of `gap`, which is > 0 at the start of the step and < 0 at its end.
 template <class Gap>
 Trial locate(const resolution::BisectionRows& rows, double step, Gap gap)
 {
@@ -26,7 +26,7 @@ Trial locate(const resolution::BisectionRows& rows, double step, Gap gap)
 }
 }  // namespace
 
-TEST_CASE("bisection finds the time of a falling ball's impact to 1e-15 s, on the clear side")
+TEST_CASE("bisection finds the time of a falling ball's impact to 1e-15 s, before the overlap")
 {
     OneRow<resolution::BisectionRows> row;
     const auto gap = [](double t) { return 1e-3 - 0.01 * t - 0.5 * 9.81 * t * t; };
@@ -38,7 +38,7 @@ TEST_CASE("bisection finds the time of a falling ball's impact to 1e-15 s, on th
     CHECK(t.iteration <= 48);
 }
 
-TEST_CASE("the tolerance is kept, and is never finer than the time itself")
+TEST_CASE("the tolerance is met, and is never finer than the rounding of the time")
 {
     OneRow<resolution::BisectionRows> row;
     row.rows.time_tolerance[0] = 1e-6;
@@ -59,7 +59,7 @@ TEST_CASE("an impact at the very start of the step ends at the start")
     CHECK(t.begin == 0);
 }
 
-TEST_CASE("out of trials, it gives up and says so")
+TEST_CASE("when it has used all trials, it gives up and reports that")
 {
     OneRow<resolution::BisectionRows> row;
     row.rows.max_iterations[0] = 5;

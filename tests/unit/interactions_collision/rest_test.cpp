@@ -19,7 +19,7 @@ struct BoxOnPlane
 
     explicit BoxOnPlane(double friction, double slope = 0, const Vec3& v = {})
     {
-        // The slope is in gravity; the plane stays level, so that the closed forms stay short.
+        // Gravity is inclined instead of the plane, so that the closed forms stay short.
         const Vec3 g{kG * std::sin(slope), 0, -kG * std::cos(slope)};
         add_body(b, 0, {}, {});
         add_body(b, 1, {1.0 / 6, 1.0 / 6, 1.0 / 6}, {0, 0, 0.5}, v + g * kStep);
@@ -67,7 +67,7 @@ TEST_CASE("a box on a plane stays, and its corners carry its weight")
     CHECK(box.normal_impulse() == near(kG * kStep, 1e-10));
 }
 
-TEST_CASE("the impulses of the step before make the next one short")
+TEST_CASE("the impulses of the previous step reduce the iterations of the next one")
 {
     BoxOnPlane first(0.5), second(0.5);
     const int cold = first.solve().iterations;
@@ -89,7 +89,7 @@ TEST_CASE("on a slope a box holds below the friction angle and slides above it")
     CHECK(above.b.velocity[1].x == near(kG * (std::sin(slope) - mu * std::cos(slope)) * kStep, 1e-9));
 }
 
-TEST_CASE("a sliding sphere loses mu g dt, in the direction of its slip, alike at all azimuths")
+TEST_CASE("a sliding sphere loses mu g dt, in the direction of its slip, the same at all azimuths")
 {
     for (int i = 0; i < 8; ++i)
     {
@@ -117,7 +117,7 @@ TEST_CASE("a gap may close within the step, and no further")
     CHECK(b.velocity[1].z == -1e-2);
     b.velocity[1].z = -5e-3;
     respond(b, c, ImpactMode::Rest, kStep);
-    CHECK(b.velocity[1].z == near(-5e-3, 1e-14));  // the impulse before was a guess
+    CHECK(b.velocity[1].z == near(-5e-3, 1e-14));  // the previous impulse was an initial guess
     CHECK(c[0].impulse.z == 0);
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("contacts never pull")
     CHECK(c[0].impulse == Vec3{});
 }
 
-TEST_CASE("random heaps: inside the cone, not closing, friction takes energy")
+TEST_CASE("random heaps: impulses inside the cone, no closing speed, friction dissipates energy")
 {
     std::uint64_t seed = 21;
     for (int i = 0; i < 500; ++i)
@@ -152,7 +152,7 @@ TEST_CASE("random heaps: inside the cone, not closing, friction takes energy")
         }
         const double before = total_energy(b);
         const Impact impact = respond(b, c, ImpactMode::Rest, kStep);
-        if (!impact.converged) continue;  // a wedge that friction locks has no unique answer
+        if (!impact.converged) continue;  // a wedge locked by friction has no unique solution
         CHECK(impact.residual < 1e-10);
         CHECK(total_energy(b) <= before * (1 + 1e-10));
         for (const Contact& k : c)
@@ -165,7 +165,7 @@ TEST_CASE("random heaps: inside the cone, not closing, friction takes energy")
     }
 }
 
-TEST_CASE("nothing happens between bodies that nothing moves, and without contacts")
+TEST_CASE("nothing changes for bodies that do not move, and without contacts")
 {
     Bodies b;
     add_body(b, 0, {}, {});

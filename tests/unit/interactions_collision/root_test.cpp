@@ -1,4 +1,4 @@
-// Zeros of a gap: how many looks, how right.
+// Zeros of a gap: number of evaluations and accuracy.
 #include <doctest/doctest.h>
 
 #include "bodies.h"
@@ -12,7 +12,7 @@ using namespace plab::test;
 
 namespace
 {
-/// Plays the host with an overlap known at the end.
+/// Takes the host's part, with an overlap known at the end.
 template <class Gap, class Rate>
 Trial close_in(double step, Gap gap, Rate rate)
 {
@@ -36,7 +36,7 @@ Trial close_in(double step, Gap gap, Rate rate)
 }
 }  // namespace
 
-TEST_CASE("a falling ball's impact takes a handful of looks where bisection takes 48")
+TEST_CASE("a falling ball's impact takes a few evaluations where bisection takes 48")
 {
     const auto gap = [](double t) { return 1e-3 - 0.01 * t - 0.5 * 9.81 * t * t; };
     const auto rate = [](double t) { return -0.01 - 9.81 * t; };
@@ -49,7 +49,7 @@ TEST_CASE("a falling ball's impact takes a handful of looks where bisection take
     CHECK(t.iteration <= 7);
 }
 
-TEST_CASE("corners that sweep, springs that push back, steep and flat gaps: few looks each")
+TEST_CASE("rotating corners, springs that push back, steep and flat gaps: few evaluations each")
 {
     struct Case
     {
@@ -72,13 +72,13 @@ TEST_CASE("corners that sweep, springs that push back, steep and flat gaps: few 
     }
 }
 
-TEST_CASE("without rates it is a root of the chord, and still ends")
+TEST_CASE("without rates it is the secant method, and still ends")
 {
     const auto unknown = [](double) { return std::nan(""); };
     const Trial t = close_in(
         1, [](double s) { return 0.3 - s * s; }, unknown);
     CHECK(std::fabs(t.begin - std::sqrt(0.3)) < 1e-14);
-    CHECK(t.iteration <= 55);  // as bisection, and hardly more
+    CHECK(t.iteration <= 55);  // like bisection, and hardly more
 }
 
 TEST_CASE("a Hermite cubic's zero is exact for a cubic")
@@ -103,7 +103,7 @@ TEST_CASE("conservative advancement steps by gap over closing speed, and accepts
     CHECK(t.decision == Trial::Decision::Accept);
 }
 
-TEST_CASE("bodies that graze for too long are told of")
+TEST_CASE("bodies that graze for too long are reported")
 {
     struct Events final : EventSink
     {

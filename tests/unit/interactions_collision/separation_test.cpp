@@ -1,5 +1,5 @@
-// Signed distance of every pair of solids, proved by itself: points that lie in the solids bound a gap from above, planes
-// square to the normal from below; a depth is a stationary one, and no direction of many is less deep.
+// Signed distance of every pair of solids, checked without another implementation: points of the solids bound a gap from above, planes
+// perpendicular to the normal from below; a depth is stationary, and it is smallest among many directions.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -97,7 +97,7 @@ struct Worst
     double gap = 0, depth = 0, above_least = 0;
 };
 
-/// How many times its own size a mistake of the gap is shown to be at most; of a gap both bounds, of a depth the planes'.
+/// Bound on the relative error of the gap: for a gap by both bounds, for a depth by the planes.
 void judge(const Collider& a, const Pose& X, const Collider& b, const Pose& Y, double scale, std::uint64_t& seed, Worst& worst)
 {
     const Separation s = separation(a, X, b, Y), mirrored = separation(b, Y, a, X);
@@ -147,7 +147,7 @@ TEST_CASE("every pair, apart and overlapping, of any size: gap and depth to roun
             }
 }
 
-TEST_CASE("nearly touching, by a millionth of the size either way: the gap runs through zero without a jump")
+TEST_CASE("nearly touching, by a millionth of the size on either side: the gap passes zero without a jump")
 {
     for (std::size_t i = 0; i < kNames.size(); ++i)
         for (std::size_t j = i; j < kNames.size(); ++j)
@@ -166,7 +166,7 @@ TEST_CASE("nearly touching, by a millionth of the size either way: the gap runs 
                 for (const double gap : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 0.0, -1e-15, -1e-12, -1e-9, -1e-6})
                 {
                     Y.p = start - far.normal * (far.gap - gap);
-                    // Of an overlap the depth may be less: another way out may be shorter.
+                    // The depth of an overlap may be less: another direction may separate the bodies sooner.
                     const double found = separation(a, X, b, Y).gap;
                     jump = std::max(jump, gap >= 0 ? std::fabs(found - gap) : std::max(gap - found, found));
                 }
@@ -196,7 +196,7 @@ TEST_CASE("against a plane the gap is that of the lowest point")
         }
 }
 
-TEST_CASE("degenerate pairs: the same place, the same solid, needles and plates; finite, and moving out parts them")
+TEST_CASE("degenerate pairs: the same position, the same solid, needles and plates; the depth is finite, and moving by it separates them")
 {
     std::uint64_t seed = 11;
     Geometry needle, plate;

@@ -149,7 +149,7 @@ TEST_CASE("box and hull on a plane: every corner that is below")
         REQUIRE(t.size() == below.size());
         for (std::size_t k = 0; k < t.size(); ++k) CHECK(std::fabs(t[k].depth - below[k]) < 2e-15);
         CHECK(std::fabs(deepest(u) - deepest(t)) < 2e-15);
-        if (t.size() > 4) continue;  // of more, a hull keeps those that hold it upright
+        if (t.size() > 4) continue;  // of more, a hull keeps those that support it
         REQUIRE(t.size() == u.size());
         for (std::size_t k = 0; k < t.size(); ++k)
         {
@@ -161,7 +161,7 @@ TEST_CASE("box and hull on a plane: every corner that is below")
     CHECK(contact_points(plane, {}, plane, {}).empty());
 }
 
-TEST_CASE("a round mesh on a plane stands on few points that surround it")
+TEST_CASE("a round mesh on a plane rests on few points that surround it")
 {
     std::vector<Vec3> prism;
     for (int i = 0; i < 100; ++i)
@@ -178,7 +178,7 @@ TEST_CASE("a round mesh on a plane stands on few points that surround it")
     CHECK(length(sum) / static_cast<double>(t.size()) < 0.15);
 }
 
-TEST_CASE("box and box: depth as by all separating axes")
+TEST_CASE("box and box: the depth agrees with all separating axes")
 {
     const Collider a = collider(GeometryKind::Box, {0.4, 0.3, 0.2}), b = collider(GeometryKind::Box, {0.1, 0.5, 0.25});
     const Hull hull_a = *make_hull(box_corners({0.4, 0.3, 0.2})), hull_b = *make_hull(box_corners({0.1, 0.5, 0.25}));
@@ -200,7 +200,7 @@ TEST_CASE("box and box: depth as by all separating axes")
     CHECK(worst < 2e-15);
 }
 
-TEST_CASE("hulls: touching exactly when some axis says so; the depth is the least one")
+TEST_CASE("hulls: they touch exactly if no axis separates them; the depth is the least one")
 {
     std::uint64_t seed = 6;
     double worst = 0;
@@ -255,7 +255,7 @@ TEST_CASE("crossed beams as hulls meet in the four corners of their overlap")
     }
 }
 
-TEST_CASE("the hull of random points holds them all and is closed")
+TEST_CASE("the hull of random points contains them all and is closed")
 {
     std::uint64_t seed = 8;
     for (const int n : {4, 10, 200, 2000})
@@ -273,7 +273,7 @@ TEST_CASE("the hull of random points holds them all and is closed")
     }
 }
 
-TEST_CASE("a hull drops inner and doubled points, and refuses what has no volume")
+TEST_CASE("a hull drops inner and duplicate points, and refuses points without volume")
 {
     auto corners = box_corners({1, 1, 1});
     for (const Vec3& p : box_corners({1, 1, 1})) corners.push_back(p);

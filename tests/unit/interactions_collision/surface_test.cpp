@@ -46,7 +46,7 @@ Geometry grid(std::uint32_t n, double spacing, double height = 0)
     set_surface(g, Surface::Triangles);
     return g;
 }
-/// Points on a ball of radius 1: their hull is fine where they are many.
+/// Points on a ball of radius 1: the more points, the finer their hull.
 std::vector<Vec3> points_of_ball(int n, std::uint64_t& random)
 {
     std::vector<Vec3> out;
@@ -97,7 +97,7 @@ std::vector<Vec3> samples(const Collider& c, const Pose& X)
 }
 }  // namespace
 
-TEST_CASE("the gap to the inside of a bowl and a bore is what is left to the outermost point")
+TEST_CASE("the gap to the inside of a bowl and a bore is the distance left for the outermost point")
 {
     const Collider bowl(round_surface(Surface::Bowl, 1, 1)), bore(round_surface(Surface::Bore, 1, 50));
     std::uint64_t random = 3;
@@ -113,7 +113,7 @@ TEST_CASE("the gap to the inside of a bowl and a bore is what is left to the out
                 in_bowl = std::min(in_bowl, 1 - length(p));
                 in_bore = std::min(in_bore, 1 - std::hypot(p.x, p.y));
             }
-            // Samples are not quite the outermost points of what is round.
+            // Samples are not quite the outermost points of round solids.
             const bool round = c.kind() != ColliderKind::Box && c.kind() != ColliderKind::Hull;
             const double most = round ? 2e-4 : 1e-15;
             const Separation s = separation(c, X, bowl, {}), t = separation(c, X, bore, {});
@@ -125,13 +125,13 @@ TEST_CASE("the gap to the inside of a bowl and a bore is what is left to the out
         }
 }
 
-TEST_CASE("a ball meets the rim of a bowl, from inside and from above")
+TEST_CASE("a ball touches the rim of a bowl, from inside and from above")
 {
     const Collider bowl(round_surface(Surface::Bowl, 1, 0)), ball(solid(GeometryKind::Sphere, {0.1, 0, 0}));
     CHECK(separation(ball, {{0.8, 0, 0.3}, {}}, bowl, {}).gap == near(std::hypot(0.2, 0.3) - 0.1, 1e-14));
     CHECK(separation(ball, {{0, 1.3, 0.4}, {}}, bowl, {}).gap == near(0.4, 1e-14));
     CHECK(separation(ball, {{0.5, 0, 0}, {}}, bowl, {}).gap == near(0.4, 1e-14));
-    // Behind the wall altogether: it has not come from inside.
+    // Completely behind the wall: it did not come from inside.
     CHECK(separation(ball, {{0, 0, -1.5}, {}}, bowl, {}).gap == HUGE_VAL);
 }
 
@@ -168,7 +168,7 @@ TEST_CASE("a flat grid is a plane, over faces, edges and corners")
         for (int i = 0; i < 200; ++i)
         {
             CAPTURE(static_cast<int>(c.kind()));
-            // Every fourth one right over an edge or a corner.
+            // Every fourth one exactly over an edge or a corner.
             Pose X{random_vector(random, 0.4), i % 3 == 0 ? Quat{} : random_rotation(random)};
             if (i % 4 == 0) X.p.x = 0.125 * std::round(8 * X.p.x), X.p.y = i % 8 == 0 ? 0.125 * std::round(8 * X.p.y) : X.p.y;
             X.p.z = 0.3 + 0.1 * X.p.z;
@@ -194,7 +194,7 @@ TEST_CASE("a flat grid is a plane, over faces, edges and corners")
         }
 }
 
-TEST_CASE("the triangles of a convex solid are that solid, seen from outside")
+TEST_CASE("the triangles of a convex solid collide like that solid, from outside")
 {
     std::uint64_t random = 12;
     for (const int corners : {4, 8, 30, 300})
@@ -235,7 +235,7 @@ TEST_CASE("the triangles of a convex solid are that solid, seen from outside")
     }
 }
 
-TEST_CASE("a ball between two slopes touches both, over a ridge one place alone")
+TEST_CASE("a ball between two slopes touches both; over a ridge it touches one point only")
 {
     Geometry g;
     g.kind = GeometryKind::Mesh;
@@ -256,7 +256,7 @@ TEST_CASE("a ball between two slopes touches both, over a ridge one place alone"
     CHECK(contact_points.all()[0].normal.z == near(-1, 1e-15));
 }
 
-TEST_CASE("surfaces without a front do not collide, and say so")
+TEST_CASE("surfaces without a front do not collide, and this is reported")
 {
     Geometry flat = grid(1, 1);
     for (Vec3& v : flat.vertices) v = {v.x, 0, 0};

@@ -1,4 +1,4 @@
-/// Fields against their closed forms, who they leave alone, and what the ledger is told.
+/// Fields against their closed forms, which bodies they do not affect, and what they report to the ledger.
 #include <doctest/doctest.h>
 
 #include <functional>
@@ -22,7 +22,7 @@ namespace
 
 constexpr Row kFirst[] = {0};
 
-/// One dynamic body, one static one and one shaft, and where the forces on them go.
+/// One dynamic body, one static one and one shaft, and the sums of the forces on them.
 struct HostTables
 {
     Bodies bodies = make_bodies(2);
@@ -47,7 +47,7 @@ struct HostTables
 
 const RefList kBothBodies{{Facet::Body, 0}, {Facet::Body, 1}};
 
-/// Classical Runge-Kutta for v' = a(v), z' = v: what RungeKutta4 makes of a force on one body.
+/// Classical Runge-Kutta for v' = a(v), z' = v: the motion that RungeKutta4 computes for a force on one body.
 std::pair<double, double> fall(double time, int steps, const std::function<double(double)>& a)
 {
     const double h = time / steps;
@@ -63,7 +63,7 @@ std::pair<double, double> fall(double time, int steps, const std::function<doubl
 
 }  // namespace
 
-TEST_CASE("gravity pulls with m g at the centre, and at dynamic bodies only")
+TEST_CASE("gravity pulls with m g at the centre, and on dynamic bodies only")
 {
     HostTables scene;
     TableFixture<GravityRows> gravity;
@@ -76,7 +76,7 @@ TEST_CASE("gravity pulls with m g at the centre, and at dynamic bodies only")
     CHECK(scene.power[0] == doctest::Approx(58.86).epsilon(1e-15));
 }
 
-TEST_CASE("fields leave alone who is not being advanced")
+TEST_CASE("fields do not act on bodies that are not being advanced")
 {
     HostTables scene;
     const std::vector<std::uint8_t> nobody = {0, 0};
@@ -208,7 +208,7 @@ TEST_CASE("the air and its first derivatives have no jumps")
         }
 }
 
-TEST_CASE("a fan pushes with its usual drag at rest, and nothing moves with the air or at a standing fan")
+TEST_CASE("a fan pushes a body at rest with the usual drag; a body that moves with the air, or at a stopped fan, feels no force")
 {
     HostTables scene;
     TableFixture<AirflowRows> airflow;
@@ -235,7 +235,7 @@ TEST_CASE("a fan pushes with its usual drag at rest, and nothing moves with the 
     CHECK(length(push(100, {0, 0, U})) < 1e-15);
     CHECK(push(100, {0, 0, 2 * U}).z < 0);
     CHECK(push(0, {1, 2, 3}) == Vec3{});
-    // It blows the other way when it turns backwards: a body in front feels nothing, one behind is pushed away.
+    // It blows backwards when its rotation is reversed: a body in front feels nothing, one behind is pushed away.
     CHECK(push(-100, {}) == Vec3{});
     scene.bodies.position[0] = {0, 0, -2};
     CHECK(length(push(-100, {}) - Vec3{0, 0, -c * U * U}) < 1e-15);

@@ -1,4 +1,4 @@
-/// The rows of a scene, as its components give them, while bodies move as a test wants.
+/// The rows of a scene, as its components emit them, while bodies move as a test prescribes.
 #pragma once
 
 #include "plab/rotation.h"
@@ -21,7 +21,7 @@ public:
     }
     Scene& scene() { return scene_; }
     world::HostTables& host() { return scene_.simulation().world().host(); }
-    /// Speeds that fit the joints or not: any.
+    /// Any speeds, whether or not they satisfy the joints.
     void throw_about(double size)
     {
         for (std::uint32_t b = 0; b < host().bodies.size(); ++b)
@@ -31,7 +31,7 @@ public:
         }
         for (std::uint32_t s = 0; s < host().shafts.size(); ++s) host().shafts.speed[s] = size * random().x;
     }
-    /// All move on for dt (s) at constant speeds.
+    /// All bodies move for dt (s) at constant speeds.
     void move(double dt)
     {
         Bodies& bodies = host().bodies;
@@ -56,9 +56,9 @@ public:
         for (std::uint32_t k = 0; k < row.count; ++k)
         {
             const RowBlock& b = row.blocks[k];
-            sum += b.who.facet == Facet::Shaft
-                       ? b.angular.x * host().shafts.speed[b.who.index]
-                       : dot(b.linear, host().bodies.velocity[b.who.index]) + dot(b.angular, host().bodies.angular_velocity[b.who.index]);
+            sum += b.participant.facet == Facet::Shaft ? b.angular.x * host().shafts.speed[b.participant.index]
+                                                       : dot(b.linear, host().bodies.velocity[b.participant.index]) +
+                                                             dot(b.angular, host().bodies.angular_velocity[b.participant.index]);
         }
         return sum;
     }

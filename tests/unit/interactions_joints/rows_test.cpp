@@ -40,7 +40,7 @@ const Case kCases[] = {
 
 }  // namespace
 
-TEST_CASE("rows: J and bias agree with central differences, error with the rate of its row")
+TEST_CASE("rows: J and bias agree with central differences, and the error with the rate of its row")
 {
     for (const Case& c : kCases)
     {
@@ -75,7 +75,7 @@ TEST_CASE("rows: J and bias agree with central differences, error with the rate 
     }
 }
 
-TEST_CASE("rows between bodies are action and reaction: no force and no moment is left over")
+TEST_CASE("rows between bodies are action and reaction: no net force and no net moment remains")
 {
     for (const Case& c : kCases)
     {
@@ -88,7 +88,7 @@ TEST_CASE("rows between bodies are action and reaction: no force and no moment i
             for (std::uint32_t k = 0; k < row.count; ++k)
             {
                 const RowBlock& b = row.blocks[k];
-                force += b.linear, moment += cross(probe.host().bodies.position[b.who.index], b.linear) + b.angular;
+                force += b.linear, moment += cross(probe.host().bodies.position[b.participant.index], b.linear) + b.angular;
             }
             CHECK(length(force) < 1e-15);
             CHECK(length(moment) < 1e-15);

@@ -11,9 +11,9 @@ double work_of(Scene& s, const std::string& id) { return s.simulation().stepper(
 
 }  // namespace
 
-TEST_CASE("a joint that comes takes kinetic energy, and books it; a passive one does no work")
+TEST_CASE("a joint that is added removes kinetic energy, and books it; a passive one does no work")
 {
-    // Two points of 1 and 3 kg meet in a rod across their speeds: along it they go on together.
+    // Two points of 1 and 3 kg are connected by a rod: their speeds along it become equal.
     Scene s(solver_is("RungeKutta4") + body("p", 1, {1, 1, 1}, {0, 0, 0}, "linear_velocity='0 4 0'") + body("q", 3, {1, 1, 1}, {0, 2, 0}) +
                 joint("rod", "Distance", "p", "q", ""),
             dt(100));
@@ -24,7 +24,7 @@ TEST_CASE("a joint that comes takes kinetic energy, and books it; a passive one 
     CHECK(near(s.simulation().totals().kinetic, 2, 1e-13));
 }
 
-TEST_CASE("a motor's work is what its load takes, lifted and spun up")
+TEST_CASE("a motor's work is the energy of its load, lifted and spun up")
 {
     // 2 kg lifted at 0.5 m/s for 3 s: m g z + m v^2 / 2. A rotor spun up by a servo: its kinetic energy.
     Scene s(solver_is("RungeKutta4") + gravity() + body("load", 2, {.1, .1, .1}, {0, 0, 0}) +
@@ -38,11 +38,11 @@ TEST_CASE("a motor's work is what its load takes, lifted and spun up")
     CHECK(near(work_of(s, "winch"), 2 * 9.81 * 1.5 + .25, 1e-12));
     CHECK(std::fabs(work_of(s, "rail")) < 1e-13);
     CHECK(near(s.vec("winch", "force").z, 2 * 9.81, 1e-13));
-    // 144 J that it put in at once, and took out again: the quadrature of the solver.
+    // 144 J that it supplied at once and then removed again: the quadrature of the solver.
     CHECK(near(work_of(s, "servo"), s.simulation().totals().kinetic - .25, 1e-5));
 }
 
-TEST_CASE("wrenches act on b: a hinge bears weight and moment of what hangs on it")
+TEST_CASE("wrenches act on b: a hinge carries the weight and the moment of the bodies that hang on it")
 {
     // A bracket of 1 m along x, fixed to the wall at the origin; a lamp of 3 kg hangs on its end.
     Scene s(solver_is("RungeKutta4") + gravity() + body("bracket", 2, {.1, .1, .1}, {.5, 0, 0}) +
@@ -53,6 +53,6 @@ TEST_CASE("wrenches act on b: a hinge bears weight and moment of what hangs on i
     s.run(1);
     CHECK(distance(s.vec("hook", "force"), {0, 0, 3 * 9.81}) < 1e-12);
     CHECK(distance(s.vec("wall", "force"), {0, 0, 5 * 9.81}) < 1e-12);
-    // About the bracket's centre of mass: the lamp's pull has a lever of 0.5 m, the wall answers it.
+    // About the bracket's centre of mass: the lamp's weight has a lever arm of 0.5 m, and the wall balances it.
     CHECK(distance(s.vec("wall", "torque"), {0, -3 * 9.81 * .5, 0}) < 1e-12);
 }

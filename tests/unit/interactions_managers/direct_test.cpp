@@ -1,4 +1,4 @@
-// Newton's method on the contact law, against what the law says in closed form.
+// Newton's method on the contact law, against closed forms of the law.
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +25,7 @@ double normal_sum(const Problem& p, std::size_t first, std::size_t count)
 
 }  // namespace
 
-TEST_CASE("a stack of n boxes rests on its weight, from a cold start, in a few steps whatever n is")
+TEST_CASE("a stack of n boxes carries its weight, from a cold start, in a few iterations for any n")
 {
     for (const std::size_t n : {1u, 2u, 10u, 50u, 100u})
     {
@@ -60,7 +60,7 @@ TEST_CASE("D1: a heavy box on a light one, mass ratios to 1e8: both loads to 1e-
     }
 }
 
-TEST_CASE("a solution is its own solution: no step is made from it")
+TEST_CASE("a solution is a fixed point: no iteration is made from it")
 {
     IslandWorld w;
     w.add_stack(std::vector<double>(20, 1.0), 0.8);
@@ -71,7 +71,7 @@ TEST_CASE("a solution is its own solution: no step is made from it")
     CHECK(solver.solve(p, {}).steps == 0);
 }
 
-TEST_CASE("friction is a cone: a sliding box is braked by mu m g against its slip, in every direction alike")
+TEST_CASE("friction is a cone: a sliding box is braked by mu m g against its slip, equally in every direction")
 {
     const double mu = 0.3;
     for (int k = 0; k < 12; ++k)
@@ -84,13 +84,13 @@ TEST_CASE("friction is a cone: a sliding box is braked by mu m g against its sli
         Problem p = problem_of(w);
         const Solved s = NewtonSolver().solve(p, {});
         CHECK(s.converged);
-        // Its corners slip alike only if it does not turn over: mu h < half its width.
+        // Its corners slip equally only if it does not tip over: mu h < half its width.
         CHECK(length(p.movers[0].v - along * (3 - mu * kGravity * kStep)) < 1e-12);
         for (const Point& q : p.points) CHECK(std::hypot(q.impulse.x, q.impulse.y) == doctest::Approx(mu * q.impulse.z).epsilon(1e-9));
     }
 }
 
-TEST_CASE("D6: a table with four legs: the split is the even one, as nothing says otherwise")
+TEST_CASE("D6: a table with four legs: the load is distributed evenly, as nothing determines otherwise")
 {
     IslandWorld w;
     const auto ground = w.add_box(0, {5, 5, 1}, {0, 0, -1}), table = w.add_box(8, {1, 0.6, 0.4}, {0, 0, 0.4});
@@ -128,7 +128,7 @@ TEST_CASE("wherever Newton's method says that it converged, the law holds at eve
                 CHECK(q.impulse.z >= -1e-11);
                 CHECK(std::fabs(u.z * q.impulse.z) < 1e-10);
                 CHECK(held <= mu * q.impulse.z + 1e-10);
-                // Slip against friction, and only with all of it.
+                // Slip is opposed by friction, and requires the full friction.
                 if (slip > 1e-8) CHECK(std::fabs(q.impulse.x * u.x + q.impulse.y * u.y + mu * q.impulse.z * slip) < 1e-9);
             }
         }
@@ -137,7 +137,7 @@ TEST_CASE("wherever Newton's method says that it converged, the law holds at eve
 
 TEST_CASE("a one-sided row and an equality row share an island with contacts")
 {
-    // A box on the ground, pulled along x by a row that wants 1 m/s with at most 2 N, friction 0.1: it accelerates.
+    // A box on the ground, pulled along x by a row with a target of 1 m/s and at most 2 N, friction 0.1: it accelerates.
     IslandWorld w;
     w.add_stack({1}, 0.1);
     ConstraintRow pull;
@@ -154,7 +154,7 @@ TEST_CASE("a one-sided row and an equality row share an island with contacts")
     CHECK(p.movers[0].v.x == doctest::Approx((2 - 0.1 * kGravity) * kStep).epsilon(1e-9));
 }
 
-TEST_CASE("D2: the work of one factorisation of a stack is that of its height; of a wall, less than a band's")
+TEST_CASE("D2: the work of one factorisation of a stack is proportional to its height; for a wall it is less than that of a band matrix")
 {
     for (const std::uint32_t n : {10u, 20u, 50u, 100u})
     {

@@ -1,4 +1,4 @@
-/// Islands by hand: boxes, faces between them, and a motion under gravity.
+/// Islands made by hand: boxes, faces between them, and a motion under gravity.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -50,7 +50,7 @@ struct IslandWorld
         for (int i = 0; i < 4; ++i)
             add_contact(a, b, at + Vec3{(i & 1) != 0 ? half_x : -half_x, (i & 2) != 0 ? half_y : -half_y, 0}, {0, 0, 1}, friction);
     }
-    /// n unit boxes, one upon another, the masses given.
+    /// n unit boxes, one on another, with the given masses.
     void add_stack(const std::vector<double>& masses, double friction)
     {
         std::uint32_t below = add_box(0, {1, 1, 1}, {0, 0, -1});
@@ -84,7 +84,7 @@ inline managers::Problem problem_of(IslandWorld& world, double h = 0.01)
     return p;
 }
 
-/// Gravity alone; poses move, depths are read off the boxes' positions along the contacts' normals.
+/// Gravity alone; poses move, depths follow from the boxes' positions along the contacts' normals.
 class GravityMotion final : public IslandMotion
 {
 public:

@@ -46,7 +46,7 @@ void run(IslandWorld& w, OneRow<Table>& manager, Solve solve, double h, int step
 
 }  // namespace
 
-TEST_CASE("C14: a sliding box stops where it should, whatever the step: 1e-12 with Direct, 1e-8 with sweeps")
+TEST_CASE("C14: a sliding box stops at the position of the closed form, whatever the step: 1e-12 with Direct, 1e-8 with sweeps")
 {
     const double v = 3, mu = 0.4, method = v * v / (2 * mu * kGravity);
     for (const double h : {1.0 / 60, 1.0 / 30, 0.1})
@@ -71,7 +71,7 @@ TEST_CASE("C14: a sliding box stops where it should, whatever the step: 1e-12 wi
     }
 }
 
-TEST_CASE("an elastic impact gives back the speed at which it met, then gravity acts: energy is kept")
+TEST_CASE("an elastic impact returns the approach speed, then gravity acts: energy is conserved")
 {
     IslandWorld w;
     const auto ground = w.add_box(0, {9, 9, 1}, {0, 0, -1}), box = w.add_box(1, {0.5, 0.5, 0.5}, {0, 0, 0.5});
@@ -86,7 +86,7 @@ TEST_CASE("an elastic impact gives back the speed at which it met, then gravity 
     CHECK(std::fabs(0.5 * v * v + kGravity * rise - 2) < 1e-13);
 }
 
-TEST_CASE("overlap is parted without speed")
+TEST_CASE("overlap is corrected without adding speed")
 {
     IslandWorld w;
     w.add_stack({1, 1, 1}, 0.5);
@@ -98,11 +98,11 @@ TEST_CASE("overlap is parted without speed")
     CHECK(w.bodies.position[w.members[2]].z == doctest::Approx(2.5 + 3e-3).epsilon(1e-9));
 }
 
-TEST_CASE("sweeps from a bad guess make no energy")
+TEST_CASE("sweeps from a bad initial guess add no energy")
 {
     IslandWorld w;
     w.add_stack(std::vector<double>(8, 1.0), 0.5);
-    // A guess that would throw the boxes up.
+    // An initial guess that would throw the boxes up.
     for (Contact& c : w.contacts) c.impulse = {0, 0, 30};
     OneRow<SequentialRows> swept;
     run(w, swept, solve_sequential, 1.0 / 60, 1);
@@ -111,7 +111,7 @@ TEST_CASE("sweeps from a bad guess make no energy")
     CHECK(energy <= 8 * 0.5 * std::pow(kGravity / 60, 2));
 }
 
-TEST_CASE("SoftStep: a box sinks by what its stiffness says, and stands; a row of ten stands too")
+TEST_CASE("SoftStep: a box sinks by the amount of its stiffness and rests; so does a row of ten")
 {
     for (const std::size_t n : {1u, 10u})
     {

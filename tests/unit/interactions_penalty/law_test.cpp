@@ -61,7 +61,7 @@ struct Bench
     Contact out;
 };
 
-/// Share of the approach speed that m x'' = -f(x, x') gives back, by RK4 with n steps per 1/w until `over` says it ended.
+/// Share of the approach speed that m x'' = -f(x, x') returns, by RK4 with n steps per 1/w until `over` reports the end.
 template <class Force, class Over>
 double rebound(Force f, Over over)
 {
@@ -138,7 +138,7 @@ TEST_CASE("a Hertzian contact pushes with k depth^1.5 and never pulls")
     CHECK(b.push<touch_hunt_crossley>(rows).z == doctest::Approx(9.81).epsilon(1e-14));
 }
 
-TEST_CASE("stiction springs stay in Coulomb's cone, in all directions alike")
+TEST_CASE("stiction springs stay in Coulomb's cone, equally in all directions")
 {
     Bench b;
     auto rows = b.make<PenaltyRows>();

@@ -1,4 +1,4 @@
-// The block that a script's memory is cut from.
+// The block from which a script's memory is allocated.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ bool is_filled(const void* piece, std::size_t size, unsigned char mark)
 
 }  // namespace
 
-TEST_CASE("pieces do not overlap, keep their content when resized, and come back")
+TEST_CASE("pieces do not overlap, keep their content when resized, and can be used again")
 {
     struct Piece
     {
@@ -48,7 +48,7 @@ TEST_CASE("pieces do not overlap, keep their content when resized, and come back
         refused += at == nullptr;
         if (!at)
         {
-            CHECK((!p.at || size > p.size));  // less always fits
+            CHECK((!p.at || size > p.size));  // a smaller size always fits
             continue;
         }
         REQUIRE(reinterpret_cast<std::uintptr_t>(at) % 16 == 0);
@@ -62,7 +62,7 @@ TEST_CASE("pieces do not overlap, keep their content when resized, and come back
     CHECK(arena.used() == 0);
 }
 
-TEST_CASE("a full arena refuses, and gives again what was released")
+TEST_CASE("a full arena refuses, and reuses released memory")
 {
     Arena arena(64 << 10);
     CHECK(arena.allocate(65 << 10) == nullptr);

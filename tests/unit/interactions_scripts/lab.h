@@ -1,4 +1,4 @@
-/// A bench for one script without a world: a body, a second one, two shafts, and the calls that the host makes.
+/// A test bench for one script without a world: a body, a second one, two shafts, and the calls that the host makes.
 #pragma once
 
 #include <chrono>

@@ -8,7 +8,7 @@ using scripts_lab = plab::scripts::test::Lab;
 namespace
 {
 
-/// What went wrong in the body of a drive, or nothing.
+/// The error in the body of a drive, or nothing.
 std::string complaint(const std::string& body)
 {
     scripts_lab lab("function drive() " + body + " end");

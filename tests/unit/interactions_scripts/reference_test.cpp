@@ -120,7 +120,7 @@ TEST_CASE("a warm script allocates nothing")
     CHECK(lab.events.all.empty());
 }
 
-TEST_CASE("what a call costs")
+TEST_CASE("the cost of a call")
 {
     const auto cost = [](const char* body, bool shaft)
     {

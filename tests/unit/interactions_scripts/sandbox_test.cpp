@@ -1,4 +1,4 @@
-// The attack corpus: each attack ends soon, in the event that names it, and only its own script is out.
+// The attack corpus: each attack ends soon, with the event that names it, and only its own script is quarantined.
 #include <doctest/doctest.h>
 
 #include "lab.h"
@@ -14,7 +14,7 @@ struct Attack
 {
     std::string name;
     const char* body;   // of drive
-    const char* event;  // starts so
+    const char* event;  // the beginning of its text
 };
 
 constexpr const char* kBudget = "script.over_budget: code:1: over the budget of 100000 instructions";
@@ -117,7 +117,7 @@ TEST_CASE("every attack ends soon, in its event")
     }
 }
 
-TEST_CASE("what could reach the outside, the clock or an address is not there")
+TEST_CASE("functions that reach the outside, the clock or an address do not exist")
 {
     for (const char* name : {"io",
                              "os",
@@ -198,7 +198,7 @@ TEST_CASE("deeply nested source ends the parser, not the process")
     }
 }
 
-TEST_CASE("attacks in force end like those in drive, and add nothing")
+TEST_CASE("attacks in force end like those in drive, and add no force")
 {
     const std::pair<const char*, const char*> cases[] = {
         {"while true do end", "script.over_budget: code:1: over the budget of 100000 instructions"},
@@ -223,7 +223,7 @@ TEST_CASE("attacks in force end like those in drive, and add nothing")
     }
 }
 
-TEST_CASE("the smallest memory holds a script, and a limit is a limit")
+TEST_CASE("the smallest memory holds a script, and limits are enforced")
 {
     Lab lab("function drive(step) local t = {} for i = 1, state.n do t[i] = i end end");
     lab.rows.memory_limit[0] = 64 << 10;

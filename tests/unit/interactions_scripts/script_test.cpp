@@ -22,7 +22,7 @@ TEST_CASE("a script reads its driver's speed and turns its driven shaft")
     CHECK(lab.events.all.empty());
 }
 
-TEST_CASE("stage values are what a script sees, not those of the last call")
+TEST_CASE("a script sees the values of the stage, not those of the last call")
 {
     Lab lab("function force(t, state) driven:add_torque(-driven.angle * 100 + t) end");
     lab.rows.driven[0] = Lab::kShaft0;
@@ -79,7 +79,7 @@ TEST_CASE("vectors and rotations follow their algebra")
     CHECK(std::get<bool>(lab.rows.state[0][0].value));
 }
 
-TEST_CASE("bodies and shafts show what they have")
+TEST_CASE("bodies and shafts have their documented fields")
 {
     Lab lab(R"lua(
         function drive(step)
@@ -116,7 +116,7 @@ TEST_CASE("participants follow their roles")
     CHECK(lab.wrenches.shaft_torque == std::vector<double>{0, 1});
 }
 
-TEST_CASE("a script whose driven is not advanced adds nothing, and nothing to those that are not")
+TEST_CASE("a script adds no force if its driven body is not advanced, nor to bodies that are not advanced")
 {
     Lab lab("function force(t, state) for _, p in ipairs(between) do p:add_torque(1) end end");
     lab.rows.driver[0] = Lab::kBody0, lab.rows.between[0] = {Lab::kShaft0, Lab::kShaft1};
@@ -190,12 +190,12 @@ TEST_CASE("force is pure: everything else is refused there, with the reason")
         CHECK(lab.only_event() == std::string("script.error: ") + message);
         CHECK(lab.events.all[0].severity == Severity::Failure);
         CHECK(lab.rows.quarantined[0]);
-        CHECK(lab.wrenches.shaft_torque[1] == 0.0);  // nor what it added before the error
+        CHECK(lab.wrenches.shaft_torque[1] == 0.0);  // what it added before the error is removed as well
         CHECK(lab.state("n") == 0.0);
     }
 }
 
-TEST_CASE("code that cannot be loaded is refused where it stands, and the old code stays")
+TEST_CASE("code that cannot be loaded is refused with its position, and the old code stays")
 {
     Lab lab("function force() end");
     REQUIRE(lab.prepare() == "");
@@ -264,7 +264,7 @@ TEST_CASE("a failing script is called again after its quarantine is lifted")
     CHECK(lab.events.all.size() == 1);
 }
 
-TEST_CASE("a force that fails in a trial that is rewound has not failed")
+TEST_CASE("a failure of force in a trial that is rewound does not count")
 {
     Lab lab("function force(t, state) assert(t < 0.006, 'late') driven:add_torque(1) end");
     lab.rows.driven[0] = Lab::kShaft0;
@@ -273,7 +273,7 @@ TEST_CASE("a force that fails in a trial that is rewound has not failed")
     lab.context.time = 0.01;
     lab.force();
     CHECK(lab.wrenches.shaft_torque[0] == 0.0);
-    lab.force();  // a later stage of the failing trial: stays out
+    lab.force();  // a later stage of the failing trial is not called
     CHECK(lab.wrenches.shaft_torque[0] == 0.0);
     lab.context.time = 0.005;
     lab.force();
@@ -290,7 +290,7 @@ TEST_CASE("a force that fails in a trial that is rewound has not failed")
     CHECK(lab.rows.quarantined[0]);
 }
 
-TEST_CASE("forces that are not finite are an error, never an addition")
+TEST_CASE("forces that are not finite are an error and are never added")
 {
     for (const char* value : {"0/0", "1/0", "-1/0", "1e308 * 10"})
     {

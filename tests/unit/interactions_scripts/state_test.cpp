@@ -1,4 +1,4 @@
-// What a script may keep: declared state, and nothing else. Order and chance come out alike each time.
+// What a script may keep: declared state, and nothing else. Order and random numbers are reproducible.
 #include <doctest/doctest.h>
 
 #include <thread>
@@ -25,7 +25,7 @@ std::string drive_twice(const std::string& code)
 
 }  // namespace
 
-TEST_CASE("values live across steps in declared state only")
+TEST_CASE("values survive a step in declared state only")
 {
     CHECK(drive_twice("function drive() state.n = state.n + 1 end") == "2");
     const std::string kFrozen = "values that live across steps belong in `state`";
@@ -54,7 +54,7 @@ TEST_CASE("values live across steps in declared state only")
     CHECK(drive_twice("state.n = 1 function drive() end") == "line 1: state can be used in drive and force, not while the code is loaded");
 }
 
-TEST_CASE("what does not outlive a call is free: locals, closures and tables made in it")
+TEST_CASE("values that do not outlive a call are allowed: locals, closures and tables made in it")
 {
     CHECK(drive_twice("function drive() local n = 0 local function up() n = n + 1 end up() up() state.n = n end") == "2");
     CHECK(drive_twice("local k = 3 local t = {1, 2, {4}} local function f(x) return x * k + t[3][1] + #t end "
@@ -66,7 +66,7 @@ TEST_CASE("what does not outlive a call is free: locals, closures and tables mad
                       "select('#', table.unpack(t)) == 2) state.n = 1 end") == "1");
 }
 
-TEST_CASE("force cannot keep anything either")
+TEST_CASE("force cannot keep values either")
 {
     Lab lab("local calls = 0 function force(t, state) calls = calls + 1 driven:add_torque(calls) end");
     lab.rows.driven[0] = Lab::kShaft0;
@@ -98,7 +98,7 @@ TEST_CASE("state keeps its types and names")
     CHECK(error("state[1] = 1") == "code:1: state has no 'number'; declared are: b, n, s");
 }
 
-TEST_CASE("a memento is the columns: a restored script goes on as it did")
+TEST_CASE("a memento consists of the columns: a restored script continues as before")
 {
     const char* code = R"lua(
         function drive(step)
@@ -132,7 +132,7 @@ TEST_CASE("a memento is the columns: a restored script goes on as it did")
     CHECK(lab.events.all.empty());
 }
 
-TEST_CASE("a memento from before a failure brings the script back as it was")
+TEST_CASE("a memento from before a failure restores the script")
 {
     Lab lab("local n = 0 function drive(step) if step.tick == 2 then n = 7 end state.n = n end");
     lab.rows.state[0] = {{"n", 0.0}};
@@ -184,7 +184,7 @@ TEST_CASE("random numbers are seeded, per component, and uniform")
     for (const int n : counts) CHECK(n == doctest::Approx(1000).epsilon(0.13));
 }
 
-TEST_CASE("pairs has one order: numbers, then texts, as they sort")
+TEST_CASE("pairs has a fixed order: numbers, then texts, sorted")
 {
     const char* code = R"lua(
         function drive()
@@ -206,7 +206,7 @@ TEST_CASE("pairs has one order: numbers, then texts, as they sort")
           "code:1: pairs has an order for keys that are numbers or texts only");
 }
 
-TEST_CASE("sort is stable and keeps the list when its order fails")
+TEST_CASE("sort is stable and leaves the list unchanged when the comparison fails")
 {
     CHECK(drive_twice(R"lua(function drive()
         local t = {}
@@ -223,7 +223,7 @@ TEST_CASE("sort is stable and keeps the list when its order fails")
         state.n = 1 end)lua") == "1");
 }
 
-TEST_CASE("rows run on different threads at once, and come out as on one")
+TEST_CASE("rows that run on different threads at the same time give the results of one thread")
 {
     const char* code = R"lua(
         function drive(step)

@@ -1,4 +1,4 @@
-/// Samples by hand: types and their bytes.
+/// Samples made by hand: types and their bytes.
 #pragma once
 
 #include <cstring>
@@ -46,7 +46,7 @@ inline DynamicTypePtr colors()
     return type;
 }
 
-/// Puts values where their alignment wants them.
+/// Puts values where their alignment requires.
 class Cdr
 {
 public:
@@ -59,7 +59,7 @@ public:
     Cdr& put(T value)
     {
         const std::size_t to = std::min(sizeof(T), most_aligned_);
-        while ((bytes_.size() - 4) % to != 0) bytes_.push_back(std::byte{0xEE});  // what fills gaps has no meaning
+        while ((bytes_.size() - 4) % to != 0) bytes_.push_back(std::byte{0xEE});  // padding has no meaning
         const std::size_t at = bytes_.size();
         bytes_.resize(at + sizeof(T));
         std::memcpy(bytes_.data() + at, &value, sizeof(T));
@@ -84,7 +84,7 @@ inline std::string json(const DynamicTypePtr& type, const std::vector<std::byte>
     return text ? *text : "error: " + text.error().text();
 }
 
-/// A bit of everything: what the hostile tests cut and bend.
+/// Some of every kind of member: the hostile tests cut and alter it.
 inline DynamicTypePtr rich_type()
 {
     const auto point = structure({{"x", simple(Kind::Float64)}, {"y", simple(Kind::Float32)}});

@@ -7,7 +7,7 @@
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("a sample of XCDR1 is read member by member, each where its alignment puts it")
+TEST_CASE("a sample of XCDR1 is read member by member, each at its alignment")
 {
     CHECK(json(rich_type(), rich_sample().bytes()) ==
           R"({"name":"ball","flag":true,"color":"BLUE","points":[{"x":0.5,"y":1.5},{"x":-2,"y":0.25}],)"
@@ -30,14 +30,14 @@ TEST_CASE("each primitive has its size and its sign")
     CHECK(json(type, cdr.bytes()) == R"({"o":255,"c":"x","i16":-2,"u16":65535,"i32":-3,"u32":4000000000,"i64":-4,"f":0.1})");
 }
 
-TEST_CASE("big-endian samples are turned round")
+TEST_CASE("the bytes of big-endian samples are swapped")
 {
     std::vector<std::byte> bytes;
     for (const int b : {0, 0, 0, 0, 0, 0, 1, 2}) bytes.push_back(static_cast<std::byte>(b));
     CHECK(json(structure({{"n", simple(Kind::Uint32)}}), bytes) == R"({"n":258})");
 }
 
-TEST_CASE("XCDR2 aligns to four bytes at most and writes lengths before what is not primitive")
+TEST_CASE("XCDR2 aligns to four bytes at most and writes lengths before members that are not primitive")
 {
     const auto type = structure({{"n", simple(Kind::Uint32)},
                                  {"d", simple(Kind::Float64)},
@@ -74,7 +74,7 @@ TEST_CASE("an enum's value without a literal is its number")
     CHECK(*link::tree_of(*type, Cdr().put(std::int32_t{3}).bytes(), 9) == "c: 3 (no literal)\n");
 }
 
-TEST_CASE("the tree has a line for each member; what is flat stands on one line")
+TEST_CASE("the tree has a line for each member; flat members are on one line")
 {
     CHECK(*link::tree_of(*rich_type(), rich_sample().bytes(), 100) ==
           "name: \"ball\"\n"
@@ -104,7 +104,7 @@ TEST_CASE("structs with lists in them are indented below their dash")
           "    list: [20]\n");
 }
 
-TEST_CASE("a long list is cut short and says so")
+TEST_CASE("a long list is truncated, and this is shown")
 {
     Cdr cdr;
     cdr.put(std::uint32_t{5});
@@ -122,7 +122,7 @@ TEST_CASE("a long list is cut short and says so")
     CHECK(json(deep, cdr.bytes()) == R"({"list":[{"n":0},{"n":1},{"n":2},{"n":3},{"n":4}],"after":[]})");
 }
 
-TEST_CASE("the key of a type has its key members, and all of a struct that marks none of its own")
+TEST_CASE("the key of a type has its key members, and all members of a struct that marks none")
 {
     const auto marked = structure({{"a", simple(Kind::Uint32), true}, {"b", simple(Kind::Uint32)}});
     const auto unmarked = structure({{"a", simple(Kind::Uint32)}, {"b", simple(Kind::Uint32)}});

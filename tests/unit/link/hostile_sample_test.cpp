@@ -1,4 +1,4 @@
-// Bytes that no honest writer sends. Under AddressSanitizer this is also the proof that nothing is read past the end.
+// Bytes that no correct writer sends. Under AddressSanitizer this is also the proof that nothing is read past the end.
 #include <doctest/doctest.h>
 
 #include <ctime>
@@ -13,7 +13,7 @@ using namespace plab::test;
 namespace
 {
 
-/// In a buffer of exactly this size, so that a byte too far is noticed.
+/// In a buffer of exactly this size, so that reading one byte beyond it is detected.
 std::string json_of_exactly(const DynamicTypePtr& type, std::span<const std::byte> bytes)
 {
     const auto copy = std::make_unique<std::byte[]>(bytes.size());
@@ -27,7 +27,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 }  // namespace
 
-TEST_CASE("a sample that is cut anywhere is refused, and the message says where")
+TEST_CASE("a sample that is truncated anywhere is refused, and the message says where")
 {
     const auto bytes = rich_sample().bytes();
     REQUIRE(!is_error(json_of_exactly(rich_type(), bytes)));
@@ -41,7 +41,7 @@ TEST_CASE("a sample that is cut anywhere is refused, and the message says where"
     CHECK(has(cut_in_grid, "the sample ends here"));
 }
 
-TEST_CASE("bytes that are bent at random are refused or read as something, and what is read is JSON")
+TEST_CASE("randomly altered bytes are refused or read as some value, and the output is valid JSON")
 {
     std::mt19937 random(7);
     int refused = 0, read = 0;
@@ -57,7 +57,7 @@ TEST_CASE("bytes that are bent at random are refused or read as something, and w
     CHECK(read > 1000);
 }
 
-TEST_CASE("lengths beyond the sample are refused before anything is set aside for them")
+TEST_CASE("lengths beyond the sample are refused before memory is allocated for them")
 {
     const auto list = structure({{"list", sequence(simple(Kind::Octet))}});
     CHECK(has(json(list, Cdr().put(~std::uint32_t{0}).bytes()), "list: a sequence of 4294967295 elements, but 0 bytes are left"));
@@ -73,12 +73,12 @@ TEST_CASE("a list inside of a part may not read beyond that part")
 {
     const auto inner = structure({{"a", simple(Kind::Uint32)}}, true);
     const auto type = structure({{"inner", inner}, {"after", simple(Kind::Uint32)}}, true);
-    // The inner part claims two bytes: its member needs four, and four are there, but not inside.
+    // The inner part claims two bytes: its member needs four, which are present, but not inside the part.
     const auto bytes = Cdr(9).put(std::uint32_t{12}).put(std::uint32_t{2}).put(std::uint32_t{1}).put(std::uint32_t{2}).bytes();
     CHECK(has(json(type, bytes), "inner.a: the sample ends here"));
 }
 
-TEST_CASE("bounds of the type hold")
+TEST_CASE("bounds of the type are enforced")
 {
     const auto list = structure({{"list", sequence(simple(Kind::Octet), 1)}});
     CHECK(has(json(list, Cdr().put(std::uint32_t{2}).put('a').put('b').bytes()), "at most 1"));
@@ -99,11 +99,11 @@ TEST_CASE("elements without bytes, and types without end, cost no more than a li
     CHECK(has(json(deep, Cdr().put('x').bytes()), "deeper than"));
 }
 
-TEST_CASE("what does not fit the type is refused: bytes that are left over, booleans that are none, other encodings")
+TEST_CASE("samples that do not fit the type are refused: surplus bytes, invalid booleans, other encodings")
 {
     const auto type = structure({{"flag", simple(Kind::Boolean)}});
     CHECK(has(json(type, Cdr().put('\2').bytes()), "flag: a boolean is 0 or 1, not 2"));
-    CHECK(json(type, Cdr().put('\1').put('\0').put('\0').put('\0').bytes()) == R"({"flag":true})");  // filled up to a word
+    CHECK(json(type, Cdr().put('\1').put('\0').put('\0').put('\0').bytes()) == R"({"flag":true})");  // padded to a word
     CHECK(has(json(type, Cdr().put('\1').put(std::uint64_t{0}).bytes()), "15 bytes are left over"));
     for (const int encoding : {2, 3, 4, 10, 11}) CHECK(has(json(type, Cdr(encoding).put('\1').bytes()), "encoding"));
     CHECK(has(json(type, {}), "begins with 4 header bytes"));

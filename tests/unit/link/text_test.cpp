@@ -7,7 +7,7 @@
 
 using namespace plab::link;
 
-TEST_CASE("numbers are short and read back as they were")
+TEST_CASE("numbers are short and read back to the same value")
 {
     CHECK(number_text(0.1) == "0.1");
     CHECK(number_text(0.1f) == "0.1");
@@ -17,12 +17,12 @@ TEST_CASE("numbers are short and read back as they were")
     CHECK(json_number(std::numeric_limits<float>::quiet_NaN()) == "null");
 }
 
-TEST_CASE("JSON text is valid whatever came over the bus")
+TEST_CASE("JSON text is valid whatever was received from the bus")
 {
     CHECK(json_text("a\"b\\c\nd") == R"("a\"b\\c\nd")");
     CHECK(json_text("\x1b[31m") == R"("\u001b[31m")");
     CHECK(json_text("gr\xC3\xBC\xC3\x9F") == "\"gr\xC3\xBC\xC3\x9F\"");
-    // Cut, overlong, surrogate, beyond U+10FFFF, stray.
+    // Truncated, overlong, surrogate, beyond U+10FFFF, stray continuation.
     for (const char* bad : {"\xC3", "\xE2\x82", "\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\x80", "\xFF\xFE"})
     {
         CAPTURE(bad);
@@ -34,7 +34,7 @@ TEST_CASE("JSON text is valid whatever came over the bus")
     CHECK(nlohmann::json::accept(json_text(all)));
 }
 
-TEST_CASE("no text of others commands the terminal")
+TEST_CASE("no received text controls the terminal")
 {
     CHECK(terminal_text("\x1b]0;title\x07") == "\\x1b]0;title\\x07");
     CHECK(terminal_text("two\nlines\t\r") == "two\\nlines\\t\\x0d");

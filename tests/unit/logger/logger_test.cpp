@@ -49,7 +49,7 @@ TEST_CASE("events and collisions are lines, in the order in which they happened"
 {
     PlayedServer server(test_domain(), unique_name("log"), 1);
     Process log = start(server, {"-n", "6"});
-    // A reader may lose the first sample of a writer that it has just met, and get it later. From here on none is lost.
+    // A reader may miss the first sample of a writer that it has just discovered, and get it later. From here on none is lost.
     server.event("test.first", "here"), server.collisions("first", 1);
     REQUIRE(log.wait_for("test.first", 10s));
     REQUIRE(log.wait_for("collision.first", 10s));
@@ -68,7 +68,7 @@ TEST_CASE("events and collisions are lines, in the order in which they happened"
     CHECK(lines_with(text, "collision.impact") == 2);
 }
 
-TEST_CASE("lines of JSON have the fields of the wire, and numbers without a gap")
+TEST_CASE("lines of JSON have the fields of the wire format, and numbers without a gap")
 {
     PlayedServer server(test_domain(), unique_name("log"), 1);
     Process log = start(server, {"--json", "--metrics", "--status", "-n", "5"});
@@ -96,10 +96,10 @@ TEST_CASE("lines of JSON have the fields of the wire, and numbers without a gap"
     CHECK(status["name"] == server.name());
 }
 
-TEST_CASE("what was missed has a line of its own, and a new run has one")
+TEST_CASE("missed entries have a line of their own, and so does a new run")
 {
     PlayedServer server(test_domain(), unique_name("log"), 1);
-    server.skip_events(100);  // before anybody listened: not missed
+    server.skip_events(100);  // before there was a reader: not missed
     Process log = start(server, {}), json = start(server, {"--json"});
     REQUIRE(log.wait_for("-- server", 10s));
     REQUIRE(json.wait_for("\"server\"", 10s));
@@ -123,7 +123,7 @@ TEST_CASE("what was missed has a line of its own, and a new run has one")
     CHECK(all[4].dump() == R"({"type":"run","run":2})");
 }
 
-TEST_CASE("kinds and severities choose what is written; the rest is not missed")
+TEST_CASE("kinds and severities select what is written; filtered entries do not count as missed")
 {
     PlayedServer server(test_domain(), unique_name("log"), 1);
     Process impacts = start(server, {"--kind", "collision.impact"}), trouble = start(server, {"--severity", "warning"});
@@ -141,7 +141,7 @@ TEST_CASE("kinds and severities choose what is written; the rest is not missed")
     CHECK(has(trouble.output(), "warning: gears: slow"));
 }
 
-TEST_CASE("a server may end and come back, or be another one under its name")
+TEST_CASE("a server may end and restart, or be replaced by another one of its name")
 {
     const std::string name = unique_name("log");
     std::optional<PlayedServer> server(std::in_place, test_domain(), name, 1);
@@ -160,7 +160,7 @@ TEST_CASE("a server may end and come back, or be another one under its name")
     REQUIRE(log.wait_for("of the second", 10s));
     log.signal(SIGTERM);
     CHECK(log.wait(5s) == 143);
-    // Its numbers begin anew: nothing was missed, no run was started.
+    // Its numbers start again: nothing was missed, no run was started.
     CHECK(!has(log.output(), "\"gap\""));
     CHECK(!has(log.output(), "\"run\",\"run\""));
 }
@@ -203,7 +203,7 @@ TEST_CASE("a closed pipe ends it quietly; a file that cannot be written is 1; no
     CHECK(has(run({program("plab-log"), "--help"}, 10s).output, "Examples:"));
 }
 
-TEST_CASE("plabctl log without a file writes the same lines, and both choose by kind and object")
+TEST_CASE("plabctl log without a file writes the same lines, and both filter by kind and object")
 {
     PlayedServer server(test_domain(), unique_name("log"), 1);
     const std::vector<std::string> choice{"--domain", std::to_string(test_domain()),
@@ -218,7 +218,7 @@ TEST_CASE("plabctl log without a file writes the same lines, and both choose by 
         all.insert(all.end(), choice.begin(), choice.end());
         Process log(std::move(all));
         REQUIRE_MESSAGE(server.wait_for_logger(), log.errors());
-        // Of another kind; of the right kind, but between others; then the one.
+        // One of another kind; one of the right kind, but between other objects; then the wanted one.
         server.event("test.first", "here"), server.collisions("impact", 1);
         for (int i = 0; i < 50 && log.running(); ++i) server.event("script.print", "spinning"), std::this_thread::sleep_for(100ms);
         REQUIRE(log.wait(5s) == 0);
@@ -228,7 +228,7 @@ TEST_CASE("plabctl log without a file writes the same lines, and both choose by 
     }
 }
 
-TEST_CASE("a signal ends the wait for a server, too")
+TEST_CASE("a signal also ends the wait for a server")
 {
     Process log({program("plab-log"), "--domain", std::to_string(test_domain()), "--server", "nobody", "--timeout", "0"});
     std::this_thread::sleep_for(500ms);

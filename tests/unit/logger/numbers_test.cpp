@@ -4,20 +4,20 @@
 
 using plab::link::Sequence;
 
-TEST_CASE("a jump is missing entries")
+TEST_CASE("a jump in the numbers means missing entries")
 {
     Sequence numbers;
-    CHECK(numbers.note(1, 100, 3).count == 0);  // before the reader came: no loss
+    CHECK(numbers.note(1, 100, 3).count == 0);  // before the reader joined: no loss
     CHECK(numbers.note(1, 103, 1).count == 0);
     const auto missing = numbers.note(1, 116, 1);
     CHECK(missing.first == 104);
     CHECK(missing.count == 12);
-    CHECK(numbers.note(2, 1, 1).count == 0);  // a server that was started again
+    CHECK(numbers.note(2, 1, 1).count == 0);  // a restarted server
     CHECK(numbers.note(2, 3, 1).count == 1);
     CHECK(numbers.note(1, 117, 1).count == 0);
 }
 
-TEST_CASE("a writer that takes another's place goes on where that one ended: what was lost between them is missing")
+TEST_CASE("a writer that replaces another continues its numbers: entries lost between them are missing")
 {
     Sequence numbers;
     CHECK(numbers.note(1, 100, 3).count == 0);

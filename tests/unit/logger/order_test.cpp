@@ -1,4 +1,4 @@
-// Lines wait for those that happened before them, and no longer.
+// Lines wait for earlier ones, and no longer than necessary.
 #include <doctest/doctest.h>
 
 #include "logger/order.h"
@@ -20,7 +20,7 @@ std::string texts(const std::vector<Line>& lines)
 
 }  // namespace
 
-TEST_CASE("a line that comes late stands before those that happened after it")
+TEST_CASE("a line that arrives late is written before later ones")
 {
     Order order;
     order.add({1, 3, true, "c"}, kStart);
@@ -30,7 +30,7 @@ TEST_CASE("a line that comes late stands before those that happened after it")
     CHECK(order.take_all().empty());
 }
 
-TEST_CASE("a line waits for its own time, whoever goes before it")
+TEST_CASE("a line waits for its full time, whichever lines are written before it")
 {
     Order order;
     order.add({1, 1, true, "a"}, kStart);
@@ -43,7 +43,7 @@ TEST_CASE("a line waits for its own time, whoever goes before it")
     CHECK(order.due(kStart + 1s) == kStart + 1s);
 }
 
-TEST_CASE("lines of one step keep the order in which they came, and runs follow one another")
+TEST_CASE("lines of one step keep the order of arrival, and runs follow one another")
 {
     Order order;
     order.add({2, 1, true, "d"}, kStart);

@@ -1,4 +1,4 @@
-/// A server that a test plays by hand: it says what it is told to, when it is told to.
+/// A server that a test controls: it publishes what the test requests, when the test requests it.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -28,16 +28,16 @@ public:
         collisions_ = wire::Writer<plab_v2_Collisions>::make(participant_, publisher_).take();
         metrics_ = wire::Writer<plab_v2_Metrics>::make(participant_, publisher_).take();
         frames_ = wire::Writer<plab_v2_Frame>::make(participant_, publisher_).take();
-        tell_state();
+        publish_state();
     }
 
     const std::string& name() const { return name_; }
-    void tell_state()
+    void publish_state()
     {
         plab_v2_Server s = state();
         REQUIRE(server_.write(s) == 0);
     }
-    /// As plabd does before it ends.
+    /// What plabd publishes before it ends.
     void say_goodbye() { REQUIRE(server_.dispose(state()) == 0); }
     void begin_run(std::uint64_t run) { run_ = run, step_ = 0; }
 
@@ -89,7 +89,7 @@ public:
 
     std::uint32_t event_readers() const { return events_.readers(); }
     std::uint32_t frame_readers() const { return frames_.readers(); }
-    /// Until somebody listens to all that is logged.
+    /// Waits until there are readers of all logged topics.
     bool wait_for_logger() const
     {
         for (int i = 0; i < 2000 && (events_.readers() == 0 || collisions_.readers() == 0); ++i)
@@ -98,7 +98,7 @@ public:
     }
 
 private:
-    /// Only lives as long as the string that it shows.
+    /// Valid only as long as the string to which it refers.
     static char* text(const std::string& s) { return const_cast<char*>(s.c_str()); }
     static char* text(const char* s) { return const_cast<char*>(s); }
     double now() const { return static_cast<double>(step_) / 240; }

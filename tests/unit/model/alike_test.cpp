@@ -1,4 +1,4 @@
-/// Errors of one kind are told by their first few and their number.
+/// Of many errors of one kind, the first few and the number of the others are reported.
 #include "model/alike.h"
 
 #include <doctest/doctest.h>
@@ -12,7 +12,7 @@ Error at(std::uint32_t line, const std::string& element, const std::string& why)
 
 }  // namespace
 
-TEST_CASE("of errors that differ in numbers alone the first three are told, and how many more there are")
+TEST_CASE("of errors that differ in numbers alone the first three are reported, and the number of the others")
 {
     Errors many;
     for (int i = 0; i < 1000; ++i)
@@ -30,7 +30,7 @@ TEST_CASE("of errors that differ in numbers alone the first three are told, and 
     CHECK(few[4].text() == "s.xml:2:7: and 997 more like it");
 }
 
-TEST_CASE("what stands elsewhere, or says something else, is told")
+TEST_CASE("errors at other places, or with another text, are reported")
 {
     Errors many;
     for (std::uint32_t line = 1; line <= 20; ++line) many.push_back(at(line, "b", "mass must be positive, not -1"));

@@ -78,7 +78,7 @@ TEST_CASE("a cmdref stands for the subject of its command")
         return std::vector<ComponentNode>{shaft("a"), shares("same", {"b"}), shaft("b"), component("g", "Constraint/AngularVelocity/Graph"),
                                           interface};
     };
-    // A shaft exports nothing here: the reference is resolved all the same.
+    // A shaft exports nothing here: the reference is resolved nevertheless.
     CHECK(errors_of(gear_set_by("202")) ==
           "scene.xml:5:1: command 202 (Constraint/Finish): State/Shaft has no command 'Constraint/Finish' (it has "
           "'State/Restore')");
@@ -119,7 +119,7 @@ TEST_CASE("cmdparams set fields and roles by the paper's names")
           "scene.xml:3:1");
 }
 
-TEST_CASE("cmdparams reach parts that the short form made")
+TEST_CASE("cmdparams reach sub-components that the short form created")
 {
     const CommandNode respond = setting(command("c.response", "Response/Respond"), {text("SetRestitution", "0.25")});
     const auto body = [](const char* id) { return component(id, "State/RigidBody", {{"mass", "1"}}); };
@@ -161,7 +161,7 @@ TEST_CASE("a simulation command selects exactly what it lists")
     CHECK(commands_of(s, "a") == "defaults");
 }
 
-TEST_CASE("parts that the author left unwritten keep their defaults")
+TEST_CASE("sub-components that the author did not write keep their defaults")
 {
     const auto body = [](const char* id) { return component(id, "State/RigidBody", {{"mass", "1"}}); };
     const CommandNode run = simulation_command({stage("PostStep", {command("c", "CDetection/Handle")})});
@@ -185,7 +185,7 @@ TEST_CASE("composites are expanded in place")
     CHECK(commands_of(s, "f") == "Shape/Draw");
 }
 
-TEST_CASE("a command is found by a prefix that fits one of its stage")
+TEST_CASE("a command is found by a prefix that matches one command of its stage")
 {
     const model::SceneSpec s = compiled(scene({with_commands(component("s", "Script/Lua", {{"code", "x"}}),
                                                              {simulation_command({stage("Step", {command("s", "Script/Lua")})})})}));
@@ -239,7 +239,7 @@ TEST_CASE("component and command ids are two name spaces")
     CHECK(errors_of({with_commands(component("01", "Shape/Sphere"), {with_id("01", command("01", "Shape/Draw"))})}).empty());
 }
 
-TEST_CASE("stage lists that cannot run")
+TEST_CASE("stage lists that cannot be executed")
 {
     CHECK(gear_errors({stage("Stp", {}, 22)}) ==
           "scene.xml:22:1: command Stage/Stp: unknown stage 'Stage/Stp', did you mean 'Stage/Step'? (stages are "
@@ -279,7 +279,7 @@ TEST_CASE("a component has one simulation command")
           "'One/Simulation'");
 }
 
-TEST_CASE("lists that refer to themselves, or would grow without end")
+TEST_CASE("lists that refer to themselves, or would grow without bound")
 {
     const CommandNode run = simulation_command({stage("Step", {see_command("x")})});
     CHECK(errors_of({with_commands(group("o", {}),
@@ -295,7 +295,7 @@ TEST_CASE("lists that refer to themselves, or would grow without end")
     CHECK_FALSE(errors_of({with_commands(group("o", {component("s", "State/RigidBody", {{"mass", "1"}})}), commands)}).empty());
 }
 
-TEST_CASE("a fragment cannot select or set what is in the scene already")
+TEST_CASE("a fragment cannot select or set components that are already in the scene")
 {
     const model::SceneSpec s = compiled(scene({component("f", "Shape/Sphere"), shaft("a")}));
     CHECK(errors_of(scene({with_commands(group("o", {}), {setting(command("f", "Shape/Draw", 4), {text("SetRadius", "1", 5)})})}), &s) ==

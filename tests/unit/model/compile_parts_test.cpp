@@ -1,4 +1,4 @@
-/// What short forms leave unwritten.
+/// What the compiler adds to short forms.
 #include <doctest/doctest.h>
 
 #include "scene_types.h"
@@ -28,7 +28,7 @@ std::vector<ComponentNode> collision(const Texts& attributes, std::vector<Compon
 
 }  // namespace
 
-TEST_CASE("parts that are left out are made with stable ids")
+TEST_CASE("sub-components that are left out are created with stable ids")
 {
     const model::SceneSpec s = compiled(scene(collision({})));
     CHECK(ids_of(s) == "a b c solver c.resolution c.response");
@@ -42,7 +42,7 @@ TEST_CASE("parts that are left out are made with stable ids")
     CHECK(role_of(s, "a", "solver") == "solver");
 }
 
-TEST_CASE("a part can be named by type, and its fields set with a dot")
+TEST_CASE("a sub-component can be given by its type, and its fields set with a dot")
 {
     const model::SceneSpec s =
         compiled(scene(collision({{"response", "Response/Impulse"}, {"response.restitution", "0.5"}, {"resolution.tolerance", "1 us"}})));
@@ -53,7 +53,7 @@ TEST_CASE("a part can be named by type, and its fields set with a dot")
     CHECK(field_of(ball, "r.shape", "radius") == "0.02");
 }
 
-TEST_CASE("a part that the author wrote is used")
+TEST_CASE("a sub-component that the author wrote is used")
 {
     const model::SceneSpec by_id =
         compiled(scene(collision({{"response.restitution", "0.5"}}, {component("c.response", "Response/Impulse")})));
@@ -68,7 +68,7 @@ TEST_CASE("a part that the author wrote is used")
     CHECK(role_of(typed, "c", "response") == "c.response");
 }
 
-TEST_CASE("parts that are refused")
+TEST_CASE("sub-components that are refused")
 {
     const std::string c = "scene.xml:9:1: c (CDetection/Simple): ";
     CHECK(errors_of(collision({{"response.restituton", "0.5"}})) ==
@@ -166,7 +166,7 @@ TEST_CASE("in an object, the only shape is the only state's")
                   "s", "shape") == "h");
 }
 
-TEST_CASE("long and short form say the same")
+TEST_CASE("the long and the short form are equivalent")
 {
     ComponentNode c = component("c", "CDetection/Simple");
     c.parameters = {reference("between", {"b", "a"}), text("response", "c.response")};

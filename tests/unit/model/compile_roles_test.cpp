@@ -1,4 +1,4 @@
-/// Participants: ids, groups, aliases, everyone, and what they may not be.
+/// Participants: ids, groups, aliases, everyone, and which participants are refused.
 #include <doctest/doctest.h>
 
 #include "scene_types.h"
@@ -26,7 +26,7 @@ const std::string kCollide = "scene.xml:9:1: c (CDetection/Simple): ";
 
 }  // namespace
 
-TEST_CASE("ids are separated by blanks, and members stand in id order")
+TEST_CASE("ids are separated by blanks, and members are in the order of ids")
 {
     const model::SceneSpec s = compiled(scene({collide(" b10 b9\n b1 "), body("b1"), body("b9"), body("b10")}));
     CHECK(role_of(s, "c", "between") == "b1 b10 b9");
@@ -38,7 +38,7 @@ TEST_CASE("an id that holds blanks is one id")
     CHECK(role_of(s, "g", "driver") == "big wheel");
 }
 
-TEST_CASE("everyone: all that fit, but the component itself")
+TEST_CASE("everyone: all suitable components except the component itself")
 {
     const model::SceneSpec s =
         compiled(scene({collide("*"), body("b"), shaft("s"), body("a"), component("m", "Manager/Any", {{"parts", "*"}})}));
@@ -50,7 +50,7 @@ TEST_CASE("everyone: all that fit, but the component itself")
     CHECK(errors_of({collide("* a"), body("a")}) == kCollide + "role between: no component has the id '*'");
 }
 
-TEST_CASE("a group stands for all inside it that fit, an object for the only one")
+TEST_CASE("a group stands for all suitable components inside it, an object for its only one")
 {
     const model::SceneSpec s =
         compiled(scene({group("balls", {body("b"), group("more", {body("a"), component("s", "Shape/Sphere")})}), shares("some", {"a", "x"}),
@@ -58,7 +58,7 @@ TEST_CASE("a group stands for all inside it that fit, an object for the only one
     CHECK(role_of(s, "c", "between") == "a b x");
     CHECK(role_of(s, "d", "between") == "a x");
     CHECK(s.find("some")->group == std::vector<std::string>{"a", "x"});
-    // Twice inside one group is once.
+    // A component that is twice inside one group counts once.
     const model::SceneSpec twice = compiled(scene({group("balls", {body("a"), body("b"), shares("pair", {"a", "b"})}), collide("balls")}));
     CHECK(role_of(twice, "c", "between") == "a b");
     const model::SceneSpec one = compiled(scene(
@@ -100,7 +100,7 @@ TEST_CASE("dangling references name the nearest ids")
               .find("unknown type 'Shape/Spere', did you mean 'Shape/Sphere'?") != std::string::npos);
 }
 
-TEST_CASE("how many take part")
+TEST_CASE("the number of participants")
 {
     CHECK(errors_of({shaft("b"), gear({{"driven", "b"}})}) == kGear + "driver is missing: name a shaft");
     CHECK(errors_of({shaft("b"), gear({{"driver", ""}, {"driven", "b"}})}) ==
@@ -114,7 +114,7 @@ TEST_CASE("how many take part")
           kGear + "driver is given twice, here and at scene.xml:9:1");
 }
 
-TEST_CASE("two cannot drive one where the role is exclusive")
+TEST_CASE("two components cannot drive the same one if the role is exclusive")
 {
     const auto second = component("h", "Constraint/AngularVelocity/Assign", {{"driver", "a"}, {"driven", "c"}}, 12);
     CHECK(errors_of({shaft("a"), shaft("b"), shaft("c"), gear({{"driver", "b"}, {"driven", "c"}}), second}) ==
@@ -124,7 +124,7 @@ TEST_CASE("two cannot drive one where the role is exclusive")
     CHECK(errors_of({shaft("a"), shaft("b"), shaft("c"), gear({{"driver", "a"}, {"driven", "b"}}), second}).empty());
 }
 
-TEST_CASE("nobody takes part in itself, directly or around a corner")
+TEST_CASE("no component is its own participant, directly or indirectly")
 {
     CHECK(errors_of({component("m", "Manager/Any", {{"parts", "m"}}, 3)}) ==
           "scene.xml:3:1: m (Manager/Any): role parts: a component cannot be its own participant");
@@ -138,7 +138,7 @@ TEST_CASE("nobody takes part in itself, directly or around a corner")
     CHECK(errors_of({group("x", {shares("y", {"x"}, 4)}, 3)}) == "scene.xml:3:1: x: circular reference: 'x' -> 'y' -> 'x'");
 }
 
-TEST_CASE("a chain of a hundred thousand references is followed without a stack")
+TEST_CASE("a chain of a hundred thousand references is followed without recursion")
 {
     std::vector<ComponentNode> chain{component("s0", "Shape/Sphere")};
     for (int i = 1; i < 99'999; ++i) chain.push_back(shares("s" + std::to_string(i), {"s" + std::to_string(i - 1)}));
@@ -149,13 +149,13 @@ TEST_CASE("a chain of a hundred thousand references is followed without a stack"
     CHECK(role_of(*result, "b", "shape") == "s0");
 }
 
-TEST_CASE("an unknown type is complained about once, not where it is referred to")
+TEST_CASE("an unknown type is reported once, not where it is referred to")
 {
     CHECK(errors_of({component("a", "State/Shft", {}, 3), shaft("b"), gear({{"driver", "a"}, {"driven", "b"}})}) ==
           "scene.xml:3:1: a (State/Shft): unknown type 'State/Shft', did you mean 'State/Shaft'?");
 }
 
-TEST_CASE("participants of a scene that exists already")
+TEST_CASE("participants that exist already in the scene")
 {
     const model::SceneSpec s = compiled(scene({group("motor", {shaft("axle")}), shares("same", {"motor"}), shaft("b")}));
     FixedTypes types;

@@ -61,7 +61,7 @@ TEST_CASE("cameras that see nothing")
     CHECK(why({{"fov", "1"}}) == "scene.xml:3:1: camera 'c': unknown attribute 'fov'");
 }
 
-TEST_CASE("fields are read with units and stand in the order of their declaration")
+TEST_CASE("fields are read with units and are in the order of their declaration")
 {
     const model::SceneSpec s = compiled(scene({component("red", "State/RigidBody", {{"position", "0 0 30 cm"}, {"mass", "250 g"}})}));
     CHECK(field_of(s, "red", "mass") == "0.25");
@@ -131,7 +131,7 @@ TEST_CASE("ids")
           "scene.xml:3:1: a (Shape/Sphere): id 'a' is already used at scene.xml:2:1");
 }
 
-TEST_CASE("all errors come at once, in the order of the file, and the rest are counted")
+TEST_CASE("all errors are reported at once, in the order of the file, and those beyond the limit are counted")
 {
     CHECK(errors_of(
               {component("b", "Shape/Sphere", {{"radius", "x"}}, 9), component("a", "Shape/Sphere", {{"radius", "0"}, {"r", "1"}}, 4)}) ==
@@ -167,7 +167,7 @@ TEST_CASE("the number of components is limited")
     CHECK(model::compile(b, types, nullptr, limits).ok());
 }
 
-TEST_CASE("types may be written by their last words where only one type ends so")
+TEST_CASE("types may be written by their last words if only one type ends with them")
 {
     const model::SceneSpec s = compiled(scene({component("form", "Sphere"), component("a", "RigidBody", {{"mass", "1"}, {"shape", "form"}}),
                                                component("b", "State/RigidBody", {{"mass", "1"}, {"solver", "RungeKutta4"}})}));
@@ -179,7 +179,7 @@ TEST_CASE("types may be written by their last words where only one type ends so"
     CHECK(compiled(b).settings.solver_type == "Solver/RungeKutta4");
 }
 
-TEST_CASE("a short name that several types end in names them")
+TEST_CASE("for a short name with which several types end, the message lists them")
 {
     const std::vector<std::string> names{"Constraint/AngularVelocity/Impulse", "Resolution/None", "Response/Impulse", "Response/None"};
     CHECK(*model::full_type_name("None", names, "Response/") == "Response/None");

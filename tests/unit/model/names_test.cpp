@@ -1,11 +1,11 @@
-/// Near misses and setter names.
+/// Similar names and setter names.
 #include <doctest/doctest.h>
 
 #include "model/names.h"
 
 using namespace plab::model;
 
-TEST_CASE("nearest names come first, far ones not at all")
+TEST_CASE("the most similar names come first, dissimilar ones are left out")
 {
     const std::vector<std::string> known{"mass", "massive", "position", "orientation", "linear_velocity", "Mass"};
     CHECK(nearest_names("mas", known) == std::vector<std::string>{"Mass", "mass"});

@@ -30,7 +30,7 @@ std::string why(const Texts& attributes) { return errors_of(repeated(attributes,
 
 }  // namespace
 
-TEST_CASE("a row goes along its step, a grid has an axis per count")
+TEST_CASE("a row extends along its step, a grid has an axis for each count")
 {
     const model::SceneSpec row =
         compiled(repeated({{"count", "3"}, {"step", "10 0 5 cm"}, {"origin", "0 0 1"}}, {body("b", {{"position", "1 0 0"}})}));
@@ -46,7 +46,7 @@ TEST_CASE("a row goes along its step, a grid has an axis per count")
     CHECK(field_of(block, "b.0.1.2", "position") == "0 1 2");
 }
 
-TEST_CASE("references stay within the cell, shapes stay with their bodies")
+TEST_CASE("references stay within the cell, and shapes stay with their bodies")
 {
     ComponentNode ball = body("ball", {{"shape", "ball.form"}});
     ball.children = {component("ball.form", "Shape/Sphere", {{"position", "0 0 1"}})};
@@ -62,7 +62,7 @@ TEST_CASE("references stay within the cell, shapes stay with their bodies")
     CHECK(s.find("balls")->type.empty());
 }
 
-TEST_CASE("parts that are called after their place are used in each cell")
+TEST_CASE("sub-components that are named after their role are used in each cell")
 {
     const model::SceneSpec s =
         compiled(repeated({{"count", "2"}}, {body("r", {{"shape.radius", "2"}}), component("r.shape", "Shape/Sphere")}));
@@ -85,14 +85,14 @@ TEST_CASE("commands and objects are repeated as well")
     CHECK(s.find("a.1")->parent == "pair.1");
 }
 
-TEST_CASE("a repeat stands where it is written")
+TEST_CASE("the copies of a repeat are at its position in the document")
 {
     model::Blueprint b = repeated({{"count", "2"}}, {component("r", "Shape/Sphere")},
                                   {component("before", "Shape/Sphere", {}, 1), component("after", "Shape/Sphere", {}, 9)});
     CHECK(ids_of(compiled(b)) == "before r.0 r.1 after");
 }
 
-TEST_CASE("jitter is bounded, the cell's own, and comes from the seed")
+TEST_CASE("jitter is bounded, differs by cell, and follows from the seed")
 {
     const auto positions = [](const char* seed)
     {
@@ -144,7 +144,7 @@ TEST_CASE("repeats that are refused")
     CHECK(errors_of(repeated({{"count", "2"}}, {})) == r + "holds no component to repeat");
 }
 
-TEST_CASE("an error in a repeat is said once")
+TEST_CASE("an error in a repeat is reported once")
 {
     CHECK(errors_of(repeated({{"count", "500"}}, {component("b", "Shape/Sphere", {{"radius", "0"}}, 5)})) ==
           "scene.xml:5:1: b.0 (Shape/Sphere): radius must be positive, not 0");

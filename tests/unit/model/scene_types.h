@@ -25,7 +25,7 @@ private:
     model::TypeRegistry registry_;
 };
 
-/// What a tree is made of; every node stands in "scene.xml", its line is given or 0.
+/// The nodes of a tree; every node is in "scene.xml", its line is given or 0.
 using Texts = std::vector<std::pair<std::string, std::string>>;
 
 SourceLocation at(std::uint32_t line, std::uint32_t column = 1);
@@ -48,7 +48,7 @@ model::SceneSpec compiled(const model::Blueprint& blueprint, const model::SceneS
 std::string errors_of(const model::Blueprint& blueprint, const model::SceneSpec* existing = nullptr);
 std::string errors_of(std::vector<model::ComponentNode> components);
 
-/// A component's role, as "a b c"; "*" in front if it is of everyone; "-" if it is not given.
+/// A component's role, as "a b c"; "*" in front if it means everyone; "-" if it is not given.
 std::string role_of(const model::SceneSpec& scene, const std::string& id, const std::string& role);
 /// A component's field as text; "-" if it is not given.
 std::string field_of(const model::SceneSpec& scene, const std::string& id, const std::string& field);
@@ -56,7 +56,7 @@ std::string field_of(const model::SceneSpec& scene, const std::string& id, const
 std::string ids_of(const model::SceneSpec& scene);
 /// Selected commands, as "a b c"; "defaults" where none are selected.
 std::string commands_of(const model::SceneSpec& scene, const std::string& id);
-/// Everything that a scene says, for comparing two.
+/// The whole content of a scene as text, to compare two.
 std::string dump(const model::SceneSpec& scene);
 
 }  // namespace plab::test

@@ -6,7 +6,7 @@
 using namespace plab;
 using namespace plab::model;
 
-TEST_CASE("step lengths are exact where they can be")
+TEST_CASE("step lengths are exact fractions if possible")
 {
     struct Row
     {
@@ -32,9 +32,9 @@ TEST_CASE("step lengths are exact where they can be")
     CHECK(parse_step_length("1/60")->at(3600 * 60) == 3600.0);
 }
 
-TEST_CASE("a step length that is no small fraction is kept as seconds")
+TEST_CASE("a step length that is not a small fraction is stored in seconds")
 {
-    // n * 1666666667 would leave 64 bits within a run that can be reached.
+    // n * 1666666667 would overflow 64 bits within a realistic run.
     for (const char* text : {"0.016666666666666666", "0.01666666667", "1e-8 min", "1/3e-17 us"})
     {
         CAPTURE(text);

@@ -51,7 +51,7 @@ TEST_CASE("a type is found by name, with its schema and commands")
     CHECK_FALSE(registry.find("Kind/Goo"));
 }
 
-TEST_CASE("a type of a known name is refused, and nothing of its plugin is taken")
+TEST_CASE("a type with a known name is refused, and no type of its plugin is registered")
 {
     TypeRegistry registry;
     Registrar first, second;
@@ -177,7 +177,7 @@ struct TwoRoles
 
 }  // namespace
 
-TEST_CASE("what keeps types from standing in for one another")
+TEST_CASE("differences that prevent types from replacing one another")
 {
     TypeRegistry registry;
     Registrar r;

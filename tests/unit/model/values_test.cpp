@@ -213,7 +213,7 @@ TEST_CASE("matrices by three and by six numbers")
     CHECK(check_value(skew, f).error().reason == "x must be symmetric");
 }
 
-TEST_CASE("rules say what would be right")
+TEST_CASE("the messages of rules say what would be right")
 {
     Field f = field(FieldType::Real, unit::kilogram);
     f.name = "mass";
@@ -238,7 +238,7 @@ TEST_CASE("rules say what would be right")
     CHECK(error_of("hsah", choice) == "x must be 'simple', 'hash' or 'sweep', not 'hsah', did you mean 'hash'?");
 }
 
-TEST_CASE("directions are normalised, and left alone once they are")
+TEST_CASE("directions are normalised, and left unchanged if they already are")
 {
     Field f = field(FieldType::Vector);
     f.rules.push_back({Rule::Kind::UnitLength, 0, {}});
@@ -250,7 +250,7 @@ TEST_CASE("directions are normalised, and left alone once they are")
     CHECK(std::get<Vec3>(*parse_value(format_value(once), f)) == once);
 }
 
-TEST_CASE("infinity where the rule allows it")
+TEST_CASE("infinity is accepted where the rule allows it")
 {
     Field f = field(FieldType::Real);
     f.may_be_infinite = true;
@@ -270,7 +270,7 @@ TEST_CASE("a value of another type is refused, a whole number is a number")
     CHECK(std::get<double>(whole) == 3.0);
 }
 
-TEST_CASE("what is printed reads back to the same bits")
+TEST_CASE("printed values read back to the same bits")
 {
     const double numbers[] = {0.1, -0.0, 1.0 / 3, 1e-7, 123456789012345678.0, 5e-324, 1e22, 100000, 6.02e23, kPi};
     for (const double x : numbers)
@@ -309,7 +309,7 @@ TEST_CASE("entries")
     CHECK(error_of("a=inf", f) == "x must be finite, not inf");
 }
 
-TEST_CASE("the process's locale changes nothing")
+TEST_CASE("the process's locale has no effect")
 {
     const std::string before = std::setlocale(LC_ALL, nullptr);
     for (const char* locale : {"de_DE.UTF-8", "de_DE", "fr_FR.UTF-8"})

@@ -25,7 +25,7 @@ namespace
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// One rigid body with a cube (edge 2, centre at x = 2), a ball-like solid (centre at y = 3) and a plane at hand.
+/// One rigid body, with a cube (edge 2, centre at x = 2), a ball-like solid (centre at y = 3) and a plane available as shapes.
 struct RigidFixture : TableFixture<RigidBodyRows>
 {
     Bodies bodies = make_bodies(1);
@@ -78,7 +78,7 @@ TEST_CASE("mass and inertia as given; the centre is the origin unless given")
 
     REQUIRE(body.center({0.1, 0, 0}).prepare() == "accepted");
     CHECK(body.bodies.center_B[0] == Vec3{0.1, 0, 0});
-    // An inertia that was given asks nothing of the shapes.
+    // With a given inertia the shapes are not needed.
     CHECK(body.with({2}).prepare() == "accepted");
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("density and shapes: sums about the common centre")
     CHECK(largest_difference(one, Mat3::identity()) < 1e-15);
 }
 
-TEST_CASE("two halves of a cube make the cube")
+TEST_CASE("two halves of a cube have the mass properties of the cube")
 {
     const Mat3 half = Mat3::diagonal(0.5 / 12 * 2, 0.5 / 12 * 1.25, 0.5 / 12 * 1.25);  // 0.5 x 1 x 1
     const MassProperties both = combined({0.5, {0.25, 0, 0}, half}, {0.5, {0.75, 0, 0}, half});
@@ -107,7 +107,7 @@ TEST_CASE("two halves of a cube make the cube")
     CHECK(largest_difference(both.inertia, Mat3::diagonal(1.0 / 6, 1.0 / 6, 1.0 / 6)) < 1e-16);
 }
 
-TEST_CASE("mass and shapes: the shapes' inertia, scaled; a given centre wins")
+TEST_CASE("mass and shapes: the shapes' inertia, scaled; a given centre takes precedence")
 {
     RigidFixture body;
     REQUIRE(body.mass(4).with({0}).prepare() == "accepted");
@@ -118,7 +118,7 @@ TEST_CASE("mass and shapes: the shapes' inertia, scaled; a given centre wins")
     CHECK(body.bodies.center_B[0] == Vec3{});
 }
 
-TEST_CASE("masses that are none are refused by name")
+TEST_CASE("invalid masses are refused by name")
 {
     const auto refusal = [](double m) { return RigidFixture().mass(m).with({0}).prepare(); };
     CHECK(refusal(0) == "mass must be positive: give mass (kg), or density (kg/m^3) and shapes");
@@ -129,7 +129,7 @@ TEST_CASE("masses that are none are refused by name")
     CHECK(RigidFixture().density(-2).with({0}).prepare() == "density must be positive, not -2");
 }
 
-TEST_CASE("sources that say too much or too little are refused by name")
+TEST_CASE("contradictory or insufficient sources are refused by name")
 {
     CHECK(RigidFixture().mass(1).density(1).with({0}).prepare() == "mass and density are both given; one of them must be left out");
     CHECK(RigidFixture().density(1).prepare() == "density needs shapes to fill; give a shape, or mass and inertia");
@@ -142,7 +142,7 @@ TEST_CASE("sources that say too much or too little are refused by name")
     CHECK(RigidFixture().mass(1).inertia(Mat3::identity()).center({kInfinity, 0, 0}).prepare() == "center_of_mass must be finite");
 }
 
-TEST_CASE("inertias that no body has are refused by name")
+TEST_CASE("physically impossible inertias are refused by name")
 {
     const auto refusal = [](const Mat3& i) { return RigidFixture().mass(1).inertia(i).prepare(); };
     CHECK(refusal(Mat3::diagonal(1, 0, 1)) == "inertia must be positive; its principal moments are 0, 1, 1 kg m^2");
@@ -157,11 +157,11 @@ TEST_CASE("inertias that no body has are refused by name")
     CHECK(refusal(turned(Mat3::diagonal(1, 1, 1e-20), {1, 2, 3})) != "accepted");
 }
 
-TEST_CASE("degenerate inertias that bodies do have are accepted")
+TEST_CASE("degenerate but possible inertias are accepted")
 {
     const auto verdict = [](const Mat3& i) { return RigidFixture().mass(1).inertia(i).prepare(); };
     CHECK(verdict(Mat3::diagonal(1, 1, 2)) == "accepted");                     // a disc
-    CHECK(verdict(turned(Mat3::diagonal(1, 1, 2), {1, 2, 3})) == "accepted");  // and askew
+    CHECK(verdict(turned(Mat3::diagonal(1, 1, 2), {1, 2, 3})) == "accepted");  // and rotated
     CHECK(verdict(Mat3::diagonal(1, 1, 1e-12)) == "accepted");                 // a rod
     CHECK(verdict(turned(Mat3::diagonal(1, 1, 1e-12), {1, 2, 3})) == "accepted");
     CHECK(verdict(Mat3::diagonal(1, 1, 1 + 1e-14)) == "accepted");  // nearly equal moments
@@ -216,7 +216,7 @@ TEST_CASE("a shaft's axle has its z along the axis, by the shortest rotation")
         CAPTURE(axis.z);
         CHECK(length(rotate(q, {0, 0, 1}) - axis) < 1e-15);
         CHECK(norm(q) == doctest::Approx(1).epsilon(1e-15));
-        CHECK(q.z == 0);  // no twist: it turns about an axis square to z
+        CHECK(q.z == 0);  // no twist: the rotation is about an axis perpendicular to z
         CHECK(q.w >= 0);
     }
 }

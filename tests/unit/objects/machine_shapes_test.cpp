@@ -101,7 +101,7 @@ double distance_to_outline(const Geometry& gear, const Vec3& p)
 
 }  // namespace
 
-TEST_CASE("a cylinder weighs what the closed form says, where its pose puts it")
+TEST_CASE("a cylinder has the mass properties of the closed form, in its pose")
 {
     TableFixture<CylinderRows> table;
     table.rows.radius[0] = 0.2, table.rows.height[0] = 0.7;
@@ -120,7 +120,7 @@ TEST_CASE("a cylinder weighs what the closed form says, where its pose puts it")
     CHECK(solid.inertia(0, 0) == doctest::Approx(mass * 0.02).epsilon(1e-14));
 }
 
-TEST_CASE("a cylinder is handed over as what it is; one that is only drawn as a closed mesh inside it")
+TEST_CASE("a cylinder is passed to the host as a cylinder; one that is only drawn, as a closed mesh inside it")
 {
     TableFixture<CylinderRows> table;
     table.rows.radius[0] = 0.2, table.rows.height[0] = 0.7;
@@ -165,7 +165,7 @@ TEST_CASE("a gear is a closed mesh between the cylinders of its roots and tips")
         }
 }
 
-TEST_CASE("a tooth points along x, from root to tip; gaps lie between")
+TEST_CASE("a tooth points along x, from root to tip, with gaps on both sides")
 {
     const Made gear = made(gear_table(0.1, 16, 0.08, 0.02));
     const double m = 0.2 / 16, pitch = 2 * kPi / 16;
@@ -176,7 +176,7 @@ TEST_CASE("a tooth points along x, from root to tip; gaps lie between")
     }
 }
 
-TEST_CASE("two wheels of one module turn past each other and hardly touch")
+TEST_CASE("two wheels of one module mesh and hardly overlap")
 {
     const Made small = made(gear_table(0.1, 16, 0.08, 0)), large = made(gear_table(0.2, 32, 0.08, 0));
     // Axles 0.3 apart along x. The small one points a tooth at the large one, which is turned by half a tooth.
@@ -191,12 +191,12 @@ TEST_CASE("two wheels of one module turn past each other and hardly touch")
             if (length(p) < reach_of(small.geometry, std::atan2(p.y, p.x))) deepest = std::fmax(deepest, away);
             least_room = std::fmin(least_room, away);
         }
-    // Straight flanks are no involutes, but what they overlap cannot be seen: less than 3 % of a tooth's height (28 mm).
+    // Straight flanks are no involutes, but their overlap is not visible: less than 3 % of a tooth's height (28 mm).
     CHECK(deepest < 8e-4);
     CHECK(least_room < 1e-3);
 }
 
-TEST_CASE("a bore that leaves no ring is refused")
+TEST_CASE("a bore as large as the wheel is refused")
 {
     auto table = gear_table(0.1, 16, 0.08, 0.09);
     Shapes host = make_shapes(1);
@@ -208,7 +208,7 @@ TEST_CASE("a bore that leaves no ring is refused")
     CHECK(reason_of(prepare_gear(table.context(), 0, table.rows, host)) == "accepted");
 }
 
-TEST_CASE("a rotor is closed, balanced about its axle, and as wide as it says")
+TEST_CASE("a rotor is closed, balanced about its axle, and has the given width")
 {
     const Made rotor = made(rotor_table());
     CHECK(check_closed(rotor.geometry.vertices, rotor.geometry.triangles).ok());

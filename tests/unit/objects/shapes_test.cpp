@@ -1,4 +1,4 @@
-/// Mass properties against closed forms, geometry as handed to the host, and every refusal of a mesh.
+/// Mass properties against closed forms, geometry as passed to the host, and every refusal of a mesh.
 #include <doctest/doctest.h>
 
 #include <numbers>
@@ -40,7 +40,7 @@ double relative(double value, double expected) { return std::fabs(value - expect
 
 }  // namespace
 
-TEST_CASE("a tetrahedron's integrals are the closed forms")
+TEST_CASE("a tetrahedron's integrals agree with the closed forms")
 {
     const double a = 0.3, b = 0.7, c = 1.1, v = a * b * c / 6;
     const MassProperties solid = integrate(corner_tetrahedron(a, b, c));
@@ -52,7 +52,7 @@ TEST_CASE("a tetrahedron's integrals are the closed forms")
     CHECK(largest_difference(solid.inertia, expected) < 1e-15 * v);
 }
 
-TEST_CASE("a box as a mesh weighs what the box weighs, wherever it stands")
+TEST_CASE("a box as a mesh has the mass properties of the box, at any position")
 {
     const Vec3 half{0.1, 0.2, 0.3};
     const MassProperties box = solid_box(half);
@@ -72,7 +72,7 @@ TEST_CASE("a box as a mesh weighs what the box weighs, wherever it stands")
     }
 }
 
-TEST_CASE("where the mesh has most of its vertices does not matter")
+TEST_CASE("an uneven distribution of a mesh's vertices does not matter")
 {
     MeshData mesh = box_mesh({0.1, 0.2, 0.3});
     mesh.vertices.insert(mesh.vertices.end(), 20, Vec3{3, 2, 1});
@@ -134,7 +134,7 @@ TEST_CASE("a cavity counts as a hole")
     CHECK(integrate(mesh).mass == doctest::Approx(7).epsilon(1e-15));
 }
 
-TEST_CASE("vertices that are repeated per face close a mesh all the same")
+TEST_CASE("vertices that are repeated for each face still give a closed mesh")
 {
     const MeshData box = box_mesh({1, 1, 1});
     MeshData loose;
@@ -146,7 +146,7 @@ TEST_CASE("vertices that are repeated per face close a mesh all the same")
     CHECK(integrate(loose).mass == doctest::Approx(8).epsilon(1e-15));
 }
 
-TEST_CASE("a mesh without a definite volume is refused with the edge")
+TEST_CASE("a mesh without a definite volume is refused, and the message names the edge")
 {
     MeshData open = box_mesh({1, 1, 1});
     open.triangles.resize(open.triangles.size() - 3);
@@ -215,7 +215,7 @@ TEST_CASE("an open mesh is drawn but not measured")
     CHECK(reason_of(measure_mesh(0, table.rows, solid)) == "mesh is open at edge 0-1; every edge must have two triangles");
 }
 
-TEST_CASE("primitives hand over their geometry and measure themselves in the body's frame")
+TEST_CASE("primitives provide their geometry and their mass properties in the body's frame")
 {
     Shapes host = make_shapes(1);
     MassProperties solid;
@@ -251,7 +251,7 @@ TEST_CASE("primitives hand over their geometry and measure themselves in the bod
     CHECK(reason_of(measure_plane(0, plane.rows, solid)) == "a plane is unbounded and has no volume");
 }
 
-TEST_CASE("a placed shape is the referred one, moved as a whole")
+TEST_CASE("a placed shape is the shape referred to, moved as a whole")
 {
     Shapes host = make_shapes(2);
     TableFixture<BoxRows> box;

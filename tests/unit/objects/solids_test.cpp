@@ -35,7 +35,7 @@ MassProperties integrated(const BuiltMesh& mesh)
     return *solid;
 }
 
-/// int over the solid of turned rings: simple sums over z of a circle's area and moments.
+/// int over the solid of revolution: simple sums over z of a circle's area and moments.
 MassProperties capsule_by_slices(double r, double l, int n)
 {
     MassProperties out;
@@ -53,7 +53,7 @@ MassProperties capsule_by_slices(double r, double l, int n)
 
 }  // namespace
 
-TEST_CASE("a capsule weighs what its slices weigh; short ones like a ball, long ones like a rod")
+TEST_CASE("a capsule has the mass properties of its slices; short ones those of a ball, long ones those of a rod")
 {
     for (const auto& [r, l] : {std::pair{0.2, 0.5}, {0.01, 3.0}, {1.0, 0.1}})
     {
@@ -66,7 +66,7 @@ TEST_CASE("a capsule weighs what its slices weigh; short ones like a ball, long 
     CHECK(solid_capsule(1e-6, 2).inertia(0, 0) == doctest::Approx(solid_cylinder(1e-6, 2).inertia(0, 0)).epsilon(1e-5));
 }
 
-TEST_CASE("a capsule hands over radius and half length, and turns with its pose")
+TEST_CASE("a capsule provides its radius and half length, and rotates with its pose")
 {
     TableFixture<CapsuleRows> table;
     table.rows.radius[0] = 0.2, table.rows.length[0] = 0.6;
@@ -82,7 +82,7 @@ TEST_CASE("a capsule hands over radius and half length, and turns with its pose"
     CHECK(solid.inertia(0, 0) == doctest::Approx(solid_capsule(0.2, 0.6).inertia(2, 2)).epsilon(1e-14));
 }
 
-TEST_CASE("the hull of a box's corners and points inside is the box, by mass and by triangles")
+TEST_CASE("the hull of a box's corners and of points inside is the box, in mass and in triangles")
 {
     TableFixture<ConvexHullRows> table;
     for (const Vec3& v : box_mesh({0.1, 0.2, 0.3}).vertices)
@@ -101,7 +101,7 @@ TEST_CASE("the hull of a box's corners and points inside is the box, by mass and
     CHECK(largest_difference(solid.inertia, box.inertia) < 1e-15 * box.mass);
 }
 
-TEST_CASE("the hull of a mesh: its points stand where the mesh's own pose puts them")
+TEST_CASE("the hull of a mesh has its points in the mesh's own pose")
 {
     TableFixture<ConvexHullRows> table;
     Shapes host = make_shapes(2);
@@ -115,7 +115,7 @@ TEST_CASE("the hull of a mesh: its points stand where the mesh's own pose puts t
     CHECK(solid.center.x == doctest::Approx(5).epsilon(1e-15));
 }
 
-TEST_CASE("what has no hull is refused with the reason")
+TEST_CASE("points without a hull are refused with the reason")
 {
     TableFixture<ConvexHullRows> table;
     Shapes host = make_shapes(2);
@@ -133,7 +133,7 @@ TEST_CASE("what has no hull is refused with the reason")
     CHECK(refused({}) == "`of` must name a shape that is made of vertices, such as a Shape/Mesh");
 }
 
-TEST_CASE("hulls of grids and of points that are nearly in planes: closed, and they hold every point")
+TEST_CASE("hulls of grids and of nearly coplanar points are closed and contain every point")
 {
     std::uint64_t seed = 3;
     for (const double noise : {0.0, 1e-16, 1e-13, 1e-11, 1e-6})
@@ -155,9 +155,9 @@ TEST_CASE("hulls of grids and of points that are nearly in planes: closed, and t
     }
 }
 
-TEST_CASE("hulls of points that were rounded to some digits: convex, whichever tolerance it takes")
+TEST_CASE("hulls of points rounded to some digits are convex, whichever tolerance they need")
 {
-    // A cube with 8 x 8 points on each face, turned, and rounded as a file would have it.
+    // A cube with 8 x 8 points on each face, rotated, and rounded as in a file.
     std::uint64_t seed = 7;
     for (const double digit : {1e-9, 1e-10, 1e-11, 1e-12})
         for (int turn = 0; turn < 4; ++turn)
@@ -183,9 +183,10 @@ TEST_CASE("hulls of points that were rounded to some digits: convex, whichever t
         }
 }
 
-TEST_CASE("the hull of two flat rims of many points: every point is a corner, and nobody waits for it")
+TEST_CASE("the hull of two flat rims of many points: every point is a corner, and it is found quickly")
 {
-    // A gear of 500 teeth stands on 1000 points; the outline between teeth lies on lines. Volume: that of the prism over the polygon.
+    // A gear of 500 teeth has 1000 points on its outline; between teeth the outline consists of straight lines. Volume: that of the
+    // prism over the polygon.
     const auto rims = [](int n, int between)
     {
         std::vector<Vec3> out;
@@ -205,7 +206,7 @@ TEST_CASE("the hull of two flat rims of many points: every point is a corner, an
         const std::clock_t begin = std::clock();
         const auto hull = make_convex_hull(rims(n, between));
         CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC <
-              3);  // 0.05 s at the most; where the rim was covered anew for each point 2000 took 53 s
+              3);  // 0.05 s at the most; when the rim was triangulated again for each point, 2000 took 53 s
         REQUIRE(hull.ok());
         const auto corners = static_cast<std::size_t>(2 * n);
         CHECK(hull->vertices.size() >= corners);
@@ -239,14 +240,14 @@ TEST_CASE("a compound is the sum of its parts about their common centre")
     CHECK(g.parts == std::vector<std::uint32_t>{1, 2});
     MassProperties solid;
     REQUIRE(reason_of(measure_compound(0, table.rows, host, solid)) == "accepted");
-    // Its picture is two closed meshes: the same integrals by another way.
+    // It is drawn as two closed meshes, which have the same integrals.
     const MassProperties drawn = posed(integrated({g.vertices, g.triangles}), g.pose);
     CHECK(solid.mass == doctest::Approx(drawn.mass).epsilon(1e-14));
     CHECK(length(solid.center - drawn.center) < 1e-14);
     CHECK(largest_difference(solid.inertia, drawn.inertia) < 1e-14);
 }
 
-TEST_CASE("two halves of a box make the box; overlapping parts count twice")
+TEST_CASE("two halves of a box have the mass properties of the box; overlapping parts count twice")
 {
     const MassProperties half = solid_box({0.5, 1, 1});
     const MassProperties parts[] = {posed(half, {{-0.5 + 1e6, 0, 0}, {}}), posed(half, {{0.5 + 1e6, 0, 0}, {}})};
@@ -258,7 +259,7 @@ TEST_CASE("two halves of a box make the box; overlapping parts count twice")
     CHECK(joined(twice).mass == 2 * half.mass);
 }
 
-TEST_CASE("what cannot be a part is refused")
+TEST_CASE("shapes that cannot be parts are refused")
 {
     Shapes host = make_shapes(2);
     TableFixture<CompoundRows> table;
@@ -276,7 +277,7 @@ TEST_CASE("what cannot be a part is refused")
     CHECK(reason_of(measure_compound(0, table.rows, host, solid)) == "mesh is open at edge 0-1");
 }
 
-TEST_CASE("pictures of round shapes are closed and a little inside the true ones")
+TEST_CASE("the meshes of round shapes are closed and slightly inside the true ones")
 {
     const MassProperties ball = integrated(picture_of(geometry_of(GeometryKind::Sphere, {0.3, 0, 0})));
     CHECK(ball.mass == doctest::Approx(solid_sphere(0.3).mass).epsilon(0.01));

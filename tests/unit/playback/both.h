@@ -1,4 +1,4 @@
-/// A player and those who watch it, in one process and on one thread: whoever waits lets the player go on.
+/// A player and its readers, in one process and on one thread: while a reader waits, the player continues.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -34,7 +34,7 @@ inline std::unique_ptr<playback::Player> open_player(const playback::PlaybackOpt
     return player.take();
 }
 
-/// Lets the player go on until `is_enough`, for 10 s at the most; whether it was.
+/// Runs the player until `is_enough`, for 10 s at the most; returns whether it was.
 template <class Condition>
 bool play_until(playback::Player& player, Condition is_enough)
 {
@@ -58,7 +58,7 @@ inline link::Session watch(const std::string& name)
     return session.take();
 }
 
-/// All that a reader of T has been given so far, by `note`.
+/// Everything that a reader of T has received so far, as text by `note`.
 template <class T, class Note>
 void take_all(wire::Reader<T>& reader, Note note)
 {

@@ -5,7 +5,7 @@
 using namespace plab::playback;
 using Keys = std::vector<Key>;
 
-TEST_CASE("keys are told apart, also when a cursor key comes byte by byte, and others mean nothing")
+TEST_CASE("keys are distinguished, also when a cursor key arrives byte by byte, and others are ignored")
 {
     KeyParser parser;
     CHECK(parser.take(" ") == Keys{Key::Pause});
@@ -20,7 +20,7 @@ TEST_CASE("keys are told apart, also when a cursor key comes byte by byte, and o
     CHECK(parser.take("q") == Keys{Key::Quit});
 }
 
-TEST_CASE("the bar says where the playback is, in the width that there is")
+TEST_CASE("the bar shows the position of the playback, in the width available")
 {
     BarState state{2, 12, 7, 1, false, 3.25, 4};
     const std::string wide = bar(state, 120);

@@ -1,4 +1,4 @@
-// Where a playback is, with a clock that the test moves.
+// The position of a playback, with a clock that the test advances.
 #include "playback/pace.h"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ Clock::time_point after(int ms) { return kStart + milliseconds(ms); }
 
 }  // namespace
 
-TEST_CASE("a second is a second, or as many as the rate says, and nothing is beyond the span")
+TEST_CASE("a second of real time is as many seconds as the rate says, and the position stays within the span")
 {
     const Pace plain({2 * kSecond, 5 * kSecond}, 1, false, kStart);
     CHECK(plain.position(kStart) == 2 * kSecond);
@@ -33,7 +33,7 @@ TEST_CASE("a second is a second, or as many as the rate says, and nothing is bey
     CHECK(Pace({0, kSecond}, 1e9, false, kStart).rate() == Pace::kFastest);
 }
 
-TEST_CASE("at the moment at which something is due the position is there, and not long before")
+TEST_CASE("at the time at which a message is due the position is reached, and not long before")
 {
     for (const double rate : {0.3, 1.0, 7.0, 333.0})
     {
@@ -48,12 +48,12 @@ TEST_CASE("at the moment at which something is due the position is there, and no
     }
 }
 
-TEST_CASE("a pause stands still, and a change of rate or a jump moves nothing but what it says")
+TEST_CASE("during a pause the position does not change, and a change of rate or a jump has only its own effect")
 {
     Pace pace({0, 100 * kSecond}, 1, true, kStart);
     CHECK(pace.position(after(5000)) == 0);
     CHECK_FALSE(pace.when(1));
-    CHECK(pace.when(0) == kStart);  // what is here already is due
+    CHECK(pace.when(0) == kStart);  // messages at the present position are due
     pace.pause(false, after(5000));
     CHECK(pace.position(after(6000)) == kSecond);
     pace.set_rate(10, after(6000));

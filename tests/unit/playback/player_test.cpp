@@ -1,4 +1,4 @@
-// A playback as others see it: a server whose runs begin anew, and that refuses everything.
+// A playback as clients see it: a server whose runs begin again, and that refuses all requests.
 #include "both.h"
 #include "link/caller.h"
 #include "link/catalogue.h"
@@ -9,7 +9,7 @@ using namespace plab::test;
 namespace
 {
 
-/// What a watcher of the log and of the states has seen.
+/// What a reader of the log and of the states has received.
 class Watcher
 {
 public:
@@ -52,7 +52,7 @@ std::uint64_t ns(double seconds) { return static_cast<std::uint64_t>(seconds * 1
 
 }  // namespace
 
-TEST_CASE("each turn of a loop is a new run, from where it began, and numbers go on without a gap")
+TEST_CASE("each repetition of a loop is a new run from its beginning, and numbers continue without a gap")
 {
     playback::PlaybackOptions options = play_options(make_recording("playback_loop.mcap"), "loop");
     options.from = 0.5, options.to = 1.5, options.rate = 10, options.loop = true, options.readers = 1;
@@ -63,16 +63,16 @@ TEST_CASE("each turn of a loop is a new run, from where it began, and numbers go
     for (std::size_t i = 0; i < 4; ++i)
     {
         CHECK(watcher.runs[i] == i + 1);
-        // The state as it was just before the first moment comes first.
+        // The state just before the first time is sent first.
         CHECK(watcher.first_times[i] == doctest::Approx(0.49));
     }
     CHECK(has_no_gap(watcher.numbers));
     CHECK(watcher.numbers.size() >= 3);
-    // A reader keeps four frames: on a machine that is busy some are lost to it. None has a number of an earlier one.
+    // A reader keeps four frames, so on a busy machine it misses some. None has the number of an earlier one.
     CHECK(std::is_sorted(watcher.frame_numbers.begin(), watcher.frame_numbers.end(), std::less_equal<>()));
 }
 
-TEST_CASE("a jump brings the catalogue of that time; back it is a new run, forth it is not")
+TEST_CASE("a jump publishes the catalogue of that time; backwards it is a new run, forwards it is not")
 {
     playback::PlaybackOptions options = play_options(make_recording("playback_seek.mcap"), "seek");
     options.from = 0.2, options.paused = true;
@@ -93,7 +93,7 @@ TEST_CASE("a jump brings the catalogue of that time; back it is a new run, forth
                           });
     };
     CHECK(shows("Response/Impulse", 1));
-    CHECK(play_until(*player, [&] { return watcher.look(), watcher.last_time > 0.19; }));  // who comes late is shown where it stands
+    CHECK(play_until(*player, [&] { return watcher.look(), watcher.last_time > 0.19; }));  // a late reader receives the present state
     player->seek(ns(1.7), Clock::now());
     CHECK(shows("Response/None", 1));
     CHECK(play_until(*player, [&] { return watcher.look(), watcher.last_time > 1.69; }));
@@ -136,7 +136,7 @@ TEST_CASE("a request is refused, with the reason")
     CHECK(reply->reasons[0].starts_with("this is a playback of "));
 }
 
-TEST_CASE("a second player of one name is refused until the first is gone")
+TEST_CASE("a second player of one name is refused until the first has ended")
 {
     const std::string file = make_recording("playback_twice.mcap");
     auto first = open_player(play_options(file, "twice"));
@@ -147,7 +147,7 @@ TEST_CASE("a second player of one name is refused until the first is gone")
     CHECK(playback::Player::open(play_options(file, "twice")).ok());
 }
 
-TEST_CASE("what cannot be played says why")
+TEST_CASE("for files that cannot be played the error says why")
 {
     const std::string file = make_recording("playback_wrong.mcap");
     playback::PlaybackOptions options = play_options(file, "wrong");

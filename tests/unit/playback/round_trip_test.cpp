@@ -1,4 +1,4 @@
-// Played on the bus and recorded from it again, a recording is what it was.
+// A recording that is played on the bus and recorded again is unchanged.
 #include "both.h"
 
 using namespace plab;
@@ -40,7 +40,7 @@ Again play_and_record(const std::string& file, const std::string& name, recorder
     REQUIRE_MESSAGE(recorder.ok(), recorder.error().text());
     REQUIRE(play_until(*player, [&] { return (*recorder)->step(Seconds(0)) != recorder::State::Goes || player->is_over(); }));
     CHECK(player->broken() == 0);
-    player.reset();  // says goodbye
+    player.reset();  // announces its end
     const auto end = Clock::now() + std::chrono::seconds(5);
     auto state = recorder::State::Goes;
     while (state == recorder::State::Goes && Clock::now() < end) state = (*recorder)->step(Seconds(0.05));
@@ -62,7 +62,7 @@ void check_same(const recording::Reader& a, const recording::Reader& b, const st
 
 }  // namespace
 
-TEST_CASE("states, events and all that has numbers come out byte for byte; the catalogue at any time is the same")
+TEST_CASE("states, events and all numbered topics are the same byte for byte; the catalogue at any time is the same")
 {
     MadeOptions made;
     made.steps_after = 60;
@@ -72,7 +72,7 @@ TEST_CASE("states, events and all that has numbers come out byte for byte; the c
     CHECK(again.progress.dropped.messages == 0);
     const recording::Reader a = open_file(file), b = open_file(again.file);
     for (const char* topic : {"plab/states", "plab/events", "plab/collisions", "plab/journal", "plab/hashes"}) check_same(a, b, topic);
-    CHECK(messages_of(b, "plab/gone").empty());  // a goodbye is no news of the scene
+    CHECK(messages_of(b, "plab/gone").empty());  // the end of the server does not change the scene
     for (const double seconds : {0.5, 1.5, 2.5})
     {
         const auto time = static_cast<std::uint64_t>(seconds * 1e9);
@@ -84,11 +84,11 @@ TEST_CASE("states, events and all that has numbers come out byte for byte; the c
     const auto blueprint = b.attachment("blueprint.xml");
     REQUIRE_MESSAGE(blueprint.ok(), blueprint.error().text());
     CHECK(std::string(blueprint->attachment.data.begin(), blueprint->attachment.data.end()) == "<plab/>");
-    // The time line is that of the first: it began at zero, and a reset went on.
+    // The time line is that of the first recording: it began at zero, and continued after a reset.
     CHECK(std::abs(static_cast<double>(a.index().statistics.end_time) - static_cast<double>(b.index().statistics.end_time)) <= 2e7);
 }
 
-TEST_CASE("frames that name only what moved are sent whole")
+TEST_CASE("frames that name only moved objects are sent in full")
 {
     MadeOptions thin;
     thin.only_moved = true;
@@ -104,7 +104,7 @@ TEST_CASE("frames that name only what moved are sent whole")
         REQUIRE(decoder.decode(bytes, frame).ok());
         REQUIRE(frame->bodies._length == 2);
         REQUIRE(frame->shafts._length == 1);
-        // Blue was told of at each tenth step, the axle at the first.
+        // Blue was recorded at each tenth step, the axle at the first.
         const double reported = static_cast<double>(frame->step / 10) * 0.1;
         CHECK(frame->bodies._buffer[0].position.x == frame->time);
         CHECK(frame->bodies._buffer[1].position.z == doctest::Approx(reported * reported));
@@ -112,13 +112,13 @@ TEST_CASE("frames that name only what moved are sent whole")
     }
 }
 
-TEST_CASE("only the topics that are asked for, frames thinned to a rate, up to a time")
+TEST_CASE("only the requested topics are recorded, frames at a lower rate, up to a time")
 {
     const std::string file = make_recording("playback_source.mcap");
     recorder::RecorderOptions options = record_options("playback_thinned.mcap");
     options.topics = {"plab/states", "plab/events"}, options.state_rate = 10, options.until = 1.2;
     const Again again = play_and_record(file, "thinned", options);
-    CHECK(again.progress.missing == 0);  // what is left out is not missing
+    CHECK(again.progress.missing == 0);  // messages that are left out do not count as missing
     const recording::Reader reader = open_file(again.file);
     recording::Decoder decoder;
     recording::Sample<plab_v2_Frame> frame;
@@ -139,7 +139,7 @@ TEST_CASE("only the topics that are asked for, frames thinned to a rate, up to a
     CHECK(std::string((*chosen).back()->name) == "plab/states");
 }
 
-TEST_CASE("frames that never came are told in the file")
+TEST_CASE("frames that were never received are noted in the file")
 {
     MadeOptions made;
     made.missing_frame = 50;

@@ -1,4 +1,4 @@
-// Frames that name only what moved, and the time line of a recording.
+// Frames that name only moved objects, and the time line of a recording.
 #include "idl/recording/whole_frame.h"
 
 #include <doctest/doctest.h>
@@ -36,7 +36,7 @@ using Rows = std::vector<std::pair<std::uint32_t, double>>;
 
 }  // namespace
 
-TEST_CASE("what a frame does not name stays as it was named last, until a new run or revision")
+TEST_CASE("an object that a frame does not name keeps its last state, until a new run or revision")
 {
     WholeFrame whole;
     CHECK(rows(whole.with(Made(1, 1, {{7, 1}, {3, 2}, {5, 3}}).frame)) == Rows{{7, 1}, {3, 2}, {5, 3}});
@@ -49,7 +49,7 @@ TEST_CASE("what a frame does not name stays as it was named last, until a new ru
     CHECK(rows(whole.with(Made(2, 2, {{9, 5}}).frame)) == Rows{{9, 5}});
 }
 
-TEST_CASE("the time line goes on where a run begins again, at zero or anywhere")
+TEST_CASE("the time line continues when a run begins again, at zero or at any time")
 {
     Timeline line;
     CHECK(line.at(1, 2.5) == 0);  // the recording begins here
@@ -60,9 +60,9 @@ TEST_CASE("the time line goes on where a run begins again, at zero or anywhere")
     CHECK(line.at(3, 2) == 1'250'000'000);  // rewound to 2 s
     CHECK(line.at(3, 2.5) == 1'750'000'000);
     CHECK(line.seconds(3, 1'750'000'000) == doctest::Approx(2.5));
-    CHECK(line.at(1, 2) == 0);                // a sample of before the recording began
-    CHECK(line.at(3, 1.5) == 1'250'000'000);  // of before the run was seen: at its border
-    CHECK(line.at(2, 0.5) == 1'250'000'000);  // of after the next run was seen
+    CHECK(line.at(1, 2) == 0);                // a sample from before the beginning of the recording
+    CHECK(line.at(3, 1.5) == 1'250'000'000);  // from before the run was seen: at its beginning
+    CHECK(line.at(2, 0.5) == 1'250'000'000);  // from after the next run was seen
     CHECK(line.at(2, 0.125) == 1'125'000'000);
     CHECK(line.now() == 1'750'000'000);
 }

@@ -22,7 +22,7 @@ std::string sample(const std::string& flaw) { return kSamples + "/sample_" + fla
 
 const std::string kHead = "plab-manifest 3\nplugin\tsample\n";
 
-/// A line for a type of which nothing but the name is told.
+/// A line for a type of which only the name is given.
 std::string bare_type(const std::string& name) { return "type\t" + name + "\tSample\t0\t\t\t\t\t\t\n"; }
 
 std::string manifest(const std::string& types)
@@ -118,7 +118,7 @@ TEST_CASE("a plugin is loaded when one of its types is asked for, not before")
     CHECK(library.loaded().size() == 1);
 }
 
-TEST_CASE("a library that goes takes its plugins along, after their types")
+TEST_CASE("the destructor of a library unloads its plugins after their types")
 {
     const Folder folder("gone");
     folder.plugin("good", "none", "Sample/Good\n");
@@ -139,14 +139,14 @@ TEST_CASE("unknown types: the nearest names of all manifests, and what could not
     CHECK(library.names().size() == 2);
     CHECK(refusal(library, "Solver/RungeKuta4") == "unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
     CHECK(refusal(library, "") == "unknown type ''");
-    CHECK(refusal(library, "Solver/RungeKutta4").find("cannot be loaded") != std::string::npos);  // not: in two plugins
+    CHECK(refusal(library, "Solver/RungeKutta4").find("cannot be loaded") != std::string::npos);  // and not that it is in two plugins
 
     PluginLibrary nowhere({a.file("missing")});
     CHECK(refusal(nowhere, "A/B") ==
           "unknown type 'A/B'; no plugins were found; plugin folder " + a.file("missing") + " cannot be read: No such file or directory");
 }
 
-TEST_CASE("a type in two plugins is refused, naming both; the others can be had")
+TEST_CASE("a type in two plugins is refused, naming both; the other types are available")
 {
     const Folder folder("two");
     folder.plugin("a", "none", "Sample/Good\nSample/Better\n");
@@ -157,7 +157,7 @@ TEST_CASE("a type in two plugins is refused, naming both; the others can be had"
     CHECK(refusal(library, "Sample/Better") == "accepted");
 }
 
-TEST_CASE("bad manifests are problems, not the end")
+TEST_CASE("bad manifests are reported as problems and do not stop the search")
 {
     const Folder folder("bad");
     struct Case
@@ -199,7 +199,7 @@ TEST_CASE("bad manifests are problems, not the end")
     CHECK(refusal(library, "G/H").find("a.manifest:1:1") != std::string::npos);
 }
 
-TEST_CASE("a manifest without its plugin, and one that promises too much")
+TEST_CASE("a manifest without its plugin, and one that lists too many types")
 {
     const Folder folder("promise");
     folder.plugin("missing", "", "Sample/Missing\n");
@@ -213,7 +213,7 @@ TEST_CASE("a manifest without its plugin, and one that promises too much")
     CHECK(refusal(library, "Sample/Good") == "accepted");
 }
 
-TEST_CASE("each mismatch of the stamp has its own words")
+TEST_CASE("each mismatch of the stamp has its own message")
 {
     const std::string again = "; build it again with this SDK";
     CHECK(load_refusal("version") == "plugin " + sample("version") + ": was built for version 2 of the SDK, version 1 is needed" + again);
@@ -227,14 +227,14 @@ TEST_CASE("each mismatch of the stamp has its own words")
     CHECK(load_refusal("entry") == "plugin " + sample("entry") + ": has no symbol plab_plugin_register");
 }
 
-TEST_CASE("plugins that fail while registering leave nothing behind")
+TEST_CASE("plugins that fail while registering leave no types behind")
 {
     CHECK(load_refusal("throws") == "plugin " + sample("throws") + ": threw an exception while registering its types");
     CHECK(load_refusal("empty") == "plugin " + sample("empty") + ": declares no types");
     CHECK(load_refusal("twice") == "plugin " + sample("twice") + ": Sample/Good: is declared twice");
 }
 
-TEST_CASE("a failure is told each time, and the same types can come from a good plugin later")
+TEST_CASE("a failure is reported each time, and the same types can be loaded from a good plugin later")
 {
     const Folder folder("again");
     folder.plugin("twice", "twice", "Sample/Good\n");
@@ -247,7 +247,7 @@ TEST_CASE("a failure is told each time, and the same types can come from a good 
     CHECK(refusal(library, "Sample/Good") == "accepted");
 }
 
-TEST_CASE("load_plugin: twice is once; other plugins with the same types are refused; files that are no library")
+TEST_CASE("load_plugin: a second call has no effect; other plugins with the same types and files that are not libraries are refused")
 {
     PluginLibrary library(std::vector<std::string>{});
     const auto first = library.load_plugin(sample("none"));
@@ -270,7 +270,7 @@ TEST_CASE("load_plugin: twice is once; other plugins with the same types are ref
     CHECK(text.error().text().starts_with("plugin " + folder.file("text.so") + ": cannot be loaded: "));
 }
 
-TEST_CASE("where plugins are looked for")
+TEST_CASE("where plugins are searched for")
 {
     unsetenv("PLAB_PLUGIN_PATH");
     const auto installed = PluginLibrary::default_directories();
@@ -279,13 +279,13 @@ TEST_CASE("where plugins are looked for")
     setenv("PLAB_PLUGIN_PATH", ":/a/b::/c:", 1);
     CHECK(PluginLibrary::default_directories() == std::vector<std::string>{"/a/b", "/c", installed[0]});
     setenv("PLAB_PLUGIN_PATH", "/a/b", 1);
-    CHECK(PluginLibrary().require("State/RigidBody"));  // and an own folder takes nothing away
+    CHECK(PluginLibrary().require("State/RigidBody"));  // an additional folder does not replace the default one
     setenv("PLAB_PLUGIN_PATH", "", 1);
     CHECK(PluginLibrary::default_directories() == installed);
     unsetenv("PLAB_PLUGIN_PATH");
 }
 
-TEST_CASE("manifests are written sorted, whole or not at all, and read back with whatever text they hold")
+TEST_CASE("manifests are written sorted, completely or not at all, and read back with any text")
 {
     const Folder folder("write");
     model::TypeSummary odd, plain;
@@ -307,7 +307,7 @@ TEST_CASE("manifests are written sorted, whole or not at all, and read back with
     CHECK(nowhere.error().text() == folder.file("missing/m.manifest.tmp") + ": cannot be written");
 }
 
-TEST_CASE("a type is told alike by its manifest and by its plugin")
+TEST_CASE("a type is described identically by its manifest and by its plugin")
 {
     PluginLibrary library({PLAB_BINARY_DIR "/lib/plab"});
     std::vector<model::TypeSummary> reported = library.summaries();

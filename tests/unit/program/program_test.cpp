@@ -1,4 +1,4 @@
-// What signals do to a program that catches them, and what a line of progress says.
+// The effect of signals on a program that catches them, and the text of a progress line.
 #include <doctest/doctest.h>
 #include <signal.h>
 #include <sys/eventfd.h>
@@ -35,7 +35,7 @@ int code_of_child(Body body)
 
 }  // namespace
 
-TEST_CASE("a signal sets the flag, and the exit code is 128 + its number: that of the first one")
+TEST_CASE("a signal sets the flag, and the exit code is 128 + the number of the first one")
 {
     CHECK(code_of_child([] { return is_interrupted() || !name_of_interruption().empty() ? 1 : code_of_interruption(); }) == 0);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
@@ -67,7 +67,7 @@ TEST_CASE("a second signal, later, ends a program that does not end by itself")
               }) == 1000 + SIGINT);
 }
 
-TEST_CASE("a signal wakes who sleeps on an eventfd; SIGPIPE ends nobody")
+TEST_CASE("a signal wakes a thread that waits on an eventfd; SIGPIPE does not end the program")
 {
     CHECK(code_of_child(
               []
@@ -82,7 +82,7 @@ TEST_CASE("a signal wakes who sleeps on an eventfd; SIGPIPE ends nobody")
               }) == 7);
 }
 
-TEST_CASE("nohup stays nohup")
+TEST_CASE("a signal ignored by nohup stays ignored")
 {
     const pid_t child = fork();
     REQUIRE(child >= 0);
@@ -98,7 +98,7 @@ TEST_CASE("nohup stays nohup")
     CHECK(status == 0);
 }
 
-TEST_CASE("a bar shows the share that is done, and the time that is left once it can be told")
+TEST_CASE("a bar shows the fraction done, and the remaining time once it can be estimated")
 {
     CHECK(bar(0.25, 8) == "[##......]  25 %");
     CHECK(bar(2.25, 4) == "[####] 100 %");

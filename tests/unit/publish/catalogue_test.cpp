@@ -83,7 +83,7 @@ TEST_CASE("at first everything, as the scene has it")
     CHECK(run.watcher.changes.size() == 1);
 }
 
-TEST_CASE("a set, a swap, an addition, a removal: only what they touch")
+TEST_CASE("a set, a swap, an addition, a removal: only the components concerned")
 {
     Scene scene(kBalls);
     Watched run(scene);
@@ -100,7 +100,7 @@ TEST_CASE("a set, a swap, an addition, a removal: only what they touch")
     CHECK(changes[1].types.empty());
     CHECK(parameter(changes[1].interactions[0].parameters, "acceleration") == "0 0 -1.62");
 
-    SUBCASE("a shape's size is the mass of who wears it")
+    SUBCASE("a shape's size is published with the mass of its body")
     {
         run.ask(simulation::SetOperation{"ball", "radius", std::string("0.2")});
         CHECK(ids_in(changes[2]) == Ids{"ball", "red", "green"});
@@ -117,7 +117,7 @@ TEST_CASE("a set, a swap, an addition, a removal: only what they touch")
         run.ask(simulation::SetOperation{"gravity", "acceleration", std::string("0 0 -9")});
         CHECK(changes.back().interactions[0].since == 0);
     }
-    SUBCASE("who comes is told with whoever means everybody; handles are not used again")
+    SUBCASE("an added component is published together with those that refer to everyone; handles are not reused")
     {
         const auto more = fragment_of(scene, R"(<component id="blue" type="State/RigidBody" mass="1" shape="ball" position="5 0 5"/>)");
         run.ask(simulation::AddOperation{more});
@@ -135,7 +135,7 @@ TEST_CASE("a set, a swap, an addition, a removal: only what they touch")
         CHECK(changes[4].objects[0].handle > blue);
         CHECK(changes[4].gone.empty());
     }
-    SUBCASE("a group stands for what is inside it")
+    SUBCASE("a group stands for the components inside it")
     {
         run.ask(simulation::AddOperation{fragment_of(scene, R"(<component id="box" name="a box"><component id="box.state"
             type="State/RigidBody" mass="1" shape="Shape/Box" shape.half_extents="1 1 1" position="9 9 9"/></component>)")});
@@ -147,7 +147,7 @@ TEST_CASE("a set, a swap, an addition, a removal: only what they touch")
         run.ask(simulation::RemoveOperation{"box"});
         CHECK(changes.back().gone == std::vector<std::string>{"box.state", "box.state.shape"});
     }
-    SUBCASE("a reset is a new run: everything, and handles begin anew")
+    SUBCASE("a reset is a new run: everything is published, and handles begin again")
     {
         run.ask(simulation::ResetOperation{});
         CHECK(changes[2].everything);
@@ -155,7 +155,7 @@ TEST_CASE("a set, a swap, an addition, a removal: only what they touch")
         CHECK(changes[2].scene.run == changes[0].scene.run + 1);
         CHECK(find_entry(changes[2].objects, "red")->handle == handle("red"));
     }
-    SUBCASE("another step length is the scene's")
+    SUBCASE("a changed step length is published with the scene")
     {
         run.ask(simulation::StepLengthOperation{{0.01, 1, 100}});
         REQUIRE(changes.size() == 3);
@@ -164,7 +164,7 @@ TEST_CASE("a set, a swap, an addition, a removal: only what they touch")
     }
 }
 
-TEST_CASE("no room: then everything, when there is some")
+TEST_CASE("without room: everything is published as soon as there is room")
 {
     Scene scene(kBalls);
     Watched run(scene);
@@ -191,7 +191,7 @@ TEST_CASE("no room: then everything, when there is some")
     CHECK(run.watcher.changes.size() == 1);
 }
 
-TEST_CASE("a type whose plugin came later is told as loaded")
+TEST_CASE("a type whose plugin is loaded later is published as loaded")
 {
     plugins::PluginLibrary own({PLAB_BINARY_DIR "/lib/plab"});
     std::vector<model::TypeSummary> types = own.summaries();
@@ -237,7 +237,7 @@ TEST_CASE("quarantine and what scripts set reach the catalogue")
         run.step(4);
         CHECK(run.watcher.changes.size() == 1);
     }
-    SUBCASE("each time where that is always")
+    SUBCASE("at each step if the scene always changes")
     {
         Watched run(scene);
         run.step(2);

@@ -1,4 +1,4 @@
-// Hashes on their way to a recording: complete, in order, and never for long.
+// Hashes that are passed to a recording: complete, in order, and without long delay.
 #include "publish/hash_batch.h"
 
 #include <doctest/doctest.h>
@@ -39,7 +39,7 @@ Trajectory trajectory_of(Nanoseconds interval, int steps)
         out.oldest = std::max(out.oldest, (step - due) * interval);
         out.largest = std::max(out.largest, record->hashes.size());
         ++out.records, due = record->step + static_cast<Tick>(record->hashes.size());
-        // The next hash that is not handed over yet is the next step's.
+        // The next hash to be handed over is that of the next step.
         CHECK(due == step + 1);
     }
     return out;
@@ -47,7 +47,7 @@ Trajectory trajectory_of(Nanoseconds interval, int steps)
 
 }  // namespace
 
-TEST_CASE("no hash waits for longer than 3 ms, however long steps are, and fast ones go together")
+TEST_CASE("no hash waits for longer than 3 ms, however long steps are, and those of fast steps are batched")
 {
     for (const Nanoseconds interval :
          {kMillisecond / 50, kMillisecond / 4, kMillisecond, 2 * kMillisecond, 4 * kMillisecond, 50 * kMillisecond})

@@ -1,4 +1,4 @@
-// The ring: order, what is given up, memory that stays, and two threads at it.
+// The ring: order, dropped entries, memory that is kept, and two threads.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -30,7 +30,7 @@ int pop(Ring<int>& ring)
 
 }  // namespace
 
-TEST_CASE("what is pushed comes out in order, once")
+TEST_CASE("pushed entries come out in order, once")
 {
     Ring<int> ring(4);
     CHECK(ring.empty());
@@ -46,9 +46,9 @@ TEST_CASE("what is pushed comes out in order, once")
     CHECK(ring.dropped() == 0);
 }
 
-TEST_CASE("a full ring gives up the oldest, and counts it")
+TEST_CASE("a full ring drops the oldest entry and counts it")
 {
-    Ring<int> ring(3);  // four slots: one more than asked for, while nothing is held
+    Ring<int> ring(3);  // four slots: one more than requested, while none is held
     for (int i = 0; i < 10; ++i) push(ring, i);
     CHECK(ring.dropped() == 6);
     for (int i = 6; i < 10; ++i) CHECK(pop(ring) == i);
@@ -64,7 +64,7 @@ TEST_CASE("an entry that is being written is hidden")
     CHECK(pop(ring) == 1);
 }
 
-TEST_CASE("a held slot is stepped over")
+TEST_CASE("a held slot is skipped")
 {
     Ring<int> ring(2);
     push(ring, 0);
@@ -105,7 +105,7 @@ TEST_CASE("slots keep their memory")
 namespace
 {
 
-/// Every word says which entry this is: a torn one would not agree with itself.
+/// Every word has the number of the entry: a torn entry would be inconsistent.
 using Entry = std::array<std::uint64_t, 32>;
 
 struct Seen
@@ -134,7 +134,7 @@ Seen read_until(Ring<Entry>& ring, const std::atomic<bool>& done, int rest)
 
 }  // namespace
 
-TEST_CASE("two threads: nothing torn, nothing twice, nothing out of order, nothing lost without being counted")
+TEST_CASE("two threads: no entry is torn, duplicated, out of order, or lost without being counted")
 {
     constexpr std::uint64_t kEntries = 50'000;
     for (const std::size_t capacity : {1, 2, 7, 64})

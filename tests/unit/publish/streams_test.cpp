@@ -1,4 +1,4 @@
-// Frames, collisions, events, metrics and status: when they go out, and what stands in them.
+// Frames, collisions, events, metrics and status: when they are published, and what they contain.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -40,7 +40,7 @@ std::uint64_t check_numbers(const Batches& batches, std::uint64_t next)
 
 }  // namespace
 
-TEST_CASE("a pace keeps its grid under jitter, and does not catch up")
+TEST_CASE("a pace keeps its grid despite jitter, and does not make up for missed times")
 {
     publish::Pace pace(100);
     std::int64_t now = 1'000'000'000;
@@ -61,7 +61,7 @@ TEST_CASE("a pace keeps its grid under jitter, and does not catch up")
     CHECK(always.due(5));
 }
 
-TEST_CASE("a frame holds what the scene says of the frame that its author sees")
+TEST_CASE("a frame holds the poses of bodies in the frames that the scene's author defined")
 {
     Scene scene(R"(
       <component id="static" type="State/Static" shape="Shape/Sphere" shape.radius="1" position="9 9 9"/>
@@ -95,14 +95,14 @@ TEST_CASE("a frame holds what the scene says of the frame that its author sees")
     CHECK(frame.shafts[0].speed == 4);
 }
 
-TEST_CASE("frames: in turn, of what stands still, for newcomers, and for nobody else")
+TEST_CASE("frames: at their interval, while paused, for newcomers, and for no other readers")
 {
     Scene scene(kDrop);
     Watched run(scene, kRarely);
     run.step(5);
     CHECK(run.watcher.frames == 1);
     run.ask(simulation::PushOperation{"ball", {0, 0, 1}, {}});
-    CHECK(run.watcher.frames == 1);  // the next one comes in its turn
+    CHECK(run.watcher.frames == 1);  // the next one comes at its interval
     run.ask(simulation::PauseOperation{});
     CHECK(run.watcher.frames == 2);
     CHECK(run.watcher.frame.step == 5);
@@ -110,7 +110,7 @@ TEST_CASE("frames: in turn, of what stands still, for newcomers, and for nobody 
     CHECK(run.watcher.frames == 3);
     run.ask(simulation::StepOperation{3});
     run.step(3);
-    CHECK(run.watcher.frames == 4);  // of the last of the three
+    CHECK(run.watcher.frames == 4);  // that of the last of the three
     CHECK(run.watcher.frame.step == 8);
     run.collector.idle(scene.simulation());
     CHECK(run.watcher.frames == 4);
@@ -139,14 +139,14 @@ TEST_CASE("collisions carry point, normal, impulse and depth, and have a stream 
     const auto& impact = batches[0].entries[1];
     CHECK(std::string(begin.kind) == "begin");
     CHECK(std::string(impact.kind) == "impact");
-    CHECK(std::string(batches[0].entries[2].kind) == "end");  // it has left again when the step ends
+    CHECK(std::string(batches[0].entries[2].kind) == "end");  // the contact has ended when the step ends
     CHECK(begin.time == impact.time);
     CHECK(impact.time == doctest::Approx(std::sqrt(2 * 0.4 / 9.81)).epsilon(1e-6));
     CHECK(batches[0].step == static_cast<Tick>(impact.time * 240));
     CHECK(impact.detector == "contact");
     CHECK(impact.a == "ball");
     CHECK(impact.b == "floor");
-    // a is the ball: the normal points from it to the floor, and the impulse is the floor's.
+    // a is the ball: the normal points from it to the floor, and the impulse acts on the floor.
     CHECK(distance(impact.normal, {0, 0, -1}) < 1e-9);
     CHECK(impact.impulse.z == doctest::Approx(-1.5 * std::sqrt(2 * 9.81 * 0.4)).epsilon(1e-5));
     CHECK(distance(impact.position, {0, 0, 0}) < 1e-6);
@@ -157,7 +157,7 @@ TEST_CASE("collisions carry point, normal, impulse and depth, and have a stream 
     CHECK(check_numbers(batches, 1) == run.collector.last_collision() + 1);
 }
 
-TEST_CASE("numbers go on while nobody reads")
+TEST_CASE("numbers continue while there are no readers")
 {
     Scene scene(kDrop);
     Watched run(scene, kAlways, {});
@@ -178,7 +178,7 @@ TEST_CASE("numbers go on while nobody reads")
     CHECK(run.collector.last_event() == 2);
 }
 
-TEST_CASE("metrics: figures of the run, and who does the work")
+TEST_CASE("metrics: figures of the run, and the work by component")
 {
     Scene scene(kDrop);
     Watched run(scene);
@@ -215,7 +215,7 @@ TEST_CASE("metrics: figures of the run, and who does the work")
         find_entry(run.watcher.samples.back().interactions, "contact")->resolved.ends_with("Response/None (a sensor: applies no forces)"));
 }
 
-TEST_CASE("metrics in turn, at once after a request, for newcomers")
+TEST_CASE("metrics at their interval, at once after a request, and for newcomers")
 {
     Scene scene(kDrop);
     Watched run(scene, kRarely);
@@ -240,7 +240,7 @@ TEST_CASE("metrics in turn, at once after a request, for newcomers")
     CHECK(run.watcher.samples.size() == now + 1);
 }
 
-TEST_CASE("solvers: what they advance, mixtures, and those without work")
+TEST_CASE("solvers: the groups that they advance, mixtures, and solvers without work")
 {
     Scene scene(R"(
       <component id="solver" type="Solver/RungeKutta4"/>
@@ -262,7 +262,7 @@ TEST_CASE("solvers: what they advance, mixtures, and those without work")
     CHECK(resolved[world.find("a")].empty());
 }
 
-TEST_CASE("rows of one type that are cheap share what it costs, and say so")
+TEST_CASE("cheap rows of one type share its cost, and this is stated")
 {
     Scene scene(R"(<component id="a" type="State/Shaft" inertia="1"/><component id="b" type="State/Shaft" inertia="1"/>
       <component id="x" type="Field/Drag" between="a" rotational="1"/><component id="y" type="Field/Drag" between="b" rotational="1"/>)");
@@ -334,7 +334,7 @@ TEST_CASE("a warm step allocates nothing: unwatched, and with frames")
     }
 }
 
-TEST_CASE("frames are numbered for each observer: one that gets every tenth has missed none")
+TEST_CASE("frames are numbered for each observer: one that receives every tenth has missed none")
 {
     Scene scene(kDrop);
     Watched run(scene);
@@ -367,7 +367,7 @@ TEST_CASE("watching changes no bit")
     CHECK(plain.hash() == watched.hash());
 }
 
-TEST_CASE("metrics right after a rewind or a restore say that nothing is known, instead of a step of 0 ns and a rate across the jump")
+TEST_CASE("metrics right after a rewind or a restore are marked unknown, instead of a step of 0 ns and a rate across the jump")
 {
     Scene scene(kDrop);
     publish::Sampler sampler(0);
@@ -392,7 +392,7 @@ TEST_CASE("metrics right after a rewind or a restore say that nothing is known, 
     }
 }
 
-TEST_CASE("metrics say what their figures are: quartiles, of how many steps, shared by whom, unit and meaning of the error")
+TEST_CASE("metrics describe their figures: quartiles, number of steps, components that share them, unit and meaning of the error")
 {
     Scene scene(R"(<component id="a" type="State/Shaft" inertia="1" angular_velocity="1"/><component id="b" type="State/Shaft" inertia="1"/>
       <component id="x" type="Field/Drag" between="a b" rotational="1"/>

@@ -1,4 +1,4 @@
-/// An observer that keeps what it gets, and a run that it watches.
+/// An observer that keeps what it receives, and the run that it observes.
 #pragma once
 
 #include <map>
@@ -54,7 +54,7 @@ public:
     std::vector<publish::SnapshotRecord> snapshots;
 };
 
-/// Rates that never come again within a test, so that what is sent was asked for.
+/// Intervals longer than any test, so that everything sent was requested.
 inline constexpr publish::CollectorOptions kRarely{1e-3, 1e-3};
 inline constexpr publish::CollectorOptions kAlways{0, 0};
 
@@ -77,7 +77,7 @@ public:
             collector.collect(scene_.simulation(), scene_.simulation().take_changes(), true);
         }
     }
-    /// One request between two steps, and what follows from it.
+    /// One request between two steps, and what is published because of it.
     simulation::Reply ask(simulation::Operation operation)
     {
         const simulation::Reply reply = scene_.ask(std::move(operation));

@@ -1,4 +1,4 @@
-// Frames that name only what moved.
+// Frames that name only moved objects.
 #include <doctest/doctest.h>
 
 #include "record/moved.h"
@@ -21,7 +21,7 @@ publish::Frame frame_of(double time, double x0, double x1)
 
 }  // namespace
 
-TEST_CASE("what stands still is left out, until a full frame is due")
+TEST_CASE("objects that do not move are left out, until a full frame is due")
 {
     record::MovedFilter filter(1.0);
     CHECK(filter.thin(frame_of(0, 0, 0)).bodies.size() == 2);
@@ -32,7 +32,7 @@ TEST_CASE("what stands still is left out, until a full frame is due")
     CHECK(second.shafts.empty());
     CHECK(second.time == 0.1);
     CHECK(filter.thin(frame_of(0.2, 0, 0.25)).bodies.empty());
-    // -0 is not 0: a replay tells them apart, and so do files.
+    // -0 is not 0: a replay distinguishes them, and so do files.
     CHECK(filter.thin(frame_of(0.3, -0.0, 0.25)).bodies.size() == 1);
     CHECK(filter.thin(frame_of(1.0, -0.0, 0.25)).bodies.size() == 2);
     CHECK(filter.thin(frame_of(1.1, -0.0, 0.25)).bodies.empty());

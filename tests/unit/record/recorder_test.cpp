@@ -1,4 +1,4 @@
-// A run with a recorder that watches it, and the file read back.
+// A run that a recorder observes, and the file read back.
 #include "record/recorder.h"
 
 #include <sys/resource.h>
@@ -37,7 +37,7 @@ record::RecordOptions options_for(const std::string& file)
     return options;
 }
 
-/// What plabd does with a recorder, by hand.
+/// What plabd does with a recorder, step by step.
 class Recorded
 {
 public:
@@ -108,7 +108,7 @@ replay::ReplayReport replayed(const std::string& file)
 
 }  // namespace
 
-TEST_CASE("what was recorded is in the file: hashes, journal, snapshots, frames, origin; and it is the same run again")
+TEST_CASE("a recording holds hashes, journal, snapshots, frames and origin, and reproduces the run")
 {
     const std::string file = fresh_file("recorder");
     Recorded run(options_for(file));
@@ -147,7 +147,7 @@ TEST_CASE("what was recorded is in the file: hashes, journal, snapshots, frames,
     std::filesystem::remove(file);
 }
 
-TEST_CASE("frames that name only what moved make the same frames, in a smaller file")
+TEST_CASE("frames that name only moved objects give the same frames in a smaller file")
 {
     record::RecordOptions options = options_for(fresh_file("moved"));
     options.moved_only = true, options.compression = "none";
@@ -164,7 +164,7 @@ TEST_CASE("frames that name only what moved make the same frames, in a smaller f
     std::filesystem::remove(options.file);
 }
 
-TEST_CASE("frames come at the interval that was asked for, in simulated time")
+TEST_CASE("frames are recorded at the requested interval of simulated time")
 {
     record::RecordOptions options = options_for(fresh_file("interval"));
     options.state_interval = 0.1;
@@ -180,13 +180,13 @@ TEST_CASE("frames come at the interval that was asked for, in simulated time")
     std::filesystem::remove(options.file);
 }
 
-TEST_CASE("when the writer cannot keep up, frames are given up and counted, and the journal is kept")
+TEST_CASE("when the writer cannot keep up, frames are dropped and counted, and the journal is kept")
 {
     record::RecordOptions options = options_for(fresh_file("full"));
     options.most_waiting_bytes = 3000;
     Recorded run(options);
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // the catalogue is large, and alone
-    // Nothing but frames, faster than any thread can take them.
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // the catalogue is large, and is written alone
+    // Only frames, faster than any thread can write them.
     for (int i = 0; i < 5000; ++i)
     {
         run.recorder->begin_frame().bodies.resize(10);
@@ -208,7 +208,7 @@ TEST_CASE("when the writer cannot keep up, frames are given up and counted, and 
     std::filesystem::remove(options.file);
 }
 
-TEST_CASE("a disk without room stops the recording and says so; the simulation is what it is without one")
+TEST_CASE("a full disk stops the recording and is reported; the simulation is not affected")
 {
     Scene alone(kBall, "dt=\"1/100\"");
     alone.step(300);
@@ -238,14 +238,14 @@ TEST_CASE("a disk without room stops the recording and says so; the simulation i
     CHECK(status.bytes <= 128 * 1024);
     REQUIRE(!lines.empty());
     CHECK(lines.front().find("recording is stalled, the simulation continues: ") != std::string::npos);
-    // What came before is there, and is the same run.
+    // The part before is in the file and reproduces the run.
     const replay::ReplayReport report = replayed(file);
     CHECK(!report.mismatch);
     CHECK(report.verified > 0);
     std::filesystem::remove(file);
 }
 
-TEST_CASE("what cannot be recorded is refused before anything is written")
+TEST_CASE("recordings that cannot be made are refused before anything is written")
 {
     const std::string file = fresh_file("refused");
     record::RecordOptions options = options_for(file);
@@ -261,7 +261,7 @@ TEST_CASE("what cannot be recorded is refused before anything is written")
     CHECK(!std::filesystem::exists(file));
     options.compression = "zstd";
     REQUIRE(record::Recorder::open(options));
-    CHECK_MESSAGE(!record::Recorder::open(options), "a recording that is there was overwritten");
+    CHECK_MESSAGE(!record::Recorder::open(options), "an existing recording was overwritten");
     std::filesystem::remove(file);
 }
 

@@ -1,4 +1,4 @@
-// A warm writer takes messages without allocating; a chunk costs a few allocations, whatever is in it.
+// A warm writer takes messages without allocating; a chunk costs a few allocations, whatever its content.
 #include <doctest/doctest.h>
 
 #include <atomic>

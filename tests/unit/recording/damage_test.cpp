@@ -1,4 +1,4 @@
-// Files that were cut or bent: nothing crashes, nothing that changed is handed out as good, what can be saved is.
+// Truncated or altered files: nothing crashes, no altered message is returned as good, and what can be recovered is recovered.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -35,24 +35,24 @@ bool is_part_of(const Lines& part, const Lines& all)
                        [&](const Line& line) { return std::ranges::count(all, line) == std::ranges::count(part, line); });
 }
 
-/// Whatever a reader hands out must be as it was written.
+/// Whatever a reader returns must be as it was written.
 void check_reader(ByteView bytes, const SampleFile& file)
 {
     auto reader = open(bytes);
     if (!reader) return;
     const ReadBack back = read_all(*reader);
-    if (!is_part_of(back.lines, file.lines)) FAIL_CHECK("a reader hands out what nobody wrote");
+    if (!is_part_of(back.lines, file.lines)) FAIL_CHECK("a reader returns a message that was never written");
     if (back.errors.empty() && reader->index().has_summary && back.lines.size() != file.lines.size())
-        FAIL_CHECK("a reader leaves out messages and says nothing");
+        FAIL_CHECK("a reader leaves out messages without reporting it");
     for (const std::string topic : {"plab/states", "plab/events"})
         if (auto found = reader->last_at(topic, 2'150); found && *found)
             if (std::ranges::count(file.lines, line_of({(*found)->channel, (*found)->message})) != 1)
-                FAIL_CHECK("the last message at a time is one that nobody wrote");
+                FAIL_CHECK("the last message at a time was never written");
     if (auto attachment = reader->attachment("blueprint.xml")) CHECK(text_of(attachment->attachment.data) == kBlueprint);
     if (auto metadata = reader->metadata("plab")) CHECK(metadata->values.at("server") == "sample");
 }
 
-/// What a recovery writes is a whole file of messages as they were written. Returns how many.
+/// A recovery writes an undamaged file of messages as they were written. Returns their number.
 std::size_t check_recovery(ByteView bytes, const SampleFile& file)
 {
     const Recovered out = recover_bytes(bytes);
@@ -68,12 +68,12 @@ std::size_t check_recovery(ByteView bytes, const SampleFile& file)
     CHECK(reader->index().troubles.empty());
     const ReadBack back = read_all(*reader);
     CHECK(back.errors.empty());
-    if (!is_part_of(back.lines, file.lines)) FAIL_CHECK("a recovery writes what nobody wrote");
+    if (!is_part_of(back.lines, file.lines)) FAIL_CHECK("a recovery writes a message that was never written");
     CHECK(out.report->messages == back.lines.size());
     if (auto attachment = reader->attachment("blueprint.xml")) CHECK(text_of(attachment->attachment.data) == kBlueprint);
     if (auto metadata = reader->metadata("plab")) CHECK(metadata->values.at("server") == "sample");
     const bool has_all = back.lines.size() == file.lines.size() && reader->attachment("blueprint.xml") && reader->metadata("plab");
-    if (out.report->verdict == Verdict::Whole && !has_all) FAIL_CHECK("a recovery says whole, and something is missing");
+    if (out.report->verdict == Verdict::Whole && !has_all) FAIL_CHECK("a recovery reports a whole file, but messages are missing");
     return back.lines.size();
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("a whole file is whole")
     }
 }
 
-TEST_CASE("cut at every byte of the last chunk: all chunks before it are saved, and read")
+TEST_CASE("cut at every byte of the last chunk: all chunks before it are recovered and read")
 {
     for (const Compression compression : kAll)
     {
@@ -115,7 +115,7 @@ TEST_CASE("cut at every byte of the last chunk: all chunks before it are saved, 
             REQUIRE(out.report);
             REQUIRE(out.report->verdict == Verdict::SomethingLost);
             REQUIRE(read_all(*open(out.bytes)).lines == lines);
-            // The last chunk counts from where it is all there: its indexes behind it may be cut.
+            // The last chunk counts as soon as it is complete: the indexes after it may be cut.
             const bool has_last = lines.size() == 16;
             whole_chunks += has_last ? 1 : 0;
             REQUIRE(lines == by_time(has_last ? file.lines : kept));
@@ -145,20 +145,20 @@ TEST_CASE("every byte of a closed file changed, one at a time")
     for (const Compression compression : kAll)
     {
         const SampleFile file(compression, 3);
-        Bytes bent = file.bytes;
+        Bytes altered = file.bytes;
         std::size_t least = file.lines.size();
-        for (std::size_t i = 0; i < bent.size(); ++i)
+        for (std::size_t i = 0; i < altered.size(); ++i)
             for (const int change : {0x01, 0x80, 0xff})
             {
                 CAPTURE(static_cast<int>(compression));
                 CAPTURE(i);
                 CAPTURE(change);
-                bent[i] = static_cast<std::uint8_t>(bent[i] ^ change);
-                check_reader(bent, file);
-                least = std::min(least, check_recovery(bent, file));
-                bent[i] = file.bytes[i];
+                altered[i] = static_cast<std::uint8_t>(altered[i] ^ change);
+                check_reader(altered, file);
+                least = std::min(least, check_recovery(altered, file));
+                altered[i] = file.bytes[i];
             }
-        // Of three chunks, one change can cost one.
+        // One change can cost at most one of three chunks.
         CHECK(least == 8);
     }
 }
@@ -166,30 +166,30 @@ TEST_CASE("every byte of a closed file changed, one at a time")
 TEST_CASE("every byte of a file that was not closed changed, one at a time")
 {
     const SampleFile file(Compression::Lz4, 3, false);
-    Bytes bent = file.bytes;
-    for (std::size_t i = 0; i < bent.size(); ++i)
+    Bytes altered = file.bytes;
+    for (std::size_t i = 0; i < altered.size(); ++i)
     {
         CAPTURE(i);
-        bent[i] = static_cast<std::uint8_t>(bent[i] ^ 0x55);
-        check_reader(bent, file);
-        (void)check_recovery(bent, file);
-        bent[i] = file.bytes[i];
+        altered[i] = static_cast<std::uint8_t>(altered[i] ^ 0x55);
+        check_reader(altered, file);
+        (void)check_recovery(altered, file);
+        altered[i] = file.bytes[i];
     }
 }
 
-TEST_CASE("times in a chunk's header have changed: with an index that costs nothing, without one it is an error")
+TEST_CASE("changed times in a chunk's header: with an index nothing is lost, without one it is an error")
 {
     const SampleFile closed(Compression::Zstd, 5);
-    Bytes bent = closed.bytes;
+    Bytes altered = closed.bytes;
     const std::size_t place = closed.ends[1] + kRecordHead;
-    bent[place] = static_cast<std::uint8_t>(bent[place] ^ 0x01);  // start_time
-    CHECK(read_all(*open(bent)).lines == by_time(closed.lines));
-    const Recovered whole = recover_bytes(bent);
+    altered[place] = static_cast<std::uint8_t>(altered[place] ^ 0x01);  // start_time
+    CHECK(read_all(*open(altered)).lines == by_time(closed.lines));
+    const Recovered whole = recover_bytes(altered);
     REQUIRE(whole.report);
     CHECK(whole.report->verdict == Verdict::Whole);
     CHECK(whole.report->mended.size() == 2);  // the chunk, and the CRC of all data
 
-    Bytes cut(bent.begin(), bent.begin() + static_cast<std::ptrdiff_t>(closed.ends[4]));
+    Bytes cut(altered.begin(), altered.begin() + static_cast<std::ptrdiff_t>(closed.ends[4]));
     const ReadBack back = read_all(*open(cut));
     CHECK(back.lines.size() == 16);
     REQUIRE(back.errors.size() == 1);
@@ -197,12 +197,12 @@ TEST_CASE("times in a chunk's header have changed: with an index that costs noth
     CHECK(read_all(*open(recover_bytes(cut).bytes)).lines == by_time(closed.lines));
 }
 
-TEST_CASE("a chunk in the middle is damaged: what is lost is told, by topic and time")
+TEST_CASE("a chunk in the middle is damaged: the loss is reported by topic and time")
 {
     const SampleFile file(Compression::Zstd, 5);
-    Bytes bent = file.bytes;
-    bent[file.ends[1] + 90] = static_cast<std::uint8_t>(bent[file.ends[1] + 90] ^ 0xff);
-    const Recovered out = recover_bytes(bent);
+    Bytes altered = file.bytes;
+    altered[file.ends[1] + 90] = static_cast<std::uint8_t>(altered[file.ends[1] + 90] ^ 0xff);
+    const Recovered out = recover_bytes(altered);
     REQUIRE(out.report);
     const RecoveryReport& report = *out.report;
     CHECK(report.verdict == Verdict::SomethingLost);
@@ -221,28 +221,28 @@ TEST_CASE("a chunk in the middle is damaged: what is lost is told, by topic and 
     CHECK(open(out.bytes)->metadata("recovery")->values.at("report") == report.text());
 }
 
-TEST_CASE("the first chunk, which declares the channels, is damaged: the rest is still read")
+TEST_CASE("the first chunk, which declares the channels, is damaged: the others are still read")
 {
     SampleFile file(Compression::None, 5, false);
-    // Without a summary, nobody declares them but a later chunk: there is none here.
-    Bytes bent = file.bytes;
-    const std::size_t first = static_cast<std::size_t>(open(bent)->index().chunks[0].offset);
-    bent[first + 60] = static_cast<std::uint8_t>(bent[first + 60] ^ 0xff);
-    const Recovered lost = recover_bytes(bent);
+    // Without a summary, only a later chunk could declare them: there is none here.
+    Bytes altered = file.bytes;
+    const std::size_t first = static_cast<std::size_t>(open(altered)->index().chunks[0].offset);
+    altered[first + 60] = static_cast<std::uint8_t>(altered[first + 60] ^ 0xff);
+    const Recovered lost = recover_bytes(altered);
     REQUIRE(lost.report);
     CHECK(lost.report->messages == 0);
     CHECK(lost.report->undeclared == 16);
     CHECK(lost.report->text().find("lost: 16 messages whose channels are not declared\n") != std::string::npos);
-    // With a summary, that does.
+    // With a summary, the summary declares them.
     const SampleFile closed(Compression::None, 5);
-    bent = closed.bytes;
-    bent[first + 60] = static_cast<std::uint8_t>(bent[first + 60] ^ 0xff);
-    const Recovered saved = recover_bytes(bent);
+    altered = closed.bytes;
+    altered[first + 60] = static_cast<std::uint8_t>(altered[first + 60] ^ 0xff);
+    const Recovered saved = recover_bytes(altered);
     REQUIRE(saved.report);
     CHECK(saved.report->messages == 16);
 }
 
-TEST_CASE("two chunks that call different things by one id: the second is an error, and not taken for the first")
+TEST_CASE("two chunks that use one id for different channels: the second is an error, and is not taken for the first")
 {
     auto bytes = std::make_shared<Bytes>();
     auto file = Container::begin(std::make_unique<MemorySink>(bytes), {"plab", "test"}, 1000).take();
@@ -286,19 +286,19 @@ TEST_CASE("a chunk that is contradictory is an error")
     CHECK(data.messages().empty());
 }
 
-TEST_CASE("the start of a file is gone: what follows is found, and what is lost is told")
+TEST_CASE("the start of a file is missing: the rest is found, and the loss is reported")
 {
     const SampleFile file(Compression::Lz4, 5, false);
     const std::size_t gone = file.ends[1] + 10;
-    // The summary being gone as well, nobody declares the channels again in a file as short as this.
+    // Without the summary too, nothing declares the channels again in a file as short as this.
     const Recovered orphans = recover_bytes(ByteView(file.bytes).subspan(gone));
     REQUIRE(orphans.report);
     CHECK(orphans.report->undeclared == 8);
-    // With what declares them at hand, all that follows is kept: the first 64 KB overwritten, say.
+    // If the declarations survive, everything after the damage is kept: for example with the first 64 KB overwritten.
     const SampleFile closed(Compression::Lz4, 5);
-    Bytes bent = closed.bytes;
-    std::fill_n(bent.begin(), gone, std::uint8_t{0});
-    const Recovered out = recover_bytes(bent);
+    Bytes altered = closed.bytes;
+    std::fill_n(altered.begin(), gone, std::uint8_t{0});
+    const Recovered out = recover_bytes(altered);
     REQUIRE(out.report);
     CHECK(out.report->verdict == Verdict::SomethingLost);
     CHECK(out.report->messages == 8);
@@ -313,7 +313,7 @@ TEST_CASE("the start of a file is gone: what follows is found, and what is lost 
     CHECK(nothing.bytes.empty());
 }
 
-TEST_CASE("noise, and noise behind a good start, ends in errors and not in a crash")
+TEST_CASE("noise, and noise after a good start, ends in errors and not in a crash")
 {
     std::mt19937 random(7);
     const SampleFile file(Compression::Zstd, 2);
@@ -330,16 +330,16 @@ TEST_CASE("noise, and noise behind a good start, ends in errors and not in a cra
     }
 }
 
-TEST_CASE("sizes that a file claims and cannot have are refused before memory is taken")
+TEST_CASE("impossible sizes in a file are refused before memory is allocated")
 {
     const SampleFile file(Compression::Zstd, 1);
     auto reader = open(file.bytes);
     const std::size_t chunk = static_cast<std::size_t>(reader->index().chunks[0].offset);
-    Bytes bent = file.bytes;
-    bent[chunk + kRecordHead + 8 + 8 + 3] = 0x10;  // uncompressed_size becomes 256 MB
-    const ReadBack back = read_all(*open(bent));
+    Bytes altered = file.bytes;
+    altered[chunk + kRecordHead + 8 + 8 + 3] = 0x10;  // uncompressed_size becomes 256 MB
+    const ReadBack back = read_all(*open(altered));
     REQUIRE(back.errors.size() == 1);
     CHECK(back.errors[0].text().find("bytes cannot hold 268") != std::string::npos);
-    bent[chunk + kRecordHead + 8 + 8 + 7] = 0x10;
-    CHECK(read_all(*open(bent)).errors.at(0).text().find("larger than 536870912 bytes, which is the limit") != std::string::npos);
+    altered[chunk + kRecordHead + 8 + 8 + 7] = 0x10;
+    CHECK(read_all(*open(altered)).errors.at(0).text().find("larger than 536870912 bytes, which is the limit") != std::string::npos);
 }

@@ -17,7 +17,7 @@ using namespace plab::recording::test;
 namespace
 {
 
-/// A folder that goes when the test does.
+/// A folder that is removed at the end of the test.
 class Folder
 {
 public:
@@ -34,7 +34,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// Files cannot grow beyond `bytes` while this lives: as on a full disk, a write comes back short and then fails.
+/// Files cannot grow beyond `bytes` during the lifetime of this: as on a full disk, a write is short and the next one fails.
 class SizeLimit
 {
 public:
@@ -72,7 +72,7 @@ std::uint64_t put(Writer& writer, ChannelId channel, int chunks)
 
 }  // namespace
 
-TEST_CASE("a file that is there is not overwritten, unless that is asked for")
+TEST_CASE("an existing file is not overwritten unless that is requested")
 {
     const Folder folder;
     const std::string path = folder / "run.mcap";
@@ -86,7 +86,7 @@ TEST_CASE("a file that is there is not overwritten, unless that is asked for")
           folder / "none/run.mcap: cannot create the file: No such file or directory");
 }
 
-TEST_CASE("a file that cannot grow: recording degrades, says so, and goes on when there is room")
+TEST_CASE("a file that cannot grow: recording degrades, reports that, and continues when there is room")
 {
     const Folder folder;
     const std::string path = folder / "full.mcap";
@@ -100,10 +100,10 @@ TEST_CASE("a file that cannot grow: recording degrades, says so, and goes on whe
         REQUIRE(writer.trouble());
         CHECK(writer.trouble()->text() == path + ": cannot write: File too large");
         CHECK(writer.dropped().messages == 6);
-        // As after a crash now: a part of a chunk at its end.
+        // As after a crash at this point: a part of a chunk at the end.
         CHECK(read_all(*Reader::open(path)).lines.size() == 4);
         CHECK(std::filesystem::file_size(path) == 20'000);
-        // There is room for a note, and for no chunk.
+        // There is room for a note, but not for a chunk.
         CHECK(writer.retry());
         CHECK(put(writer, channel, 1) == 1);
         REQUIRE(writer.trouble());

@@ -1,4 +1,4 @@
-// What is written is read back: all compressions, with and without index, by topic and time.
+// Written messages are read back: all compressions, with and without index, by topic and time.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ TEST_CASE("a closed file is read by its index, message for message")
     }
 }
 
-TEST_CASE("a file that was not closed is read by a scan, and says the same")
+TEST_CASE("a file that was not closed is read by a scan, with the same content")
 {
     for (const Compression compression : kAll)
     {
@@ -111,7 +111,7 @@ TEST_CASE("the last message at a time")
     CHECK(!reader->last_at("plab/none", 100)->has_value());
 }
 
-TEST_CASE("times that go back within and across chunks are read in order")
+TEST_CASE("messages whose times decrease within and across chunks are read in order")
 {
     auto bytes = std::make_shared<Bytes>();
     Lines wanted;
@@ -136,7 +136,7 @@ TEST_CASE("times that go back within and across chunks are read in order")
     CHECK((*reader->last_at("t", 10))->message.sequence == 4);
 }
 
-TEST_CASE("of two messages at one time in overlapping chunks, the last is the one that stands last in the file")
+TEST_CASE("of two messages at one time in overlapping chunks, the last is the later one in the file")
 {
     auto bytes = std::make_shared<Bytes>();
     auto writer = Writer::open(std::make_unique<MemorySink>(bytes), {}).take();
@@ -175,7 +175,7 @@ TEST_CASE("a file without messages, and channels without messages, are whole fil
     CHECK(read_all(*silent).lines.empty());
 }
 
-TEST_CASE("what is no recording is refused with a reason")
+TEST_CASE("a file that is not a recording is refused with a reason")
 {
     const auto why = [](const std::string& text)
     {

@@ -1,4 +1,4 @@
-/// Small recordings in memory, and what must be found in them.
+/// Small recordings in memory, and their expected content.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace plab::recording::test
 {
 
-/// A file in memory that others may look at while it grows.
+/// A file in memory that can be read while it grows.
 class MemorySink final : public Sink
 {
 public:
@@ -103,7 +103,7 @@ struct SampleFile
         }
         if (close) (void)writer.close();
         bytes = *file;
-        if (!close) bytes.resize(ends.empty() ? bytes.size() : ends.back());  // the writer closes it when it goes
+        if (!close) bytes.resize(ends.empty() ? bytes.size() : ends.back());  // the writer's destructor closes it
     }
 
 private:
@@ -118,7 +118,7 @@ private:
     }
 };
 
-/// As a reader hands them out.
+/// As a reader returns them.
 inline Lines by_time(Lines lines)
 {
     std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return std::get<1>(a) < std::get<1>(b); });

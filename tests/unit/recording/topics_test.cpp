@@ -1,4 +1,4 @@
-// Our own topics: schemas that stand alone, samples as bytes and back, bytes that are no samples.
+// pLab's own topics: self-contained schemas, samples as bytes and back, bytes that are not samples.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ Bytes copy_of(ByteView bytes) { return {bytes.begin(), bytes.end()}; }
 
 }  // namespace
 
-TEST_CASE("each topic has a schema with all that its type is made of, and nothing else")
+TEST_CASE("each topic has a schema with all types that its type needs, and no others")
 {
     for (const plab::wire::Topic& topic : plab::wire::topics())
     {
@@ -85,7 +85,7 @@ TEST_CASE("a frame as bytes and back")
     CHECK(back->bodies._buffer[99].position.x == 99);
     CHECK(back->bodies._buffer[99].angular_velocity.z == -3);
     CHECK(copy_of(*encoder.encode(*back)) == bytes);
-    // The sample is used again, for more and for less.
+    // The sample is used again, for more and for fewer bodies.
     for (const std::size_t n : {300u, 2u, 0u})
     {
         REQUIRE(decoder.decode(*encoder.encode(frame_of(bodies, n)), back));
@@ -122,7 +122,7 @@ TEST_CASE("texts and keys as bytes and back, in both byte orders and with paddin
     CHECK(!decoder.decode(big_endian, shape_back));
 }
 
-TEST_CASE("bytes of another order are turned")
+TEST_CASE("bytes in the other order are swapped")
 {
     // A frame without bodies: six numbers of 8 bytes, two lengths of 4.
     std::vector<plab_v2_BodyState> bodies;
@@ -138,7 +138,7 @@ TEST_CASE("bytes of another order are turned")
     CHECK(back->run == 3);
 }
 
-TEST_CASE("cut and bent bytes are refused, and leave the sample as it was")
+TEST_CASE("truncated and altered bytes are refused, and leave the sample unchanged")
 {
     std::vector<plab_v2_BodyState> bodies;
     Encoder encoder;

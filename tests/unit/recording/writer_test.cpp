@@ -55,9 +55,9 @@ struct Run
     bool was_opened = false;
     std::uint64_t offered = 0;
     Losses dropped;
-    std::uint64_t taken = 0;  ///< messages that write() took; later some of them may have been dropped with their chunk
+    std::uint64_t taken = 0;  ///< messages that write() accepted; later some of them may have been dropped with their chunk
     bool was_closed = false;
-    std::uint64_t size = 0;  ///< that the writer vouches for
+    std::uint64_t size = 0;  ///< which the writer guarantees
 };
 
 /// 40 messages in 10 chunks and two syncs; after a failure the writer is asked to try again every third chunk.
@@ -129,7 +129,7 @@ TEST_CASE("a chunk is written when it is large enough; a larger message has one 
     CHECK(read_all(*reader).lines.size() == 5);
 }
 
-TEST_CASE("what cannot be taken is counted, and noted in the file")
+TEST_CASE("messages that cannot be accepted are counted, and noted in the file")
 {
     auto bytes = std::make_shared<Bytes>();
     WriterOptions options;
@@ -161,7 +161,7 @@ TEST_CASE("what cannot be taken is counted, and noted in the file")
     CHECK(std::get<3>(read_all(*reader).lines.at(0)) == 1);
 }
 
-TEST_CASE("channels are declared again after a while, so that the rest of a file stands alone")
+TEST_CASE("channels are declared again after a while, so that the rest of a file is self-contained")
 {
     auto bytes = std::make_shared<Bytes>();
     auto writer = Writer::open(std::make_unique<MemorySink>(bytes), {}).take();
@@ -181,7 +181,7 @@ TEST_CASE("channels are declared again after a while, so that the rest of a file
     CHECK(declarations == 4);
 }
 
-TEST_CASE("an index that would take too much memory is given up: the file is read by a scan, and is whole")
+TEST_CASE("an index that would take too much memory is dropped: the file is read by a scan, and is complete")
 {
     auto bytes = std::make_shared<Bytes>();
     WriterOptions options;
@@ -206,7 +206,7 @@ TEST_CASE("an index that would take too much memory is given up: the file is rea
     CHECK(report->verdict == Verdict::Whole);
     CHECK(report->mended == std::vector<std::string>{"the file had no index"});
 
-    // One bit of the header's text: no CRC but that of all data sees it.
+    // One bit of the header's text: only the CRC of all data detects it.
     (*bytes)[kMagic.size() + kRecordHead + 4] ^= 1;
     report = recover(MemorySource(*bytes),
                      [] { return Result<std::unique_ptr<Sink>>(std::make_unique<MemorySink>(std::make_shared<Bytes>())); });
@@ -216,7 +216,7 @@ TEST_CASE("an index that would take too much memory is given up: the file is rea
     CHECK(report->mended == std::vector<std::string>{"the CRC of all data is wrong: some bytes have changed"});
 }
 
-TEST_CASE("a sink that fails at the n-th call, once, three times or for ever: all is counted, the file stays readable")
+TEST_CASE("a sink that fails at the n-th call, once, three times or for ever: all losses are counted, and the file stays readable")
 {
     int failures = 0;
     for (const int more : {0, 2, 1000})
@@ -234,14 +234,14 @@ TEST_CASE("a sink that fails at the n-th call, once, three times or for ever: al
             REQUIRE(reader);
             const ReadBack back = read_all(*reader);
             CHECK(back.errors.empty());
-            // Nothing is lost uncounted, nothing twice, nothing bent.
+            // No message is lost without being counted, duplicated or altered.
             CHECK(back.lines.size() + r.dropped.messages == r.offered);
             for (const Line& line : back.lines) CHECK(std::get<4>(line) == "message " + std::to_string(std::get<1>(line)));
             if (r.was_closed) CHECK(reader->index().has_summary);
-            // Whatever failed last, if it failed once: no part of a record is left, nor of a summary.
+            // Whichever call failed last, if it failed once: no part of a record or of a summary is left.
             if (more == 0 && !reader->index().has_summary) CHECK(r.bytes->size() == r.size);
             failures += r.dropped.messages > 0 ? 1 : 0;
-            // What was lost is told in the file, if the disk came back.
+            // If the disk recovered, the loss is noted in the file.
             std::uint64_t reported = 0;
             for (const MetadataIndex& place : reader->index().metadata)
                 reported += std::stoull(reader->metadata(place)->values.at("messages"));
@@ -254,9 +254,9 @@ TEST_CASE("a sink that fails at the n-th call, once, three times or for ever: al
     CHECK(failures > 30);
 }
 
-TEST_CASE("a disk that comes back: the file goes on where it was good, and says what is missing")
+TEST_CASE("a disk that recovers: the file continues after its last good record, and notes what is missing")
 {
-    // The third chunk (messages 8 to 11) fails, then cutting off its part at the first and second attempt to go on.
+    // The third chunk (messages 8 to 11) fails, then truncating its part at the first and second attempt to continue.
     const Run r = run(3, 2);
     CHECK(r.was_closed);
     CHECK(r.dropped.messages == 28);
@@ -272,7 +272,7 @@ TEST_CASE("a disk that comes back: the file goes on where it was good, and says 
     CHECK(seal_of(*gap) == Seal::Right);
 }
 
-TEST_CASE("what a lost chunk had declared is declared again")
+TEST_CASE("the declarations of a lost chunk are written again")
 {
     auto bytes = std::make_shared<Bytes>();
     auto writer = Writer::open(std::make_unique<FailingSink>(bytes, 1, 0), {}).take();
@@ -284,7 +284,7 @@ TEST_CASE("what a lost chunk had declared is declared again")
     CHECK(writer.retry());
     CHECK(writer.write({channel, 0, 3, 0, view_of("kept")}, {}));
     writer.flush();
-    // As a crash leaves it: without a summary that tells the channels.
+    // As after a crash: without a summary that declares the channels.
     auto reader = open(*bytes);
     REQUIRE(reader);
     CHECK(reader->index().troubles.empty());
@@ -293,7 +293,7 @@ TEST_CASE("what a lost chunk had declared is declared again")
     CHECK(back.lines == Lines{{"t", 3, 0, 2, "kept"}});
 }
 
-TEST_CASE("a seal sees every change")
+TEST_CASE("a seal detects every change")
 {
     const Metadata good = sealed({"plab", {{"a", "1"}, {"b", "2"}}});
     CHECK(seal_of(good) == Seal::Right);

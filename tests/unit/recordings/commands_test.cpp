@@ -1,4 +1,4 @@
-// plabctl on files, as its user sees it: what is printed, and the exit codes. No server, no bus.
+// plabctl on files, as its user sees it: its output and its exit codes. No server, no bus.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -33,7 +33,7 @@ std::string text_of(const std::string& file)
     return text.str();
 }
 
-/// A recording of which the last third is not there.
+/// A recording whose last third is missing.
 std::string cut_recording(const std::string& name)
 {
     const std::string path = make_recording(name);
@@ -43,7 +43,7 @@ std::string cut_recording(const std::string& name)
 
 }  // namespace
 
-TEST_CASE("info: for people and as JSON")
+TEST_CASE("info: as text and as JSON")
 {
     const std::string file = make_recording("cli_info.mcap", {.steps_after = 50, .missing_frame = 77});
     const Outcome text = plabctl({"info", file});
@@ -90,7 +90,7 @@ TEST_CASE("export: tables and lines, to a file or a pipe")
     CHECK(plabctl({"export", file + ".not", "--csv"}).code == 1);
 }
 
-TEST_CASE("recover: 0 whole, 5 something lost, 1 nothing usable")
+TEST_CASE("exit codes of recover: 0 whole, 5 something lost, 1 nothing usable")
 {
     const std::string out = fresh_path("cli_recovered.mcap");
     const Outcome whole = plabctl({"recover", make_recording("cli_whole.mcap"), "-o", out});
@@ -103,7 +103,7 @@ TEST_CASE("recover: 0 whole, 5 something lost, 1 nothing usable")
     CHECK(has(cut.output, "lost: "));
     CHECK_MESSAGE(has(cut.output, "lost: what was recorded after "), cut.output);
     CHECK_MESSAGE(!has(whole.output, "lost: "), whole.output);
-    // What was made of it is a file without damage, and still not the whole recording.
+    // The recovered file is undamaged, but still not the whole recording.
     const Outcome info = plabctl({"info", out});
     CHECK_MESSAGE(has(info.output, "recovered: something is lost"), info.output);
     CHECK_MESSAGE(has(info.output, "what was recorded after "), info.output);
@@ -117,7 +117,7 @@ TEST_CASE("recover: 0 whole, 5 something lost, 1 nothing usable")
     CHECK(!has(text_of(page), "is complete"));
     CHECK(has(text_of(page), "recovered from a recording that had lost some data"));
     CHECK(has(text_of(page), "lost, and not recovered: "));
-    // It is not written over.
+    // It is not overwritten.
     CHECK(plabctl({"recover", make_recording("cli_whole.mcap"), "-o", out}).code == 1);
     const std::string none = fresh_path("cli_none.mcap");
     std::ofstream(none) << "nothing of the kind";
@@ -127,7 +127,7 @@ TEST_CASE("recover: 0 whole, 5 something lost, 1 nothing usable")
     CHECK(!std::filesystem::exists(fresh_path("cli_none.recovered.mcap")));
 }
 
-TEST_CASE("a file that is written gets its name when it is whole")
+TEST_CASE("a file that is being written gets its name when it is complete")
 {
     const std::string file = make_recording("cli_named_late.mcap"), out = fresh_path("cli_states.csv");
     std::ofstream(out) << "what was there before";
@@ -145,7 +145,7 @@ TEST_CASE("a file that is written gets its name when it is whole")
     CHECK(text_of(out).starts_with("run,step"));
 }
 
-TEST_CASE("recover names its file after the one that it is made of")
+TEST_CASE("recover names its file after the original")
 {
     const std::string file = make_recording("cli_named.mcap");
     const std::string expected = fresh_path("cli_named.recovered.mcap");
@@ -177,7 +177,7 @@ TEST_CASE("diff: exit code 0 without a difference, 1 with one")
     CHECK_MESSAGE(has(longer.output, "1 and 2: not compared, as only B has them: 2"), longer.output);
 }
 
-TEST_CASE("play refuses times and rates that make no sense, before it joins the bus")
+TEST_CASE("play refuses invalid times and rates before it joins the bus")
 {
     const std::string file = make_recording("cli_play.mcap");
     for (const std::string rate : {"0", "5000", "-1", "fast"})
@@ -191,7 +191,7 @@ TEST_CASE("play refuses times and rates that make no sense, before it joins the 
     CHECK_MESSAGE(has(backwards.errors, "--to is before --from"), backwards.errors);
 }
 
-TEST_CASE("plot and report write what they are named after")
+TEST_CASE("plot and report write the files that they announce")
 {
     const std::string file = make_recording("cli_plot.mcap");
     const std::string svg = fresh_path("cli_plot.svg"), png = fresh_path("cli_plot.png"), page = fresh_path("cli_report.html");
@@ -223,7 +223,7 @@ TEST_CASE("log of a file")
     CHECK(plabctl({"log", file, "--severity", "loud"}).code == 2);
     CHECK(plabctl({"log", "--from", "1"}).code == 2);
     CHECK(plabctl({"log", file, "--from", "3", "--to", "2"}).code == 2);
-    CHECK(plabctl({"log", file, "--kind", "collision.rest"}).code == 0);  // there may be such, if not in this file
+    CHECK(plabctl({"log", file, "--kind", "collision.rest"}).code == 0);  // the kind exists, though not in this file
     for (const char* option : {"--kind", "--object"})
     {
         const auto nobody = plabctl({"log", file, option, "nope"});
@@ -233,7 +233,7 @@ TEST_CASE("log of a file")
     }
 }
 
-TEST_CASE("damage is said on standard error, and the exit code tells that not all was read")
+TEST_CASE("damage is reported on standard error, and the exit code says that not everything was read")
 {
     const std::string file = make_recording("cli_damaged.mcap", {.compression = plab::recording::Compression::None});
     {

@@ -1,4 +1,4 @@
-// Quantities by name, and their course.
+// Quantities by name, as functions of time.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ std::vector<figures::Curve> curves(const Log& log, const std::string& quantity, 
     return curves_of(log, *parsed, span);
 }
 
-/// The value at a time, between the points beside it.
+/// The value at a time, interpolated between the neighbouring points.
 double value_at(const figures::Curve& curve, double time)
 {
     for (std::size_t i = 1; i < curve.points.size(); ++i)
@@ -87,7 +87,7 @@ TEST_CASE("quantities of bodies, shafts, interactions and the scene")
     }
 }
 
-TEST_CASE("a vector without a component is all of them; a span cuts them")
+TEST_CASE("a vector without a component means all of them; a span limits the curves")
 {
     const Log log = opened(make_recording("curves_vector.mcap"));
     const std::vector<figures::Curve> found = curves(log, "red.position", {0.5, 0.75});
@@ -99,12 +99,12 @@ TEST_CASE("a vector without a component is all of them; a span cuts them")
     CHECK(found[1].points.front().second == std::sin(50 * kMadeStep));
 }
 
-TEST_CASE("frames that name only who moved give the same curves")
+TEST_CASE("frames that name only moved objects give the same curves")
 {
     const Log log = opened(make_recording("curves_moved.mcap", {.only_moved = true}));
     CHECK(value_at(curves(log, "axle.angle")[0], 1.5) == 0);
     CHECK(curves(log, "axle.angle")[0].points.size() == 201);
-    // Told at every tenth step, kept between.
+    // Recorded at every tenth step, kept in between.
     CHECK(curves(log, "blue.position.z")[0].points[47].second == doctest::Approx(0.16));
     CHECK(curves(log, "red.position.x")[0].points[47].second == doctest::Approx(0.47));
 }
@@ -119,7 +119,7 @@ TEST_CASE("a curve is interrupted where a run ends")
     CHECK(x.points[202].first == doctest::Approx(2.01));
 }
 
-TEST_CASE("what the first metrics of a run say of cost and pace was measured before it, and is no part of the course")
+TEST_CASE("the cost and pace in the first metrics of a run were measured before it, and are not part of the curve")
 {
     const Log log = opened(make_recording("curves_first.mcap", {.steps_after = 100}));
     for (const char* quantity : {"real_time_factor", "step_cost", "contact.response.cost"})
@@ -129,7 +129,7 @@ TEST_CASE("what the first metrics of a run say of cost and pace was measured bef
         for (const auto& [time, value] : curve.points)
             CHECK_MESSAGE((std::isnan(value) || value == 2 || value == 50000 || value == 100 || value == 2000), quantity << " " << value);
     }
-    // What is a state of the scene counts from the first on.
+    // Values that belong to the scene's state count from the first sample on.
     CHECK(curves(log, "contact.response.work").at(0).points.front().first == 0.0);
 }
 
@@ -151,7 +151,7 @@ TEST_CASE("without a catalogue objects have numbers, and interactions the names 
     CHECK(value_at(curves(log, "contact.response.cost")[0], 1.5) == 100);
 }
 
-TEST_CASE("what there is not is refused with what there is")
+TEST_CASE("unknown quantities are refused with a list of the known ones")
 {
     const Log log = opened(make_recording("curves_refused.mcap"));
     CHECK(refused(log, "rde.position").find("did you mean 'red'") != std::string::npos);
@@ -184,7 +184,7 @@ TEST_CASE("swaps, runs and events are marked where they were")
     CHECK(moments_of(log, {}, false).size() == 3);
 }
 
-TEST_CASE("a chart is a picture in both forms, with nothing in it that is no number")
+TEST_CASE("a chart is written in both formats, without NaN in it")
 {
     const Log log = opened(make_recording("chart.mcap", {.steps_after = 20}));
     figures::Chart chart;
@@ -197,7 +197,7 @@ TEST_CASE("a chart is a picture in both forms, with nothing in it that is no num
     for (const char* name : {"chart.svg", "chart.png"}) REQUIRE(figures::write_picture(drawing, fresh_path(name)).ok());
     CHECK(!figures::write_picture(drawing, fresh_path("chart.gif")).ok());
     CHECK(!figures::write_picture(drawing, fresh_path("no_folder") + "/chart.svg").ok());
-    // No curve, one point, values that a logarithmic scale has no place for.
+    // No curve, one point, values that a logarithmic scale cannot show.
     chart.curves.clear();
     CHECK(draw(chart).svg(true).find("nothing to draw") != std::string::npos);
     chart.curves = {{"one", "m", {{1, 1}}}, {"none", "m", {{1, 0}, {2, -1}}}};

@@ -1,4 +1,4 @@
-// Where two recordings differ, and how the difference grows: known beforehand, as one was bent on purpose.
+// Where two recordings differ, and how the difference grows: known beforehand, as one was altered on purpose.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -76,7 +76,7 @@ TEST_CASE("the first difference is named: step, object, quantity, both values")
     CHECK(d.first_state->b == std::sin(57 * kMadeStep) + 1e-13);
 }
 
-TEST_CASE("the times are told at which the difference exceeds each decade")
+TEST_CASE("the times at which the difference exceeds each decade are reported")
 {
     // 1e-13 m at step 50, twice as much every ten steps.
     const Difference d = difference({}, {.differs_from = 50, .difference = 1e-13});
@@ -107,7 +107,7 @@ TEST_CASE("recordings of different rates are compared where both have a step")
     CHECK(d.first_hash->step == 57);
 }
 
-TEST_CASE("frames that name only who moved are compared as if they named all")
+TEST_CASE("frames that name only moved objects are compared as if they named all")
 {
     const Difference same = difference({.only_moved = true}, {.only_moved = true});
     CHECK(same.is_none());
@@ -118,7 +118,7 @@ TEST_CASE("frames that name only who moved are compared as if they named all")
     CHECK(other.first_state->object == "red");
 }
 
-TEST_CASE("runs are compared one by one, as far as both go")
+TEST_CASE("runs are compared one by one, as far as both extend")
 {
     const Difference d = difference({.steps_after = 40}, {.steps_after = 50});
     CHECK(d.is_none());
@@ -126,7 +126,7 @@ TEST_CASE("runs are compared one by one, as far as both go")
     CHECK(d.frames_b == 201 + 51);
 }
 
-TEST_CASE("one recording is longer, one has no hashes, one no names")
+TEST_CASE("recordings of which one is longer, one has no hashes, one has no names")
 {
     CHECK(difference({.steps = 100}, {}).frames_compared == 101);
     const Difference no_hashes = difference({.with_hashes = false}, {});

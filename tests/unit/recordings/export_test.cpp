@@ -104,7 +104,7 @@ TEST_CASE("events and collisions: text with commas and quotes is quoted, entries
     CHECK(collisions[2] == "1,20,0.202,0.200000000,2,impact,contact.detection,red,floor,1,2,3,0,0,1,0,0,0.5,0.125");
 }
 
-TEST_CASE("every table has as many cells as its head")
+TEST_CASE("every table row has as many cells as the header")
 {
     const std::string file = make_recording("export_cells.mcap", {.steps_after = 20});
     auto log = Log::open(file);
@@ -133,7 +133,7 @@ TEST_CASE("hashes have a row per step")
     CHECK(lines[124].ends_with(hash));
 }
 
-TEST_CASE("lines of JSON hold whole messages, decoded by the file's own schemas")
+TEST_CASE("lines of JSON hold complete messages, decoded by the file's own schemas")
 {
     const std::string file = make_recording("export_json.mcap");
     const std::vector<std::string> states = lines_of(exported(file, {.topics = {"states"}}, false));
@@ -153,7 +153,7 @@ TEST_CASE("lines of JSON hold whole messages, decoded by the file's own schemas"
     CHECK(swap["message"]["operations"][0]["argument"] == "Response/None");
 }
 
-TEST_CASE("without topics JSON has all of them but snapshots, in the order of time")
+TEST_CASE("without a selection JSON has all topics except snapshots, in the order of time")
 {
     const std::vector<std::string> lines = lines_of(exported(make_recording("export_all.mcap"), {}, false));
     std::uint64_t last = 0;
@@ -169,7 +169,7 @@ TEST_CASE("without topics JSON has all of them but snapshots, in the order of ti
     CHECK(!topics.contains("plab/snapshots"));
 }
 
-TEST_CASE("what cannot be exported is refused with what can be")
+TEST_CASE("topics that cannot be exported are refused with a list of those that can")
 {
     const std::string file = make_recording("export_refused.mcap");
     CHECK(refused(file, {.topics = {"state"}}).find("did you mean 'plab/states'") != std::string::npos);

@@ -1,4 +1,4 @@
-// Files and messages that are not what they seem: something is told, nothing falls over.
+// Malformed files and messages: they are reported, and nothing crashes.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -64,9 +64,9 @@ std::string recording_of(const std::string& name, const std::vector<recording::B
     return path;
 }
 
-/// The sample with each of its bytes changed in turn, and cut at each byte.
+/// The sample with each of its bytes changed in turn, and truncated at each byte.
 template <class T>
-std::vector<recording::Bytes> bent(const T& sample)
+std::vector<recording::Bytes> altered(const T& sample)
 {
     recording::Encoder encoder;
     const auto encoded = encoder.encode(sample);
@@ -84,7 +84,7 @@ std::vector<recording::Bytes> bent(const T& sample)
 
 }  // namespace
 
-TEST_CASE("a file with a byte changed is read as far as it goes, or refused")
+TEST_CASE("a file with a changed byte is read as far as possible, or refused")
 {
     const std::string whole = bytes_of(make_recording("flip.mcap", {.steps = 12, .compression = recording::Compression::None}));
     const std::string path = fresh_path("flipped.mcap");
@@ -99,7 +99,7 @@ TEST_CASE("a file with a byte changed is read as far as it goes, or refused")
     CHECK(opened > tried / 2);
 }
 
-TEST_CASE("a file that is cut anywhere is read as far as it goes, or refused")
+TEST_CASE("a file that is truncated anywhere is read as far as possible, or refused")
 {
     const std::string whole = bytes_of(make_recording("cuts.mcap", {.steps = 12, .compression = recording::Compression::None}));
     const std::string path = fresh_path("cut.mcap");
@@ -118,24 +118,24 @@ TEST_CASE("a file that is cut anywhere is read as far as it goes, or refused")
     CHECK(last > 10);
 }
 
-TEST_CASE("a message that is no sample is counted and left out")
+TEST_CASE("a message that is not a valid sample is counted and left out")
 {
     std::vector<plab_v2_BodyState> bodies(2);
     plab_v2_Frame frame{};
     frame.run = 1, frame.bodies._buffer = bodies.data(), frame.bodies._length = frame.bodies._maximum = 2;
-    const std::vector<recording::Bytes> frames = bent(frame);
+    const std::vector<recording::Bytes> frames = altered(frame);
     const std::string path = recording_of<plab_v2_Frame>("bent_frames.mcap", frames);
     auto log = Log::open(path);
     REQUIRE(log.ok());
     auto summary = summary_of(*log);
     REQUIRE(summary.ok());
-    CHECK(summary->troubles.count > frames.size() / 2);  // all that were cut, and some others
+    CHECK(summary->troubles.count > frames.size() / 2);  // all truncated ones, and some others
     CHECK(summary->troubles.texts.size() == Troubles::kMostTexts);
     CHECK(summary->messages + summary->troubles.count == frames.size());
     CHECK(use(path));
 }
 
-TEST_CASE("bent metrics, events and journals do no harm")
+TEST_CASE("altered metrics, events and journals do no harm")
 {
     char text[] = "<b>bold";
     std::vector<plab_v2_InteractionMetrics> interactions(1);
@@ -143,19 +143,19 @@ TEST_CASE("bent metrics, events and journals do no harm")
     interactions[0].component_id = interactions[0].requested = text;
     plab_v2_Metrics metrics{};
     metrics.interactions._buffer = interactions.data(), metrics.interactions._length = metrics.interactions._maximum = 1;
-    CHECK(use(recording_of<plab_v2_Metrics>("bent_metrics.mcap", bent(metrics))));
+    CHECK(use(recording_of<plab_v2_Metrics>("bent_metrics.mcap", altered(metrics))));
     std::vector<plab_v2_Operation> operations(1);
     operations[0] = {};
     operations[0].verb = text, operations[0].target = text;
     plab_v2_Journal journal{};
     journal.operations._buffer = operations.data(), journal.operations._length = journal.operations._maximum = 1;
-    CHECK(use(recording_of<plab_v2_Journal>("bent_journal.mcap", bent(journal))));
+    CHECK(use(recording_of<plab_v2_Journal>("bent_journal.mcap", altered(journal))));
     std::vector<plab_v2_EventInfo> entries(1);
     entries[0] = {};
     entries[0].kind = entries[0].severity = entries[0].message = text;
     plab_v2_Events events{};
     events.entries._buffer = entries.data(), events.entries._length = events.entries._maximum = 1;
-    const std::string file = recording_of<plab_v2_Events>("bent_events.mcap", bent(events));
+    const std::string file = recording_of<plab_v2_Events>("bent_events.mcap", altered(events));
     CHECK(use(file));
     auto log = Log::open(file);
     REQUIRE(log.ok());
@@ -164,12 +164,12 @@ TEST_CASE("bent metrics, events and journals do no harm")
     CHECK(page.find(text) == std::string::npos);
 }
 
-TEST_CASE("topics of others are counted, and not taken for ours")
+TEST_CASE("foreign topics are counted, and not taken for pLab's")
 {
     const std::string path = fresh_path("others.mcap");
     auto writer = recording::Writer::create(path);
     REQUIRE(writer.ok());
-    // The name of our topic, another version of its type.
+    // The name of pLab's topic, with another version of its type.
     const auto schema = writer->add_schema({0, "plab::v9::Frame", "omgidl", "module plab { module v9 { struct Frame { long x; }; }; };"});
     REQUIRE(schema.ok());
     const auto ours = writer->add_channel({0, *schema, "plab/states", "cdr", {}});

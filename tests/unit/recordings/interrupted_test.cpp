@@ -1,4 +1,4 @@
-// Ctrl-C: whatever reads a recording ends soon, says how far it was, and leaves no half file behind.
+// Ctrl-C: whatever reads a recording ends soon, reports how far it was, and leaves no incomplete file behind.
 #include <doctest/doctest.h>
 #include <signal.h>
 
@@ -19,7 +19,7 @@ using namespace plab::test;
 namespace
 {
 
-/// Goes on for so many reads of the source.
+/// Continues for this number of reads of the source.
 recording::Watch after(int reads)
 {
     return [reads](double share) mutable
@@ -30,7 +30,7 @@ recording::Watch after(int reads)
     };
 }
 
-/// Reads that it takes to look at all of the file once.
+/// The number of reads for the whole file.
 int reads_of(const std::string& file)
 {
     int reads = 0;
@@ -50,7 +50,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 }  // namespace
 
-TEST_CASE("after a watch said no nothing more is read, and no file is left")
+TEST_CASE("after the watch has returned false nothing more is read, and no file is left")
 {
     const std::string file = make_recording("interrupted.mcap", {.steps = 20000});
     const int all = reads_of(file);
@@ -96,7 +96,7 @@ TEST_CASE("recover that is interrupted leaves no new file, whenever that is")
     }
 }
 
-TEST_CASE("every command on a recording ends at Ctrl-C with 130 and at SIGTERM with 143, and says how far it was")
+TEST_CASE("every command on a recording ends at Ctrl-C with 130 and at SIGTERM with 143, and reports how far it was")
 {
     const std::string file = make_recording("interrupted_big.mcap", {.steps = 60000, .compression = recording::Compression::Zstd});
     const std::string plabctl = program("plabctl"), out = fresh_path("interrupted_out");
@@ -112,7 +112,8 @@ TEST_CASE("every command on a recording ends at Ctrl-C with 130 and at SIGTERM w
     for (const std::vector<std::string>& arguments : commands)
     {
         const int signal = number++ % 2 == 0 ? SIGINT : SIGTERM;
-        // Too early is before it begins, too late is when it is done: on a machine of any speed one of these is in between.
+        // Too early is before it begins, too late is after it has finished: on a machine of any speed one of these delays is in
+        // between.
         bool is_seen = false;
         for (const int delay : {40, 80, 20, 160, 10, 320, 640})
         {

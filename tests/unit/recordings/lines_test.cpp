@@ -69,7 +69,7 @@ TEST_CASE("lines of JSON")
     CHECK(has(all[0], R"("type":"collision","run":1,"sequence_number":1,"step":20,"time":0.202)"));
 }
 
-TEST_CASE("segments: what each algorithm cost while it was there")
+TEST_CASE("segments: the cost of each algorithm while it was in use")
 {
     auto log = Log::open(make_recording("segments.mcap", {.steps_after = 50}));
     REQUIRE(log.ok());
@@ -89,7 +89,7 @@ TEST_CASE("segments: what each algorithm cost while it was there")
     CHECK(segments[2].mean_cost == doctest::Approx(2000));  // without the first sample of the run
 }
 
-TEST_CASE("a report is one page with nothing from outside, and tells of the swap")
+TEST_CASE("a report is one page without external resources, and mentions the swap")
 {
     auto log = Log::open(make_recording("report.mcap", {.steps_after = 50}));
     REQUIRE(log.ok());
@@ -107,7 +107,7 @@ TEST_CASE("a report is one page with nothing from outside, and tells of the swap
     for (const char* outside : {"src=", "href=\"http", "@import", "nan"}) CHECK_MESSAGE(!has(page, outside), outside);
 }
 
-TEST_CASE("a report of nearly nothing is a page too")
+TEST_CASE("a report of an almost empty recording is a page as well")
 {
     auto log = Log::open(make_recording("report_small.mcap", {.steps = 0, .with_catalogue = false, .with_journal = false}));
     REQUIRE(log.ok());

@@ -22,7 +22,7 @@ enum Handle : std::uint32_t
     kAxle = 3,
 };
 
-/// Samples are built from texts that live as long as the call; what they point to is not freed.
+/// Samples are built from texts with the lifetime of the call; what they point to is not freed.
 char* text(const char* t) { return const_cast<char*>(t); }
 
 template <class Sequence, class Item>
@@ -160,7 +160,7 @@ private:
         bodies[0] = {kRed, {red.x, red.y + difference(), red.z}, {std::cos(t), 0, 0, std::sin(t)}, {1, std::cos(t), 0}, {0, 0, 2}};
         bodies[1] = {kBlue, {0, 0, t * t}, {1, 0, 0, 0}, {0, 0, 2 * t}, {0, 0, 0}};
         std::vector<plab_v2_ShaftState> shafts{{kAxle, 3 * t, 3}};
-        // Blue is told of every tenth time only, the axle after the first time never: they stay where they were told to be.
+        // Blue is named at every tenth frame only, the axle never after the first: they keep their last recorded states.
         if (!options_.with_axle || (options_.only_moved && step_ > 0)) shafts.clear();
         if (options_.only_moved && step_ % 10 != 0) bodies.pop_back();
         plab_v2_Frame f{};
@@ -170,7 +170,7 @@ private:
         put(f);
     }
 
-    /// Of the last ten steps, this one included.
+    /// Of the last ten steps, including this one.
     void add_hashes()
     {
         std::vector<std::uint64_t> values;
@@ -195,7 +195,7 @@ private:
         point_at(i.outputs, outputs);
         plab_v2_Metrics m{};
         m.run = run_, m.step = step_, m.time = time(), m.step_ns = 50000, m.real_time_factor = 2;
-        // As after a rewind: what was measured reaches back to before the run.
+        // As after a rewind: the measured interval begins before the run.
         if (run_ > 1 && step_ == 0) m.step_ns = 1, m.real_time_factor = 99, i.cost_ns = 7e7;
         m.ledger = {10 + time(), 5, time(), 0, 0};
         m.momentum = {1, 0, 0}, m.angular_momentum = {0, 0, 2}, m.contacts = 4;

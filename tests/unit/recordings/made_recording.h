@@ -1,4 +1,4 @@
-/// A recording of which every number is known: two bodies and a shaft, a contact whose response is exchanged, a reset.
+/// A recording in which every number is known: two bodies and a shaft, a contact whose response is exchanged, a reset.
 ///
 /// At time t: red at (t, sin t, 2), spinning about z; blue at (0, 0, t^2); the axle's angle is 3 t. Steps are 0.01 s.
 #pragma once
@@ -22,7 +22,7 @@ struct MadeOptions
     std::int64_t differs_from = -1;   ///< from this step on, red's y is larger by `difference`, which doubles each 10 steps
     double difference = 1e-13;        ///< m
     std::int64_t missing_frame = -1;  ///< step of a frame that has a number, and is not there
-    bool only_moved = false;          ///< frames name only who moved since the last one; the first names all
+    bool only_moved = false;          ///< frames name only objects that moved since the last one; the first names all
     bool with_catalogue = true;
     bool with_axle = true;
     bool with_journal = true;
@@ -44,10 +44,10 @@ MadePlace made_red(double time);
 /// The hash that is written for a step.
 std::uint64_t made_hash(std::uint64_t run, std::int64_t step, bool differs);
 
-/// Writes it to a file of this test's own; gives its path.
+/// Writes it to a file of this test's own; returns its path.
 std::string make_recording(const std::string& name, const MadeOptions& options = {});
 
-/// A path in the build folder where nothing is yet.
+/// A path in the build folder at which no file exists yet.
 std::string fresh_path(const std::string& name);
 
 }  // namespace plab::test

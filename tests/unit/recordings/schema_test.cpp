@@ -1,4 +1,4 @@
-// Types out of the IDL that a recording brings with it.
+// Types from the IDL that a recording contains.
 #include <doctest/doctest.h>
 
 #include "idl/recording/topic_schema.h"
@@ -51,7 +51,7 @@ TEST_CASE("sequences, arrays, bounds, typedefs, enums, bases, keys")
     CHECK(m[7].type->name == "a::Base");
 }
 
-TEST_CASE("what is not understood is an error, whatever the text")
+TEST_CASE("text that is not understood is an error, whatever it is")
 {
     const auto why = [](const std::string& idl) { return type_in(idl, "T").error().text(); };
     CHECK(why("struct T { Unknown x; };").find("'Unknown' is not declared before it is used") != std::string::npos);

@@ -1,4 +1,4 @@
-// What a recording holds, counted.
+// Counts of what a recording holds.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -33,7 +33,7 @@ const TopicSummary& topic(const Summary& s, const std::string& name)
 
 }  // namespace
 
-TEST_CASE("a whole recording: who wrote it, how long, how much of what")
+TEST_CASE("a whole recording: its writer, its duration, the amount of each topic")
 {
     const Summary s = summary_of_file(make_recording("summary.mcap"));
     CHECK(s.is_whole());
@@ -82,7 +82,7 @@ TEST_CASE("swaps, events by kind and severity, snapshots, requests")
     CHECK(s.snapshots[0].bytes == 100);
 }
 
-TEST_CASE("without a journal the catalogue tells of a swap")
+TEST_CASE("without a journal the catalogue shows a swap")
 {
     const Summary s = summary_of_file(make_recording("summary_no_journal.mcap", {.with_journal = false}));
     REQUIRE(s.swaps.size() == 1);
@@ -91,7 +91,7 @@ TEST_CASE("without a journal the catalogue tells of a swap")
     CHECK(s.swaps[0].step == 100);
 }
 
-TEST_CASE("a reset begins a run, and time goes on")
+TEST_CASE("a reset begins a run, and time continues")
 {
     const Summary s = summary_of_file(make_recording("summary_runs.mcap", {.steps_after = 50}));
     REQUIRE(s.runs.size() == 2);
@@ -104,7 +104,7 @@ TEST_CASE("a reset begins a run, and time goes on")
     CHECK(s.swaps.size() == 1);
 }
 
-TEST_CASE("a frame that has a number and is not there is missing")
+TEST_CASE("a frame whose number occurs but which is absent counts as missing")
 {
     const Summary s = summary_of_file(make_recording("summary_missing.mcap", {.missing_frame = 77}));
     CHECK(topic(s, "plab/states").missing == 1);
@@ -112,7 +112,7 @@ TEST_CASE("a frame that has a number and is not there is missing")
     CHECK(topic(s, "plab/events").missing == 0);
 }
 
-TEST_CASE("a recording that was not closed is read, and says so")
+TEST_CASE("a recording that was not closed is read, and this is reported")
 {
     const std::string path = make_recording("summary_cut.mcap");
     std::filesystem::resize_file(path, std::filesystem::file_size(path) * 2 / 3);
@@ -141,7 +141,7 @@ TEST_CASE("damage is counted, and the rest is read")
     CHECK(topic(s, "plab/states").missing > 0);
 }
 
-TEST_CASE("what is no recording is an error that names the file")
+TEST_CASE("a file that is not a recording is an error that names it")
 {
     const std::string path = fresh_path("none.mcap");
     std::ofstream(path) << "<plab/>";

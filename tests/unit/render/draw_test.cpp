@@ -1,4 +1,4 @@
-/// What stands where in a picture: forms, depth, shadows, captions, and that a drawing always gives the same bytes.
+/// The content of pictures: shapes, depth, shadows, captions, and that a drawing always gives the same bytes.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,7 +11,7 @@ using namespace plab::test;
 
 TEST_CASE("a red sphere is red in the middle, round, and the background is all around")
 {
-    for (const double radius : {0.3, 1.2})  // a square of the ball shader, and triangles
+    for (const double radius : {0.3, 1.2})  // a quad with the ball shader, and triangles
     {
         CAPTURE(radius);
         Drawing drawing = empty_drawing();
@@ -63,7 +63,7 @@ TEST_CASE("the picture is opaque, whatever was blended into it")
     for (std::size_t i = 3; i < picture.rgba.size(); i += 4) REQUIRE(picture.rgba[i] == 255);
 }
 
-TEST_CASE("what is nearer hides what is farther, in either order")
+TEST_CASE("nearer objects hide farther ones, in either order")
 {
     Drawing drawing = empty_drawing();
     for (const Form form : {Form::Sphere, Form::Box, Form::Cylinder})
@@ -77,7 +77,7 @@ TEST_CASE("what is nearer hides what is farther, in either order")
     }
 }
 
-TEST_CASE("every form is drawn where its pose puts it, and as large as it is")
+TEST_CASE("every shape is drawn in its pose and size")
 {
     // Turned so that z, the long side, lies along x: from -1 to 1, seen from 5 m as 0.28 of the half height each 0.5 m.
     const Quat along_x{std::sqrt(0.5), 0, std::sqrt(0.5), 0};
@@ -107,7 +107,7 @@ TEST_CASE("every form is drawn where its pose puts it, and as large as it is")
     }
 }
 
-TEST_CASE("the ground is darker where a body keeps the light away")
+TEST_CASE("the ground is darker in the shadow of a body")
 {
     Drawing drawing = empty_drawing();
     drawing.view = {{0.6, -4, 5}, {0.6, 0.8, 0}, {0, 0, 1}, 0.9};
@@ -137,7 +137,7 @@ TEST_CASE("a body throws its shadow on another")
     CHECK(middle(drawn(drawing)).brightness() < lit.brightness() - 100);
 }
 
-TEST_CASE("what lies below the ground shines through; a plane hides it")
+TEST_CASE("objects below the ground shine through; a plane hides them")
 {
     Drawing drawing = empty_drawing();
     drawing.view = {{0, -3, 3}, {0.3, 0.2, 0}, {0, 0, 1}, 0.7};
@@ -154,7 +154,7 @@ TEST_CASE("what lies below the ground shines through; a plane hides it")
     CHECK(middle(drawn(drawing)) == plane);
 }
 
-TEST_CASE("a caption changes pixels at its side only, and a long one ends before the margin")
+TEST_CASE("a caption changes pixels on its side only, and a long one ends before the margin")
 {
     Drawing drawing = empty_drawing();
     const Picture plain = drawn(drawing);
@@ -174,7 +174,7 @@ TEST_CASE("a caption changes pixels at its side only, and a long one ends before
     CHECK(changed(bottom, 0, 80) == 0);
     CHECK(changed(bottom, 80, kHeight) > 200);
     for (std::uint32_t y = 0; y < kHeight; ++y) CHECK(pixel(bottom, kWidth - 3, y) == pixel(plain, kWidth - 3, y));
-    drawing.captions = {{"\xff\xc3\xa4 \xe2\x82", false}, {"", false}};  // letters that we do not have, and no letters at all
+    drawing.captions = {{"\xff\xc3\xa4 \xe2\x82", false}, {"", false}};  // letters that the font lacks, and bytes that are not letters
     CHECK(changed(drawn(drawing), 0, 40) > 20);
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("far from the origin a picture is the same as near it")
         drawing.items = {item(Form::Sphere, origin, {0.5, 0, 0}, kRed), item(Form::Box, origin + Vec3{1, 0, 0}, {0.3, 0.3, 0.3}, kGreen)};
         return drawn(drawing);
     };
-    // A power of two: the differences to the eye are then exact.
+    // A power of two, so that differences from the eye's position are exact.
     CHECK(at({}).rgba == at({1048576, -2097152, 524288}).rgba);
 }
 

@@ -42,7 +42,7 @@ inline Pixel pixel(const render::Picture& picture, std::uint32_t x, std::uint32_
 
 inline Pixel middle(const render::Picture& picture) { return pixel(picture, picture.width / 2, picture.height / 2); }
 
-/// Nothing but the background: from 5 m along -y, z is up.
+/// The background alone: from 5 m along -y, z is up.
 inline render::Drawing empty_drawing()
 {
     render::Drawing out;

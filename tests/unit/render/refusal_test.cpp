@@ -1,4 +1,4 @@
-/// What is refused, with which words; PNG files; the view of everything.
+/// What is refused, with which message; PNG files; the view of everything.
 #include <png.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ TEST_CASE("sizes that no picture can have are refused")
     CHECK(make_renderer(16, 16).ok());
 }
 
-TEST_CASE("a view that shows nothing is refused, an awkward one is not")
+TEST_CASE("a view that shows nothing is refused, an unusual one is not")
 {
     Drawing drawing;
     CHECK(refusal_of(drawing) == "accepted");
@@ -81,7 +81,7 @@ TEST_CASE("meshes with bad numbers and items without their mesh are refused")
     CHECK(refusal_of(drawing) == "accepted");
 }
 
-TEST_CASE("a picture reads back from its file as it was")
+TEST_CASE("a picture reads back from its file unchanged")
 {
     Drawing drawing = empty_drawing();
     drawing.items = {item(Form::Sphere, {}, {0.5, 0, 0}, kRed)};
@@ -112,7 +112,7 @@ TEST_CASE("a picture that cannot be written leaves nothing behind")
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("the view of everything holds every ball of the scene")
+TEST_CASE("the view of everything contains every ball of the scene")
 {
     Drawing drawing;
     drawing.meshes = {{{{0, 0, 0}, {3, 0, 0}, {0, 1, 0}}, {0, 1, 2}}};

@@ -1,4 +1,4 @@
-// Recorded runs made again: the same hashes, and the first difference found where there is one.
+// Recorded runs are repeated: the same hashes, and the first difference is found if there is one.
 #include "replay/replay.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace plab::test
 namespace
 {
 
-/// A recording in memory: what a recorder would have written of a run.
+/// A recording in memory: what a recorder would have written about a run.
 class MemoryLog final : public record::RunLog
 {
 public:
@@ -64,11 +64,11 @@ public:
     std::size_t next = 0;
 };
 
-/// Runs a scene and writes it down.
-class Taping
+/// Runs a scene and records it.
+class RecordedScene
 {
 public:
-    explicit Taping(const std::string& body) : scene(body, "dt=\"1/100\"")
+    explicit RecordedScene(const std::string& body) : scene(body, "dt=\"1/100\"")
     {
         REQUIRE_MESSAGE(scene.loaded(), scene.error());
         keep_snapshot("begin");
@@ -128,58 +128,58 @@ replay::ReplayReport made_again(MemoryLog& log, replay::ReplayOptions options = 
 
 TEST_CASE("a run with a swap, a set, an added and a removed component gives the same hashes, for one and two threads")
 {
-    Taping taping(kBall);
-    taping.step(20);
-    taping.ask({{"set", "ball", "", "", {{"mass", "2 kg"}}}});
-    taping.step(20);
-    taping.keep_snapshot("periodic");
-    taping.step(20);
-    taping.ask({{"add", "", "", R"(<component id="more" type="Field/Gravity" between="ball" acceleration="0 0 -1"/>)", {}},
-                {"remove", "wind", "", "", {}}});
-    taping.ask({{"rate", "", "max", "", {}}});
-    taping.step(40);
+    RecordedScene recorded(kBall);
+    recorded.step(20);
+    recorded.ask({{"set", "ball", "", "", {{"mass", "2 kg"}}}});
+    recorded.step(20);
+    recorded.keep_snapshot("periodic");
+    recorded.step(20);
+    recorded.ask({{"add", "", "", R"(<component id="more" type="Field/Gravity" between="ball" acceleration="0 0 -1"/>)", {}},
+                  {"remove", "wind", "", "", {}}});
+    recorded.ask({{"rate", "", "max", "", {}}});
+    recorded.step(40);
     for (const int threads : {1, 2})
     {
-        const replay::ReplayReport report = made_again(taping.log, {}, threads);
+        const replay::ReplayReport report = made_again(recorded.log, {}, threads);
         CHECK(!report.mismatch);
         CHECK(report.verified == 100);
         CHECK(report.requests == 2);
-        CHECK(report.last_hash == taping.scene.hash());
+        CHECK(report.last_hash == recorded.scene.hash());
     }
-    // From the snapshot in the middle on, and only as far as it is asked for.
+    // From the snapshot in the middle on, and only as far as requested.
     replay::ReplayOptions from;
     from.from = 55;
-    CHECK(made_again(taping.log, from).verified == 60);
+    CHECK(made_again(recorded.log, from).verified == 60);
     replay::ReplayOptions until;
     until.until = 0.3;
-    CHECK(made_again(taping.log, until).verified == 30);
+    CHECK(made_again(recorded.log, until).verified == 30);
 }
 
 TEST_CASE("runs follow one another, each from its own first snapshot")
 {
-    Taping taping(kBall);
-    taping.step(30);
-    taping.ask({{"reset", "", "", "", {}}});
-    taping.keep_snapshot("begin");
-    taping.step(10);
-    const replay::ReplayReport report = made_again(taping.log);
+    RecordedScene recorded(kBall);
+    recorded.step(30);
+    recorded.ask({{"reset", "", "", "", {}}});
+    recorded.keep_snapshot("begin");
+    recorded.step(10);
+    const replay::ReplayReport report = made_again(recorded.log);
     CHECK(!report.mismatch);
     CHECK(report.runs == 2);
     CHECK(report.verified == 40);
     replay::ReplayOptions second;
-    second.run = taping.scene.simulation().run();
-    CHECK(made_again(taping.log, second).verified == 10);
+    second.run = recorded.scene.simulation().run();
+    CHECK(made_again(recorded.log, second).verified == 10);
 }
 
-TEST_CASE("a request that the recording does not know shows at its step, with object, column and both values")
+TEST_CASE("a request that is not in the recording shows as a difference at its step, with object, column and both values")
 {
-    Taping taping(kBall);
-    taping.step(25);
-    REQUIRE(taping.scene.ask(simulation::PushOperation{"ball", {0.5, 0, 0}, {}}).done);  // behind the recorder's back
-    taping.step(25);
-    taping.keep_snapshot("periodic");
-    taping.step(5);
-    const replay::ReplayReport report = made_again(taping.log);
+    RecordedScene recorded(kBall);
+    recorded.step(25);
+    REQUIRE(recorded.scene.ask(simulation::PushOperation{"ball", {0.5, 0, 0}, {}}).done);  // without the recorder
+    recorded.step(25);
+    recorded.keep_snapshot("periodic");
+    recorded.step(5);
+    const replay::ReplayReport report = made_again(recorded.log);
     REQUIRE(report.mismatch);
     CHECK(report.verified == 25);
     CHECK(report.mismatch->step == 26);
@@ -194,18 +194,18 @@ TEST_CASE("a request that the recording does not know shows at its step, with ob
     CHECK(text.find("ball.position: recorded ") != std::string::npos);
 }
 
-TEST_CASE("without a frame of the step the next one tells the column, whichever of it and the snapshot comes first")
+TEST_CASE("without a frame at the step the next one identifies the column, whether it or the snapshot comes first")
 {
     for (const int snapshot_at : {27, 40})
     {
-        Taping taping(kBall);
-        taping.step(25);
-        REQUIRE(taping.scene.ask(simulation::PushOperation{"ball", {0.5, 0, 0}, {}}).done);
-        taping.step(snapshot_at - 25);
-        taping.keep_snapshot("periodic");
-        taping.step(45 - snapshot_at);
-        for (Tick step = 26; step < 30; ++step) taping.log.frames.erase({taping.scene.simulation().run(), step});
-        const replay::ReplayReport report = made_again(taping.log);
+        RecordedScene recorded(kBall);
+        recorded.step(25);
+        REQUIRE(recorded.scene.ask(simulation::PushOperation{"ball", {0.5, 0, 0}, {}}).done);
+        recorded.step(snapshot_at - 25);
+        recorded.keep_snapshot("periodic");
+        recorded.step(45 - snapshot_at);
+        for (Tick step = 26; step < 30; ++step) recorded.log.frames.erase({recorded.scene.simulation().run(), step});
+        const replay::ReplayReport report = made_again(recorded.log);
         REQUIRE(report.mismatch);
         CHECK(report.mismatch->step == 26);
         CHECK(report.mismatch->snapshot_step == snapshot_at);
@@ -217,37 +217,37 @@ TEST_CASE("without a frame of the step the next one tells the column, whichever 
     }
 }
 
-TEST_CASE("a gap in the numbers of the journal is a doubt, also between two runs")
+TEST_CASE("a gap in the numbers of the journal is reported, also between two runs")
 {
-    Taping taping(kBall);
-    taping.step(5);
-    taping.ask({{"set", "ball", "", "", {{"mass", "2 kg"}}}});
-    taping.step(5);
-    taping.ask({{"reset", "", "", "", {}}});
-    taping.keep_snapshot("begin");
-    taping.step(5);
-    CHECK(made_again(taping.log).doubts.empty());
-    taping.log.entries[1].number = 4;
-    const replay::ReplayReport between = made_again(taping.log);
+    RecordedScene recorded(kBall);
+    recorded.step(5);
+    recorded.ask({{"set", "ball", "", "", {{"mass", "2 kg"}}}});
+    recorded.step(5);
+    recorded.ask({{"reset", "", "", "", {}}});
+    recorded.keep_snapshot("begin");
+    recorded.step(5);
+    CHECK(made_again(recorded.log).doubts.empty());
+    recorded.log.entries[1].number = 4;
+    const replay::ReplayReport between = made_again(recorded.log);
     REQUIRE(between.doubts.size() == 1);
     CHECK(between.doubts[0].find("entries 2 to 3 are missing, after step 5 of run") != std::string::npos);
-    // What came before the first entry is known of plabd's own recordings only.
-    taping.log.entries[0].number = 3;
-    CHECK(made_again(taping.log).doubts.empty());
-    taping.log.about["recorder"] = "plabd";
-    CHECK(made_again(taping.log).doubts.size() == 1);
-    taping.log.about["topics"] = "plab/states plab/hashes";
-    const replay::ReplayReport without = made_again(taping.log);
+    // Only for plabd's own recordings it is known that there was nothing before the first entry.
+    recorded.log.entries[0].number = 3;
+    CHECK(made_again(recorded.log).doubts.empty());
+    recorded.log.about["recorder"] = "plabd";
+    CHECK(made_again(recorded.log).doubts.size() == 1);
+    recorded.log.about["topics"] = "plab/states plab/hashes";
+    const replay::ReplayReport without = made_again(recorded.log);
     REQUIRE(without.doubts.size() == 1);
     CHECK(without.doubts[0].find("made without plab/journal") != std::string::npos);
 }
 
 TEST_CASE("one wrong bit in a recorded hash is found")
 {
-    Taping taping(kBall);
-    taping.step(10);
-    taping.log.hashes[6].hashes[0] ^= 1;
-    const replay::ReplayReport report = made_again(taping.log);
+    RecordedScene recorded(kBall);
+    recorded.step(10);
+    recorded.log.hashes[6].hashes[0] ^= 1;
+    const replay::ReplayReport report = made_again(recorded.log);
     REQUIRE(report.mismatch);
     CHECK(report.mismatch->step == 7);
     CHECK(report.mismatch->in_frame.empty());
@@ -255,13 +255,13 @@ TEST_CASE("one wrong bit in a recorded hash is found")
 
 TEST_CASE("a recording without a snapshot is refused, and so is a request that cannot be carried out again")
 {
-    Taping taping(kBall);
-    taping.step(3);
+    RecordedScene recorded(kBall);
+    recorded.step(3);
     simulation::Simulation simulation(library());
-    taping.log.entries.push_back({});
-    taping.log.entries.back().run = taping.scene.simulation().run(), taping.log.entries.back().step = 1;
-    taping.log.entries.back().operations = {{"remove", "nobody", "", "", {}}};
-    const auto impossible = replay::replay(taping.log, simulation, library(), {});
+    recorded.log.entries.push_back({});
+    recorded.log.entries.back().run = recorded.scene.simulation().run(), recorded.log.entries.back().step = 1;
+    recorded.log.entries.back().operations = {{"remove", "nobody", "", "", {}}};
+    const auto impossible = replay::replay(recorded.log, simulation, library(), {});
     REQUIRE(!impossible);
     CHECK(impossible.error().reason.find("the request of step 1 cannot be replayed") != std::string::npos);
     MemoryLog empty;

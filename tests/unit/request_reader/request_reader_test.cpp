@@ -1,4 +1,4 @@
-// The thread that reads requests: their order, what it has loaded by the time a request can be taken, and that it ends.
+// The thread that reads requests: their order, that plugins are loaded when a request can be taken, and that it ends.
 #include "daemon/request_reader.h"
 
 #include <doctest/doctest.h>
@@ -117,7 +117,7 @@ TEST_CASE("when a request can be taken, the plugins of the types that it names a
     CHECK(has_loaded(library, "Field/Gravity"));
 }
 
-TEST_CASE("finish waits until what has arrived is read, and not longer than it may")
+TEST_CASE("finish waits until all requests that have arrived are read, but not longer than allowed")
 {
     FakeBus bus;
     plugins::PluginLibrary library;

@@ -1,4 +1,4 @@
-// Eigen's views: the same numbers, wherever they stand; and why eigenvalues are not Eigen's.
+// Eigen's views: the same numbers, wherever they are stored; and why eigenvalues are not computed by Eigen.
 #include "plab/eigen.h"
 
 #include <doctest/doctest.h>
@@ -143,7 +143,7 @@ TEST_CASE("views of a plugin's columns and of parts of a list")
 
 TEST_CASE("views need no alignment beyond that of a double")
 {
-    // Whatever the address modulo 32: sums over a view and products of it have the same bits.
+    // Sums over a view and products of it have the same bits for any address modulo 32.
     std::vector<double> room(64);
     double first = 0;
     for (std::size_t at = 0; at < 8; ++at)
@@ -164,7 +164,7 @@ TEST_CASE("views need no alignment beyond that of a double")
     CHECK(from_eigen(as_eigen(packed.a) * as_eigen(packed.v)) == Vec3{2, 3, 4});
 }
 
-TEST_CASE("eigenvalues of a graded matrix keep their digits; Eigen's solver knows the smallest one not at all")
+TEST_CASE("eigenvalues of a graded matrix keep their digits; Eigen's solver loses the smallest one completely")
 {
     // D B D with D = diag(1e-4, 1e-8, 1) and B = 1 + (1 1 1)^T (1 1 1): the product of the eigenvalues is det(B) det(D)^2 = 4e-24.
     const Mat3 a{{{2e-8, 1e-12, 1e-4}, {1e-12, 2e-16, 1e-8}, {1e-4, 1e-8, 2}}};

@@ -1,4 +1,4 @@
-// Which resolution goes with which response, and what is said of parameters that nobody uses.
+// Which resolution can be combined with which response, and the messages about unused parameters.
 #include "simulation/contacts/contact_rules.h"
 #include "support/scene.h"
 
@@ -36,7 +36,7 @@ TEST_CASE("a resolution that speculates needs a response by rows")
     CHECK(Scene(scene("Speculative", "Rows")).loaded());
 }
 
-TEST_CASE("every other resolution goes with every response")
+TEST_CASE("every other resolution can be combined with every response")
 {
     for (const char* resolution : {"None", "Bisection", "LocalBisection", "ConservativeAdvancement", "LocalRoot"})
         for (const char* response : {"Impulse", "Rows", "None", "Penalty", "HuntCrossley"})
@@ -48,7 +48,7 @@ TEST_CASE("every other resolution goes with every response")
         }
 }
 
-TEST_CASE("one pair takes one detection: a second one that answers is refused with both names")
+TEST_CASE("a pair has one detection: a second one with a response is refused with both names")
 {
     const std::string first = scene("LocalRoot", "Impulse");
     const auto second = [](const std::string& more) { return "<component id=\"twin\" type=\"CDetection/ODE\" " + more + "/>"; };
@@ -73,7 +73,7 @@ TEST_CASE("one pair takes one detection: a second one that answers is refused wi
     s.step();
 }
 
-TEST_CASE("an exchange that would make nonsense is refused, and nothing changes")
+TEST_CASE("an exchange that would give an invalid combination is refused, and nothing changes")
 {
     Scene s(scene("LocalRoot", "Impulse"));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -83,7 +83,7 @@ TEST_CASE("an exchange that would make nonsense is refused, and nothing changes"
     CHECK(s.ask(simulation::SwapOperation{"contact.resolution", "Resolution/Speculative", {}}).done);
 }
 
-TEST_CASE("a resolution that finds times is not used where contacts are forces, and --explain has a sentence on it")
+TEST_CASE("a resolution that locates times is not used where contacts are forces, and --explain has a sentence about it")
 {
     const Scene force(scene("LocalRoot", "Penalty"));
     REQUIRE_MESSAGE(force.loaded(), force.error());

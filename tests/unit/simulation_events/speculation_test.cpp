@@ -1,4 +1,4 @@
-// How far gaps are looked for: nothing that can close within the step lies beyond.
+// The margin within which gaps are searched for: no gap beyond it can close within the step.
 #include "simulation/contacts/speculation.h"
 
 #include <doctest/doctest.h>
@@ -42,7 +42,7 @@ Contact gap(double width)
 
 }  // namespace
 
-TEST_CASE("a margin covers what the two fastest bodies close, and what forces add")
+TEST_CASE("a margin covers the approach of the two fastest bodies, and what forces add")
 {
     Two s;
     s.add(Motion::Static, {}, {100, 0, 0}, {}, HUGE_VAL);
@@ -50,11 +50,11 @@ TEST_CASE("a margin covers what the two fastest bodies close, and what forces ad
     s.add(Motion::Dynamic, {0, 0, 2}, {0, 0, 1}, {0, 2, 0}, 0.5);
     const double h = 0.1;
     CHECK(speculative_margin(s.bodies, s.radius, 0, h) >= (5 + 2) * h);
-    CHECK(speculative_margin(s.bodies, s.radius, 0, h) < 3 * (5 + 2) * h);  // what stands still has no speed
+    CHECK(speculative_margin(s.bodies, s.radius, 0, h) < 3 * (5 + 2) * h);  // a static body has no speed
     CHECK(speculative_margin(s.bodies, s.radius, 20, h) - speculative_margin(s.bodies, s.radius, 0, h) >= 20 * h * h);
 }
 
-TEST_CASE("a gap may close if its speed, its turning or forces bring it together in time")
+TEST_CASE("a gap may close if its speed, rotation or forces close it in time")
 {
     Two s;
     s.add(Motion::Static, {}, {}, {}, HUGE_VAL);
@@ -63,14 +63,14 @@ TEST_CASE("a gap may close if its speed, its turning or forces bring it together
     CHECK(may_close(s.bodies, s.radius, gap(0.02), 0, h));
     CHECK_FALSE(may_close(s.bodies, s.radius, gap(0.1), 0, h));
     CHECK(may_close(s.bodies, s.radius, gap(0.1), 1e3, h));
-    s.bodies.velocity[1] = {7, 0, 2};  // parts: only what overlaps counts
+    s.bodies.velocity[1] = {7, 0, 2};  // separates: only overlaps count
     CHECK_FALSE(may_close(s.bodies, s.radius, gap(1e-9), 0, h));
     CHECK(may_close(s.bodies, s.radius, gap(-1e-9), 0, h));
     s.bodies.angular_velocity[1] = {0, 10, 0};
     CHECK(may_close(s.bodies, s.radius, gap(0.05), 0, h));
 }
 
-TEST_CASE("standing pairs are looked at as far as their corners come, and no further than says anything")
+TEST_CASE("persistent pairs are tested as far as their corners move, and no further than useful")
 {
     Two s;
     s.add(Motion::Static, {}, {}, {}, HUGE_VAL);
@@ -87,7 +87,7 @@ TEST_CASE("standing pairs are looked at as far as their corners come, and no fur
     CHECK(closing_margin(s.bodies, s.radius, kB, kA, {0, 0, -1}, 0.01) == margin(0.01));
 }
 
-TEST_CASE("Painleve's rod: 1 + 3 cos^2 - 3 mu sin cos of what a point alone has, over 1 + 3 cos^2")
+TEST_CASE("Painleve's rod: (1 + 3 cos^2 - 3 mu sin cos) / (1 + 3 cos^2) times the value of a point mass")
 {
     // A slender rod of 1 kg and 1 m, its end at the origin, which slides ahead of its centre towards -x.
     const double angle = 1.0471975511965976, sin = std::sin(angle), cos = std::cos(angle);

@@ -1,4 +1,4 @@
-// Where bounces end.
+// The time at which a series of bounces ends.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ TEST_CASE("a geometric sequence of intervals ends at its sum")
     }
 }
 
-TEST_CASE("intervals that do not shrink by the ratio are no such sequence")
+TEST_CASE("intervals that do not shrink by the ratio are not such a sequence")
 {
     BounceHistory h;
     CHECK(!rest_of_bounces(h, 1e-3, 0.5));
@@ -31,6 +31,6 @@ TEST_CASE("intervals that do not shrink by the ratio are no such sequence")
     CHECK(!rest_of_bounces(h, 0.025, 0.6));
     CHECK(!rest_of_bounces(h, 0.04, 0.5));
     CHECK(!rest_of_bounces(h, 0.025, 1));
-    note_impact(h, 1.3);  // pushed in between
+    note_impact(h, 1.3);  // the body was pushed in between
     CHECK(!rest_of_bounces(h, 0.025, 0.5));
 }

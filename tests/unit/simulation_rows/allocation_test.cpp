@@ -1,4 +1,4 @@
-// A warm evaluation asks for no memory. This file counts for the whole test program.
+// A warm evaluation allocates no memory. This file counts allocations for the whole test program.
 #include <atomic>
 #include <cstdlib>
 #include <new>

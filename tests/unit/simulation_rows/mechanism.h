@@ -37,7 +37,7 @@ public:
         host.shafts.root[i] = i;
         return {Facet::Shaft, i};
     }
-    /// Both points are where p is now.
+    /// Both joint points are at the present position p.
     std::uint32_t ball(Ref a, Ref b, const Vec3& p) { return ball(a, in_frame(a, p), b, in_frame(b, p)); }
     std::uint32_t ball(Ref a, const Vec3& p_a, Ref b, const Vec3& p_b)
     {
@@ -97,10 +97,10 @@ public:
         for (std::uint32_t i = 0; i < host.shafts.size(); ++i) sum += host.shafts.kinetic_energy(i);
         return sum;
     }
-    Quat attitude(Ref who) const { return who.valid() ? host.bodies.orientation[who.index] : Quat{}; }
-    Vec3 in_frame(Ref who, const Vec3& p) const
+    Quat attitude(Ref body) const { return body.valid() ? host.bodies.orientation[body.index] : Quat{}; }
+    Vec3 in_frame(Ref body, const Vec3& p) const
     {
-        return who.valid() ? rotate_back(attitude(who), p - host.bodies.position[who.index]) : p;
+        return body.valid() ? rotate_back(attitude(body), p - host.bodies.position[body.index]) : p;
     }
     static constraints::Sides sides(const Bodies& bodies, Ref a, const Vec3& p_a, Ref b, const Vec3& p_b)
     {

@@ -73,7 +73,7 @@ std::vector<Vec3> dense_accelerations(Mechanism& m)
         for (std::uint32_t j = 0; j < row.count; ++j)
             for (int c = 0; c < 3; ++c)
             {
-                const std::size_t u = 6 * row.blocks[j].who.index + static_cast<std::size_t>(c);
+                const std::size_t u = 6 * row.blocks[j].participant.index + static_cast<std::size_t>(c);
                 a[n + k][u] = a[u][n + k] = row.blocks[j].linear[c];
                 a[n + k][u + 3] = a[u + 3][n + k] = row.blocks[j].angular[c];
             }
@@ -86,7 +86,7 @@ std::vector<Vec3> dense_accelerations(Mechanism& m)
     return out;
 }
 
-/// Of the bodies from one on, relative to the largest acceleration.
+/// Of all bodies but the first, relative to the largest acceleration.
 double worst_difference(Mechanism& m, std::size_t from = 0)
 {
     const auto dense = dense_accelerations(m);
@@ -100,7 +100,7 @@ double worst_difference(Mechanism& m, std::size_t from = 0)
     return worst / scale;
 }
 
-/// Spins and attitudes that fit no joint: at acceleration level that does not matter.
+/// Spins and attitudes that violate the joints: at acceleration level that does not matter.
 void stir(Mechanism& m)
 {
     for (std::uint32_t i = 0; i < m.host.bodies.size(); ++i)
@@ -137,7 +137,7 @@ TEST_CASE("chains and trees: accelerations are those of the whole matrix")
     CHECK(worst_difference(m) < 1e-13);
 }
 
-TEST_CASE("loops: the same")
+TEST_CASE("loops: accelerations are those of the whole matrix")
 {
     Mechanism m;
     chain(m, 6, 1, 1);
@@ -148,7 +148,7 @@ TEST_CASE("loops: the same")
     CHECK(worst_difference(m) < 1e-12);
 }
 
-TEST_CASE("mass ratios to 1e8: what is heavy keeps its digits, what is light those that the ratio leaves")
+TEST_CASE("mass ratios to 1e8: heavy bodies keep their digits, light ones those that the ratio leaves")
 {
     for (const double last : {1e8, 1e-8})
         for (const bool looped : {false, true})
@@ -160,13 +160,13 @@ TEST_CASE("mass ratios to 1e8: what is heavy keeps its digits, what is light tho
             if (looped) m.ball(kWorld, {Facet::Body, 2}, {3, 1, 1});
             stir(m);
             m.build();
-            // Two forces of 1e9 N on a link of 1 kg: their difference has seven digits, however it is solved for.
+            // Two forces of 1e9 N on a link of 1 kg: their difference has seven digits, whatever the method.
             CHECK(worst_difference(m, 5) < 1e-11);
             CHECK(worst_difference(m) < 1e-7);
         }
 }
 
-TEST_CASE("rows twice over: the same motion, the load shared equally, the copies counted")
+TEST_CASE("duplicated rows: the same motion, the load shared equally, the copies counted")
 {
     Mechanism once, twice;
     for (Mechanism* m : {&once, &twice})
@@ -187,7 +187,7 @@ TEST_CASE("rows twice over: the same motion, the load shared equally, the copies
     for (const std::uint32_t copy : {0u, 1u}) CHECK(length(b.of(copy).force - 0.5 * a.of(0).force) < 1e-4 * length(a.of(0).force));
 }
 
-TEST_CASE("pins too far apart end at least squares, named, with bounded energy")
+TEST_CASE("pins too far apart converge to the least-squares position, are named, and have bounded energy")
 {
     Mechanism m;
     const Ref rod = m.body(1, {.1, .3, .3}, {0, 0, 0});
@@ -202,14 +202,14 @@ TEST_CASE("pins too far apart end at least squares, named, with bounded energy")
     CHECK(std::fabs(m.energy()) < 1e-5);
 }
 
-TEST_CASE("a body put far from its joint is brought back, the long way round too")
+TEST_CASE("a body placed far from its joint is brought back, also after a rotation of nearly half a turn")
 {
     Mechanism m;
     const Ref rod = m.body(1, {.1, .1, .1}, {.5, 0, 0});
     m.hinge(kWorld, rod, {0, 0, 0}, {0, 1, 0});
     m.build();
     m.host.bodies.position[0] = {4, 5, -6};
-    m.host.bodies.orientation[0] = exp_rotation(Vec3{3.1, 0, 0});  // nearly against its axis
+    m.host.bodies.orientation[0] = exp_rotation(Vec3{3.1, 0, 0});  // its axis nearly reversed
     m.host.bodies.velocity[0] = {1, 2, 3};
     const auto report = m.rows.project(StepContext{});
     CHECK(report.converged);
@@ -218,7 +218,7 @@ TEST_CASE("a body put far from its joint is brought back, the long way round too
     CHECK(std::fabs(rotate(m.host.bodies.orientation[0], Vec3{0, 1, 0}).y - 1) < 1e-14);
 }
 
-TEST_CASE("speeds that come together keep momentum, and their loss is booked")
+TEST_CASE("speeds that are matched conserve momentum, and the energy lost is booked")
 {
     Mechanism m;
     const Ref a = m.body(2, {1, 1, 1}, {0, 0, 0}), b = m.body(3, {1, 1, 1}, {2, 0, 0});

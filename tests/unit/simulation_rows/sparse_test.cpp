@@ -1,4 +1,4 @@
-// The block factorisation alone, and what the equations cost.
+// The block factorisation alone, and the cost of the equations.
 #include <algorithm>
 
 #include "mechanism.h"
@@ -64,7 +64,7 @@ TEST_CASE("blocks of all sizes, in trees and in loops")
     CHECK(residual(nodes, edges) < 1e-11);
 }
 
-TEST_CASE("a chain has no fill, whatever the numbers of its nodes")
+TEST_CASE("a chain has no fill-in, whatever the numbers of its nodes")
 {
     constexpr std::uint32_t n = 50;
     std::vector<SparseNode> nodes(2 * n);

@@ -50,7 +50,7 @@ struct Coupled : Train
 
 }  // namespace
 
-TEST_CASE("F1 with Impulse: the pair feels the reflected inertia")
+TEST_CASE("F1 with Impulse: the pair has the reflected inertia")
 {
     Coupled t;
     t.add_shaft(10), t.add_shaft(100);
@@ -88,7 +88,7 @@ TEST_CASE("Impulse: J_eff = J1 + r^2 J2 to 1e-12 for |r| <= 100 and mass ratios 
     CHECK(worst < 1e-12);
 }
 
-TEST_CASE("Impulse at large ratios: one sweep loses digits by cancellation, the second brings them back")
+TEST_CASE("Impulse at large ratios: one sweep loses digits by cancellation, the second restores them")
 {
     for (const double f : {1e2, 1e4, 1e6})
     {
@@ -107,7 +107,7 @@ TEST_CASE("Impulse at large ratios: one sweep loses digits by cancellation, the 
     }
 }
 
-TEST_CASE("Impulse at speeds is a plastic impact: momentum at the pair is kept and the work is booked")
+TEST_CASE("Impulse at the level of speeds is a plastic impact: momentum of the pair is conserved and the work is booked")
 {
     Coupled t;
     t.add_shaft(1, 100), t.add_shaft(2, 0);
@@ -152,7 +152,7 @@ TEST_CASE("a train of Impulses agrees with the graph; sweeps grow with its lengt
     }
 }
 
-TEST_CASE("Assign is one-way: the driver feels nothing, the driven copies; chains converge in any order")
+TEST_CASE("Assign is one-way: the driver is not affected, the driven shaft copies it; chains converge in any order")
 {
     const std::vector<std::vector<std::uint32_t>> orders = {{0, 1, 2, 3}, {3, 2, 1, 0}, {2, 0, 3, 1}};
     for (const auto& order : orders)
@@ -163,14 +163,14 @@ TEST_CASE("Assign is one-way: the driver feels nothing, the driven copies; chain
         t.prepare();
         CHECK(t.solve({3, 100, 0, 0, 7}) == std::vector<double>{3, -1.5, 0.75, -0.375, 0.1875});
         t.react();
-        CHECK(t.torque(0) == 2 * -1.5 - 100);  // what it takes to hold s1 to that
+        CHECK(t.torque(0) == 2 * -1.5 - 100);  // the torque that holds s1 to that
         t.shafts.speed[0] = 8;
         t.solve_speeds();
         CHECK(t.shafts.speed == std::vector<double>{8, -4, 2, -1, 0.5});
     }
 }
 
-TEST_CASE("Assign books the energy that it makes up")
+TEST_CASE("Assign books the energy that it adds without a source")
 {
     Coupled t;
     t.add_shaft(1, 10), t.add_shaft(2, 3), t.add_shaft(5, 6);
@@ -211,7 +211,7 @@ TEST_CASE("Assign, Impulse and Graph in one train: reflected inertias add up beh
     CHECK(relative_error(t.torque(3), mesh3) < 1e-12);
     CHECK(relative_error(t.torque(2), 4 * -18.0 + 0.5 * mesh3) < 1e-12);
 
-    // Free of the drive, a torque on s1 feels all of them.
+    // Without the drive, a torque on s1 accelerates all of them.
     Coupled free;
     for (const double j : {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) free.add_shaft(j);
     free.gears.add(1, 1, 2, 2), free.gears.add(3, 3, 4, 0.5);
@@ -244,7 +244,7 @@ TEST_CASE("a joined shaft's mobility is reflected; a driven train has none and k
     CHECK(t.coupling.rate(shaft(1)) == 10);
 }
 
-TEST_CASE("at speeds the works of all couplings sum to the change of energy, drives included")
+TEST_CASE("at the level of speeds the work of all couplings adds up to the change of energy, drives included")
 {
     Coupled t;
     for (const double w : {2.0, 1.0, 0.0, -3.0, 4.0, 7.0}) t.add_shaft(1 + w * w, w);
@@ -268,7 +268,7 @@ TEST_CASE("at speeds the works of all couplings sum to the change of energy, dri
     CHECK(t.shafts.speed[4] == doctest::Approx(2 * t.shafts.speed[3]).epsilon(1e-13));
 }
 
-TEST_CASE("a solve sees its own members only: another branch of a prescribed shaft stays out of it")
+TEST_CASE("a solve includes its own members only: another branch of a prescribed shaft is not affected")
 {
     Train t;
     t.add_shaft(1, 2, Motion::Kinematic), t.add_shaft(1), t.add_shaft(1);
@@ -286,7 +286,7 @@ TEST_CASE("a solve sees its own members only: another branch of a prescribed sha
     CHECK(power == std::vector<double>{0, -6});
 }
 
-TEST_CASE("circles of drives do not settle, and two drives of one train are reported; the first is obeyed")
+TEST_CASE("cycles of drives do not converge, and two drives of one train are reported; the first one acts")
 {
     Coupled circle;
     circle.add_shaft(1, 1), circle.add_shaft(1, 1);
@@ -318,7 +318,7 @@ TEST_CASE("circles of drives do not settle, and two drives of one train are repo
     CHECK_FALSE(two.sweep().conflict.has_value());
 }
 
-TEST_CASE("sweeps end where a contradiction moves to and fro for ever, and not where a change has a long way to go")
+TEST_CASE("sweeps end if a contradiction alternates for ever, and not if a change has to pass many couplings")
 {
     Coupled loop;
     for (const double w : {1.0, 2.0, 6.0}) loop.add_shaft(1, w);
@@ -328,14 +328,14 @@ TEST_CASE("sweeps end where a contradiction moves to and fro for ever, and not w
     CHECK_FALSE(report.converged);
     CHECK(report.sweeps == 64);
     CHECK(std::fabs(std::log10(report.residual) + 5.5) < 1.5);
-    Coupled line;  // against the order of its rows a change goes one coupling further with each sweep
+    Coupled line;  // against the order of its rows a change passes one coupling in each sweep
     for (int i = 0; i < 200; ++i) line.add_shaft(1, i == 199 ? 1 : 0);
     for (std::uint32_t i = 0; i < 199; ++i) line.impulse.add(i, i, i + 1, 1);
     line.prepare(), line.begin_speeds();
     CHECK(line.sweep().sweeps == simulation::kMaxCouplingSweeps);
 }
 
-TEST_CASE("a rate that is not a number is not called converged")
+TEST_CASE("a rate that is not a number does not count as converged")
 {
     Coupled t;
     t.add_shaft(1, NAN), t.add_shaft(1, 1);
@@ -345,7 +345,7 @@ TEST_CASE("a rate that is not a number is not called converged")
     CHECK_FALSE(t.sweep(10).converged);
 }
 
-TEST_CASE("what no coupling touches keeps its bits, and so does what agrees already")
+TEST_CASE("uncoupled shafts keep their bits, and so do those that already agree")
 {
     Coupled t;
     for (const double w : {0.1, 0.2, 0.3, -0.6, 1e-300}) t.add_shaft(0.7, w);
@@ -356,7 +356,7 @@ TEST_CASE("what no coupling touches keeps its bits, and so does what agrees alre
     t.graph.engage(t.shafts);
     t.solve_speeds();
     CHECK(t.shafts.speed == before);
-    // Accelerations of a shaft that nothing joins are its torque over its inertia, to the bit.
+    // The acceleration of an uncoupled shaft is its torque over its inertia, to the bit.
     CHECK(t.solve({0, 0, 0, 0, 0.3})[4] == 0.3 / 0.7);
 }
 

@@ -7,7 +7,7 @@
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("F1: a pair feels the reflected inertia, and its torques are those of d'Alembert")
+TEST_CASE("F1: a pair has the reflected inertia, and its torques are those of d'Alembert")
 {
     for (const bool swapped : {false, true})
     {
@@ -21,7 +21,7 @@ TEST_CASE("F1: a pair feels the reflected inertia, and its torques are those of 
         CHECK(relative_error(a[1], -0.6 / 11) < 1e-15);
         t.react();
         CHECK(relative_error(t.torque(g), -60.0 / 11) < 1e-15);           // J2 a2
-        CHECK(relative_error(6 + 0.1 * t.torque(g), 10 * a[0]) < 1e-15);  // the driver feels -r of it
+        CHECK(relative_error(6 + 0.1 * t.torque(g), 10 * a[0]) < 1e-15);  // the driver receives -r times it
     }
 }
 
@@ -62,7 +62,7 @@ TEST_CASE("F2: six 10:1 meshes, both ways, whichever end is driven and whichever
             }
 }
 
-TEST_CASE("F3: sudden engagement keeps the momentum of the train and books what it costs")
+TEST_CASE("F3: sudden engagement conserves the momentum of the train and books the energy lost")
 {
     Train t;
     t.add_shaft(1, 100), t.add_shaft(2, 0);
@@ -127,11 +127,11 @@ TEST_CASE("F7: angles of 1000 gears are derived from the root's, so they cannot 
     }
     CHECK(angles == 0);
     CHECK(speeds == 0);
-    CHECK(t.shafts.angle[0] > 50);  // it did turn
+    CHECK(t.shafts.angle[0] > 50);  // it has turned
     CHECK(t.graph.consistent(t.shafts));
 }
 
-TEST_CASE("a prescribed shaft moves its whole train, and its couplings carry what that takes")
+TEST_CASE("a prescribed shaft moves its whole train, and its couplings carry the torques for it")
 {
     Train t;
     t.add_shaft(2, 5), t.add_shaft(3, -1), t.add_shaft(1, 4, Motion::Kinematic), t.add_shaft(1, 9);
@@ -158,11 +158,11 @@ TEST_CASE("a prescribed shaft moves its whole train, and its couplings carry wha
     CHECK(relative_error(t.torque(g1), 17.0) < 1e-15);  // on the motor: 2 (5 + 3.5)
     std::vector<double> power(2, 0.0);
     t.coupling.account(power, 1.0);
-    CHECK(relative_error(power[g1], -17.0 * 4) < 1e-15);  // takes away all that the two torques bring in
+    CHECK(relative_error(power[g1], -17.0 * 4) < 1e-15);  // removes all power of the two torques
     CHECK(power[g0] == 0);
 }
 
-TEST_CASE("rebuilding keeps ratios and anchors to the last bit; what changes is anchored where it stands")
+TEST_CASE("rebuilding keeps ratios and anchors to the last bit; shafts that change are anchored at their present angle")
 {
     Train t;
     for (int i = 0; i < 4; ++i) t.add_shaft(1, 0);
@@ -193,7 +193,7 @@ TEST_CASE("rebuilding keeps ratios and anchors to the last bit; what changes is 
     t.graph.derive(t.shafts);
     CHECK(t.shafts.angle[1] == 42);
 
-    t.graph.clear();  // and apart again
+    t.graph.clear();  // and separated again
     t.build();
     CHECK(t.shafts.root == std::vector<std::uint32_t>{0, 1, 2, 3});
     CHECK(t.shafts.anchor[1] == t.shafts.angle[1]);
@@ -211,7 +211,7 @@ TEST_CASE("only active trains are derived")
     CHECK(t.shafts.angle == std::vector<double>{1, 0, 1, 2});
 }
 
-TEST_CASE("nothing depends on rows: a train written in another order moves by the same bits")
+TEST_CASE("the result does not depend on rows: a train written in another order moves by the same bits")
 {
     const std::vector<std::uint32_t> row = {3, 0, 4, 1, 2};  // of s0 .. s4
     const std::vector<double> inertia = {0.3, 1.7, 0.9, 2.3, 0.11}, torque = {0.1, -0.7, 1.3, 0.5, 3.1};

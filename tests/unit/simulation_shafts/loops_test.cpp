@@ -65,23 +65,23 @@ TEST_CASE("F5: a contradiction is refused with edges and product, and nothing is
     good.gear(0, 2, 6.1);
     CHECK(contains(good.build_error(), "the loop g1 -> g0 -> g3 multiplies to"));
     CHECK(good.shafts.ratio == before.ratio);
-    CHECK(good.graph.trees().size() == 1);  // what was built goes on
+    CHECK(good.graph.trees().size() == 1);  // the existing graph is kept
     CHECK(good.graph.redundant().size() == 1);
 }
 
-TEST_CASE("F5 with tooth counts is exact: 60/10 closes the ring, 61/10 does not, nor one tooth in a million")
+TEST_CASE("F5 with tooth counts is exact: 60/10 closes the ring, 61/10 does not, nor an error of one tooth in a million")
 {
     Train good = ring(exact_ratio(20, 40), exact_ratio(15, 45), exact_ratio(60, 10));
     good.build();
     CHECK(good.graph.redundant().size() == 1);
     Train bad = ring(exact_ratio(20, 40), exact_ratio(15, 45), exact_ratio(61, 10));
     CHECK(contains(bad.build_error(), "g0 -> g1 -> g2 multiplies to 1.01666666666667 (61/60), must be 1"));
-    const std::int64_t big = 1'000'000'007;  // the product misses 1 by less than a double can tell
+    const std::int64_t big = 1'000'000'007;  // the product differs from 1 by less than a double can resolve
     Train close = ring(exact_ratio(big, big + 1), exact_ratio(big + 2, big + 1), exact_ratio(1, 1));
     CHECK(contains(close.build_error(), "(1000000016000000063/1000000016000000064)"));
 }
 
-TEST_CASE("a sign alone contradicts: three external meshes in a ring lock")
+TEST_CASE("a sign alone is a contradiction: three external meshes in a ring lock")
 {
     Train t = ring(exact_ratio(-1, 1), exact_ratio(-1, 1), exact_ratio(-1, 1));
     CHECK(contains(t.build_error(), "multiplies to -1, must be 1"));
@@ -98,7 +98,7 @@ TEST_CASE("all contradictions are reported at once")
     CHECK(r.errors()[1].element == "g3");
 }
 
-TEST_CASE("couplings that cannot be are refused by name")
+TEST_CASE("impossible couplings are refused by name")
 {
     SUBCASE("two prescribed shafts")
     {
@@ -131,7 +131,7 @@ TEST_CASE("couplings that cannot be are refused by name")
         for (std::uint32_t i = 0; i < 49; ++i) t.gear(i, i + 1, 1e6);
         CHECK(contains(t.build_error(), "times per turn of s0; must be between 2^-400 and 2^400"));
     }
-    SUBCASE("one-way drives in a circle, by way of a gear too")
+    SUBCASE("one-way drives in a cycle, also through a gear")
     {
         Train t;
         for (int i = 0; i < 4; ++i) t.add_shaft(1);
@@ -155,7 +155,7 @@ TEST_CASE("couplings that cannot be are refused by name")
     }
 }
 
-TEST_CASE("rationals stay exact up to 128 bits and then fall back, without leaving any range")
+TEST_CASE("rationals stay exact up to 128 bits and then fall back to double, without overflow")
 {
     CHECK(exact(20, -40).text() == "-0.5 (-1/2)");
     CHECK((exact(7, 3) * exact(3, 7)).text() == "1");
@@ -185,7 +185,7 @@ TEST_CASE("rationals stay exact up to 128 bits and then fall back, without leavi
     CHECK((exact(most, 1) * exact(most, 1) * exact(-2, 1)).value() == -0x1p127);
 }
 
-TEST_CASE("a ring of 1000 random gears with teeth closes by rounding errors only")
+TEST_CASE("a ring of 1000 random gears with teeth closes up to rounding errors")
 {
     Train t;
     for (int i = 0; i < 1000; ++i) t.add_shaft(1);

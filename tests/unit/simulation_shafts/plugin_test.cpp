@@ -56,7 +56,7 @@ TEST_CASE("teeth give the factor, with the sign of the mesh")
     CHECK(ratio_of({1, 30, 20, "belt"})->value == 1.5);
 }
 
-TEST_CASE("factors that cannot be are refused with the reason")
+TEST_CASE("impossible factors are refused with the reason")
 {
     const auto why = [](const constraints::FactorGiven& g)
     {
@@ -73,7 +73,7 @@ TEST_CASE("factors that cannot be are refused with the reason")
     CHECK(why({NAN, 0, 0, "external"}) == "velocity_factor must be finite and other than 0");
 }
 
-TEST_CASE("the three algorithms can stand in for one another")
+TEST_CASE("the three algorithms can replace one another")
 {
     const CouplingTable assign("Assign"), impulse("Impulse"), graph("Graph");
     for (const CouplingTable* t : {&assign, &impulse, &graph})
@@ -102,7 +102,7 @@ TEST_CASE("the three algorithms can stand in for one another")
     }
 }
 
-TEST_CASE("Prepare refuses a row and says why")
+TEST_CASE("Prepare refuses a row with the reason")
 {
     CouplingTable t("Graph");
     const Row row = t.add(0, 0, 1, 2.0);
@@ -114,7 +114,7 @@ TEST_CASE("Prepare refuses a row and says why")
     CHECK(r.error().reason.find("given twice") != std::string::npos);
 }
 
-TEST_CASE("Finish measures errors and torque; the phase counts from the engagement, and anew with another factor")
+TEST_CASE("Finish measures errors and torque; the phase counts from the engagement, and again with another factor")
 {
     Train t;
     t.add_shaft(10, 4), t.add_shaft(100, -0.5);

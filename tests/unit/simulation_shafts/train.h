@@ -1,4 +1,4 @@
-/// Shafts, the constraint graph over them and couplings from the plugin: what a test of gears needs, and no step.
+/// Shafts, the constraint graph over them and couplings from the plugin: what a test of gears needs, without a step.
 #pragma once
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-/// Boxes that lean on friction and a ball that bounces, and a course on which requests change them.
+/// Boxes held by friction and a bouncing ball, and a run in which requests change them.
 #pragma once
 
 #include "support/ground.h"
@@ -20,7 +20,7 @@ inline const std::string kBoxes =
 /// Requests, by the step before which they take effect.
 using Change = std::pair<int, std::vector<simulation::Operation>>;
 
-/// Follows 130 steps on which these changes are made.
+/// A trajectory of 130 steps in which these changes are made.
 inline std::string follow_changes(const std::string& body, const std::vector<Change>& changes, Plan plan = {})
 {
     plan.steps = 130;

@@ -1,4 +1,4 @@
-// Snapshots before, between and after what changes a running scene: swaps, additions, removals, failures, requests that wait.
+// Snapshots before, between and after changes of a running scene: swaps, additions, removals, failures, requests that wait.
 #include "boxes.h"
 
 using namespace plab;
@@ -8,7 +8,7 @@ using simulation::Simulation;
 namespace
 {
 
-/// Dense enough that snapshots come before, between and after all changes.
+/// Dense enough that there are snapshots before, between and after all changes.
 Plan seldom()
 {
     Plan plan;
@@ -18,7 +18,7 @@ Plan seldom()
 
 }  // namespace
 
-TEST_CASE("across swaps of response, resolution and detection's kind of acting, before, between and after")
+TEST_CASE("across swaps of response, resolution and the way a detection acts, before, between and after")
 {
     for (const char* response : {"Penalty", "Rows"})
     {
@@ -52,14 +52,14 @@ TEST_CASE("across swaps of managers and solvers")
     }
 }
 
-TEST_CASE("across additions and removals, which leave holes that others fill")
+TEST_CASE("across additions and removals, which leave free rows that others use")
 {
     const auto body = [](const char* id, const char* x)
     {
         return added(std::string("<component id='") + id + "' type='State/RigidBody' mass='1' shape='ball' position='" + x +
                      " 0.5 0.4' linear_velocity='0.1 0 0'/>");
     };
-    // Whose work stays in the ledger when it is gone.
+    // Its work stays in the ledger when it is removed.
     const std::string air = "<component id='air' type='Field/Drag' between='low high bouncing' linear='0.1'/>";
     const std::string what = follow_changes(kBoxes + air,
                                             {{15, {body("zz", "0.2")}},
@@ -72,7 +72,7 @@ TEST_CASE("across additions and removals, which leave holes that others fill")
     CHECK_MESSAGE(what.empty(), what);
 }
 
-TEST_CASE("at a boundary between a swap and its step, swapping back brings every bit back in both")
+TEST_CASE("at a boundary between a swap and its step, swapping back restores every bit in both runs")
 {
     const model::SceneSpec scene = scene_of(kBoxes);
     const auto original = started(scene);
@@ -112,9 +112,9 @@ TEST_CASE("with an object that is frozen, and one whose script has failed")
     CHECK_MESSAGE(what.empty(), what);
 }
 
-TEST_CASE("what events told of already is not told again")
+TEST_CASE("conditions that were already reported are not reported again")
 {
-    // Two hinges that cannot hold together: told once, as long as it lasts.
+    // Two hinges that contradict each other: reported once, as long as it lasts.
     const std::string torn =
         "<component id='a' type='State/RigidBody' mass='1' inertia='1 1 1'/>"
         "<component id='b' type='State/RigidBody' mass='1' inertia='1 1 1' position='1 0 0'/>"
@@ -169,7 +169,7 @@ TEST_CASE("a restored run is a new run of the same scene: reset, step length and
     CHECK(difference_of(original->capture(), twin->capture()).empty());
 }
 
-TEST_CASE("requests that wait at the snapshot wait again; others that wait are refused")
+TEST_CASE("requests that wait at the snapshot wait again; other waiting requests are refused")
 {
     const auto s = started(scene_of(kBoxes));
     const auto post = [&](std::uint64_t id, Tick at)
@@ -198,7 +198,7 @@ TEST_CASE("requests that wait at the snapshot wait again; others that wait are r
     CHECK(replies[0].step == 20);
 }
 
-TEST_CASE("a snapshot is a value: it outlives its run, and going on changes nothing of it")
+TEST_CASE("a snapshot is a value: it outlives its run, and continuing the run does not change it")
 {
     simulation::Snapshot snapshot;
     std::vector<Footprint> then;

@@ -1,4 +1,4 @@
-// What a snapshot costs the step thread, and what its file weighs: a thousand bricks that stand on one another, in contact.
+// The time that a snapshot takes on the step thread, and the size of its file: a thousand bricks stacked on one another, in contact.
 #include <algorithm>
 #include <chrono>
 
@@ -20,7 +20,7 @@ const std::string kThousand = std::string(kGround) +
                               "<component id='contact' type='CDetection/ODE' between='*' resolution='Resolution/None'"
                               " response='Response/Rows' response.friction='0.5'/>";
 
-/// us, the shortest of several times: other programs on the machine only add.
+/// us, the shortest of several times, because other programs on the machine only add to it.
 template <class Work>
 double shortest(Work work)
 {

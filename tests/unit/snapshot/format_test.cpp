@@ -1,4 +1,4 @@
-// Snapshots as bytes: what is written is what is read, and any other bytes are refused with a reason.
+// Snapshots as bytes: written snapshots are read back, and any other bytes are refused with a reason.
 #include "simulation/snapshot/format.h"
 
 #include <cstring>
@@ -34,7 +34,7 @@ Bytes encoded(const Snapshot& snapshot)
     return bytes.take();
 }
 
-/// The file's sections with a check sum that fits, whatever was done to them.
+/// The file's sections with a correct checksum, whatever was done to them.
 Bytes rewritten(const Bytes& bytes, const std::function<void(std::vector<Section>&)>& change, std::uint32_t version = kSnapshotFormat)
 {
     auto file = read_sections(bytes, kSnapshotFormat);
@@ -69,7 +69,7 @@ bool mentions(const std::string& text, const std::string& words) { return text.f
 
 }  // namespace
 
-TEST_CASE("a snapshot that went by way of its bytes is the same, and so is its future")
+TEST_CASE("a snapshot that was written to bytes and read back is the same, and so is its future")
 {
     const auto s = mixed();
     const Snapshot snapshot = s->capture();
@@ -97,7 +97,7 @@ TEST_CASE("a snapshot that went by way of its bytes is the same, and so is its f
     CHECK(difference_of(s->capture(), twin.capture()).empty());
 }
 
-TEST_CASE("scenes come back as they were said: a swap after restoring does what it would have done")
+TEST_CASE("scenes are restored as they were described: a swap after restoring has the same effect")
 {
     for (const Subject& subject : subjects())
     {
@@ -122,7 +122,7 @@ TEST_CASE("scenes come back as they were said: a swap after restoring does what 
     }
 }
 
-TEST_CASE("odd values keep their bits")
+TEST_CASE("unusual values keep their bits")
 {
     const auto s = started(scene_of(kMixed));
     const double nan = std::bit_cast<double>(0x7ff8dead0000beefull);
@@ -137,7 +137,7 @@ TEST_CASE("odd values keep their bits")
     CHECK(difference_of(Snapshot(odd), file->snapshot).empty());
 }
 
-TEST_CASE("requests that wait need words for the file")
+TEST_CASE("waiting requests need a textual form for the file")
 {
     const auto s = mixed(5);
     Request request;
@@ -179,7 +179,7 @@ TEST_CASE("every flipped bit is refused")
     CHECK(refusal(bytes).empty());
 }
 
-TEST_CASE("what is damaged under a check sum that fits gives a reason or a whole snapshot, never more memory than the file pays for")
+TEST_CASE("damage under a correct checksum gives a reason or a whole snapshot, and never takes more memory than the file's size justifies")
 {
     const Bytes whole = encoded(mixed(60)->capture());
     std::size_t refused = 0, n = 0;
@@ -198,7 +198,7 @@ TEST_CASE("what is damaged under a check sum that fits gives a reason or a whole
     CHECK(refused > n / 2);
 }
 
-TEST_CASE("versions, unknown names and missing parts are told by name")
+TEST_CASE("versions, unknown names and missing parts are reported by name")
 {
     const Bytes whole = encoded(mixed(60)->capture());
     CHECK(mentions(refusal(rewritten(
@@ -221,12 +221,12 @@ TEST_CASE("versions, unknown names and missing parts are told by name")
                    "is not in the snapshot's section 'bodies'"));
     CHECK(mentions(with([](auto& s) { std::get<std::vector<std::string>>(column(s, "components", "type"))[1] = "Shape/Klein"; }),
                    "Shape/Klein"));
-    // What came later than the file has its default.
+    // Fields added after the file was written have their default.
     CHECK(with([](auto& s) { std::erase_if(section(s, "bodies").columns, [](const NamedColumn& c) { return c.name == "sunk_last"; }); })
               .empty());
 }
 
-TEST_CASE("a state that came to its type after the file was written has its default")
+TEST_CASE("a state that was added to its type after the file was written has its default")
 {
     const Bytes older = rewritten(encoded(mixed(60)->capture()),
                                   [](auto& s)
@@ -258,7 +258,7 @@ TEST_CASE("plugins that the scene needs are loaded")
     CHECK(s.state_hash() == file->snapshot->state_hash);
 }
 
-TEST_CASE("what does not fit together is refused")
+TEST_CASE("inconsistent snapshots are refused")
 {
     const Bytes whole = encoded(mixed(60)->capture());
     const auto with = [&](const std::function<void(std::vector<Section>&)>& change) { return !refusal(rewritten(whole, change)).empty(); };
@@ -277,7 +277,7 @@ TEST_CASE("what does not fit together is refused")
     CHECK(with([&](auto& s) { std::get<std::vector<std::string>>(column(s, "bodies", "motion"))[0] = "liquid"; }));
 }
 
-TEST_CASE("a file of format 1 goes on as it did when it was written")
+TEST_CASE("a file of format 1 continues as it did when it was written")
 {
     std::ifstream in(std::string(PLAB_SOURCE_DIR) + "/tests/unit/snapshot/golden/format_1.snapshot", std::ios::binary);
     const Bytes bytes{std::istreambuf_iterator<char>(in), {}};

@@ -1,4 +1,5 @@
-// Snapshots at every 100th step of every scene of this project, by way of their bytes, and on with one and two threads.
+// Snapshots at every 100th step of every scene of this project, written to bytes and read back, and continued with one and two
+// threads.
 #include "boxes.h"
 
 using namespace plab;
@@ -25,7 +26,7 @@ TEST_CASE("every type's scene, at every 100th step")
     for (const Subject& subject : subjects()) check(compiled(subject.blueprint), subject.type);
 }
 
-TEST_CASE("every scene for people, of the studies and of the golden tests, at every 100th step")
+TEST_CASE("every example scene, those of the studies and of the golden tests, at every 100th step")
 {
     for (const std::string& file : scene_files())
     {
@@ -35,7 +36,7 @@ TEST_CASE("every scene for people, of the studies and of the golden tests, at ev
     }
 }
 
-TEST_CASE("contacts that go over from one response to another and back, at every 10th step")
+TEST_CASE("contacts that change from one response to another and back, at every 10th step")
 {
     for (const char* response : {"Penalty", "HuntCrossley", "Rows", "None"})
         for (const bool as_file : {false, true})

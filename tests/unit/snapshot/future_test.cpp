@@ -1,10 +1,10 @@
-// A run that goes on from a snapshot in a fresh Simulation is the run that never stopped: state, events, outputs, ledger.
+// A run that continues from a snapshot in a fresh Simulation equals the run that never stopped: state, events, outputs, ledger.
 #include "twin.h"
 
 using namespace plab;
 using namespace plab::test;
 
-TEST_CASE("every type's scene goes on from a snapshot as if nothing had been")
+TEST_CASE("every type's scene continues from a snapshot as if there had been no interruption")
 {
     for (const Subject& subject : subjects())
         for (const int threads : {1, 2})
@@ -16,7 +16,7 @@ TEST_CASE("every type's scene goes on from a snapshot as if nothing had been")
         }
 }
 
-TEST_CASE("so do the scenes for people, the studies' and the golden ones")
+TEST_CASE("so do the example scenes, those of the studies and the golden ones")
 {
     REQUIRE(scene_files().size() > 20);
     for (const std::string& file : scene_files())

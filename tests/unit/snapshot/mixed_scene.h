@@ -8,7 +8,7 @@
 namespace plab::test
 {
 
-/// Something of everything, and small: a ball that bounces, one on a spring, a train of shafts, numbers, a script.
+/// A small scene with one of each: a ball that bounces, one on a spring, a train of shafts, numbers, a script.
 inline const std::string kMixed =
     std::string(kGround) +
     "<component id='ball' type='Shape/Sphere' radius='0.1'/>"

@@ -13,7 +13,7 @@ namespace
 
 std::string id_of(const world::World& world, Ref ref) { return ref.valid() ? world.id_of(ref) : "-"; }
 
-/// What a Lua state holds depends on when its garbage was collected.
+/// The content of a Lua state depends on when its garbage was collected.
 bool is_memory(const simulation::Difference& d) { return d.field == "memory_used"; }
 
 std::string words(int snapshot_step, int step, const Footprint& before, const Footprint& after)
@@ -96,7 +96,7 @@ Trajectory run(simulation::Simulation& simulation, const Plan& plan)
 namespace
 {
 
-/// By way of its bytes, if that is planned.
+/// Written to bytes and read back, if that is planned.
 Result<simulation::Snapshot> arrived(const simulation::Snapshot& snapshot, const Plan& plan)
 {
     if (!plan.as_file) return snapshot;

@@ -1,5 +1,5 @@
 // Writes the golden file of a snapshot format: build/bin/snapshot_golden FILE. A new format gets a file of its own; those of older ones
-// stay what they are.
+// are not changed.
 #include <cstdio>
 #include <fstream>
 

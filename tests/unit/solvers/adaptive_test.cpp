@@ -1,4 +1,4 @@
-/// Solver/DormandPrince54: error follows the tolerance, books close, nothing is remembered, limits are told.
+/// Solver/DormandPrince54: the error follows the tolerance, the ledger closes, no memory between steps, limits are reported.
 #include "objects/solvers/dormand_prince54.h"
 #include "unit/solvers/problems.h"
 
@@ -21,7 +21,7 @@ double planet_error(const Points& p) { return std::hypot(p.place[0] - kPlanetAt1
 
 }  // namespace
 
-TEST_CASE("a planet's error follows the tolerance, the work its fifth root")
+TEST_CASE("a planet's error follows the tolerance, and the work its fifth root")
 {
     double evaluations = 0, error = 0;
     for (const double tolerance : {1e-7, 1e-9, 1e-11})
@@ -56,7 +56,7 @@ TEST_CASE("the order of a smooth step taken whole is 5")
     CHECK(order_of(error, 60) == doctest::Approx(5).epsilon(0.03));
 }
 
-TEST_CASE("trials and repetitions of an advance see the same bits, and book the same; a trial leaves no trace")
+TEST_CASE("trials and repetitions of an advance give the same bits and book the same; a trial leaves no trace")
 {
     Adaptive first(1e-9), again(1e-9), trial(1e-9);
     trial.trial = true;
@@ -69,7 +69,7 @@ TEST_CASE("trials and repetitions of an advance see the same bits, and book the 
     CHECK(a.place == b.place);
     CHECK(a.place == c.place);
     CHECK(trial.rows.evaluations[0] == 0);
-    // The ledger is the host's: it takes back by a trial what an event undoes.
+    // The ledger belongs to the host, which removes by a trial what an event rewinds.
     CHECK(c.booked == a.booked);
     CHECK(c.work == a.work);
 }
@@ -86,7 +86,7 @@ TEST_CASE("quadratic drag, and a free box")
     CHECK(attitude_error(box.orientation, kBoxAt5) < 1e-10);
 }
 
-TEST_CASE("the last internal step lands on the end, and internal steps never look beyond it")
+TEST_CASE("the last internal step ends exactly at the end, and no evaluation is beyond it")
 {
     double latest = 0;
     Points p({1}, {0}, [&](double t, const auto& q, const auto&, auto& a) { latest = std::fmax(latest, t), a[0] = -1e4 * q[0]; });
@@ -97,7 +97,7 @@ TEST_CASE("the last internal step lands on the end, and internal steps never loo
     CHECK(p.place[0] == doctest::Approx(std::cos(25.0)).epsilon(1e-7));
 }
 
-TEST_CASE("too many internal steps: told, finite, and no hang")
+TEST_CASE("too many internal steps: reported, finite, and without a hang")
 {
     Adaptive solver(1e-9);
     solver.rows.max_substeps[0] = 50;
@@ -107,7 +107,7 @@ TEST_CASE("too many internal steps: told, finite, and no hang")
     CHECK(std::isfinite(p.place[0]));
     CHECK(std::isfinite(p.speed()));
 
-    // A force that is no number anywhere.
+    // A force that is NaN everywhere.
     Adaptive lost(1e-9);
     Points nan({1}, {0}, [](double, const auto&, const auto&, auto& a) { a[0] = std::nan(""); });
     nan.run(1, 1, std::ref(lost));

@@ -1,4 +1,4 @@
-/// Solver/Automatic: the rule, and the bits of what it picks.
+/// Solver/Automatic: its rule, and the bits of the solver that it picks.
 #include "objects/solvers/automatic.h"
 #include "objects/solvers/facts.h"
 #include "unit/solvers/problems.h"
@@ -30,7 +30,7 @@ Stiffness measured(FakeSystem& system, double h)
     return stiffness_of(system, h, slopes);
 }
 
-/// m = 1 on k = 1e6, and beside it in one group a large slow motion.
+/// m = 1 on k = 1e6, and in the same group a large slow motion.
 Points hidden_spring(double moved)
 {
     return Points({moved, 5}, {0, 3}, [](double, const auto& q, const auto&, auto& a) { a[0] = -1e6 * q[0], a[1] = -9.81 - 4 * q[1]; });
@@ -38,7 +38,7 @@ Points hidden_spring(double moved)
 
 }  // namespace
 
-TEST_CASE("stiffness is what the slopes show: springs by frequency, dampers by rate, whatever the units")
+TEST_CASE("stiffness is estimated from slopes: of springs by frequency, of dampers by rate, whatever the units")
 {
     for (const double k : {1e4, 1e6, 1e8, 1e12})
     {
@@ -63,16 +63,16 @@ TEST_CASE("stiffness is what the slopes show: springs by frequency, dampers by r
     CHECK(measured(reaction, 1).value == doctest::Approx(1e5).epsilon(0.1));
 }
 
-TEST_CASE("a stiff member is seen behind what moves more, and rounding is not")
+TEST_CASE("a stiff member is detected beside larger motions, and rounding is not taken for stiffness")
 {
     Points hidden = hidden_spring(1e-7);
     CHECK(measured(hidden, 0.01).too_much);
-    // At rest far from the origin: what the slopes show is rounding of the places.
+    // At rest far from the origin: the slopes show the rounding of positions.
     Points rest({1e6}, {0}, [](double, const auto& q, const auto&, auto& a) { a[0] = -100 * (q[0] - 1e6) - 1e-14 * q[0]; });
     CHECK(!measured(rest, 0.01).too_much);
 }
 
-TEST_CASE("what is soft and slow gets the bits of RungeKutta4 at its price, and no word is lost about it")
+TEST_CASE("soft and slow groups get the bits of RungeKutta4 at its cost, without a message")
 {
     Automatic automatic;
     Points a = driven_oscillator(), b = driven_oscillator();
@@ -82,7 +82,7 @@ TEST_CASE("what is soft and slow gets the bits of RungeKutta4 at its price, and 
     CHECK(a.work == b.work);
     CHECK(automatic.resolved() == "RungeKutta4");
     CHECK(automatic.events.all.empty());
-    CHECK(a.evaluations == b.evaluations + 4);  // the first step is looked at before it is made
+    CHECK(a.evaluations == b.evaluations + 4);  // the first step is examined before it is made
     Automatic slow;
     Body c(diagonal(kBoxInertia), {1, 2, 3}, light_drag()), d(diagonal(kBoxInertia), {1, 2, 3}, light_drag());
     c.run(0.01, 100, std::ref(slow)), d.run(0.01, 100, rk4);
@@ -91,7 +91,7 @@ TEST_CASE("what is soft and slow gets the bits of RungeKutta4 at its price, and 
     CHECK(slow.rows.spin[0] == doctest::Approx(0.037).epsilon(0.1));
 }
 
-TEST_CASE("free flight is exact, fast spin is split, stiff springs are exponentiated, stiff reactions go to Radau5")
+TEST_CASE("free flight uses Exact, fast spin RotationSplitting, stiff springs Exponential, stiff reactions Radau5")
 {
     Automatic a, b, c, d;
     Body free(diagonal(kBoxInertia), kBoxSpin);
@@ -118,7 +118,7 @@ TEST_CASE("free flight is exact, fast spin is split, stiff springs are exponenti
     CHECK(reaction[0] == doctest::Approx(0.1706167732170483e1).epsilon(1e-8));
 }
 
-TEST_CASE("a host that could not cut its step as finely as its contacts ask gets no steps within the step")
+TEST_CASE("if the host could not divide its step as finely as its contacts need, there are no further internal steps")
 {
     Automatic automatic;
     Points a = damped_spring(1e6, 0.05), b = damped_spring(1e6, 0.05);
@@ -134,7 +134,7 @@ TEST_CASE("a host that could not cut its step as finely as its contacts ask gets
     CHECK(automatic.resolved() == "RungeKutta4, Exponential");
 }
 
-TEST_CASE("a stiff spring that wakes up long after the start does not blow up for one step")
+TEST_CASE("a spring that becomes stiff long after the start does not diverge for one step")
 {
     Automatic automatic;
     // Slack until t = 0.3, h w = 100 afterwards.
@@ -144,10 +144,10 @@ TEST_CASE("a stiff spring that wakes up long after the start does not blow up fo
     CHECK(most < 1.0001);
     CHECK(0.5 * p.speed() * p.speed() + 0.5e8 * p.place[0] * p.place[0] == doctest::Approx(0.5e8).epsilon(1e-5));
     CHECK(automatic.events.count("solver.chosen") == 2);
-    CHECK(p.booked == doctest::Approx(100).epsilon(1e-12));  // the step that was taken back is not in the books
+    CHECK(p.booked == doctest::Approx(100).epsilon(1e-12));  // the rewound step is not in the ledger
 }
 
-TEST_CASE("a stiff spring beside a large slow motion stays where it is")
+TEST_CASE("a stiff spring beside a large slow motion does not move")
 {
     for (const double moved : {0.0, 1e-9, 1e-5})
     {
@@ -156,7 +156,7 @@ TEST_CASE("a stiff spring beside a large slow motion stays where it is")
         Points p = hidden_spring(moved);
         double most = 0;
         for (int i = 0; i < 300; ++i) p.run(0.01, 1, std::ref(automatic)), most = std::fmax(most, std::fabs(p.place[0]));
-        CHECK(most < 3 * moved + 5e-6);  // what passes unseen is a small part of what hides it
+        CHECK(most < 3 * moved + 5e-6);  // an undetected motion is a small fraction of the one that hides it
         const double t = 3, mean = -9.81 / 4;
         CHECK(p.place[1] == doctest::Approx(mean + (5 - mean) * std::cos(2 * t) + 1.5 * std::sin(2 * t)).epsilon(1e-7));
     }
@@ -193,7 +193,7 @@ TEST_CASE("a trial leaves no trace")
     CHECK(std::fabs(p.place[0] - damped_place(1e8, 0.05, 0.03)) < 1e-10);
 }
 
-TEST_CASE("stiff, bending and large: explicit internal steps, and a word about the size")
+TEST_CASE("stiff, nonlinear and large groups: explicit internal steps, and a message about the size")
 {
     Automatic automatic;
     const std::size_t n = 101;

@@ -18,13 +18,13 @@ struct Exponentials : Solver<ExponentialRows>
 
 }  // namespace
 
-TEST_CASE("matrix exponentials: turns, decays, chains, badly scaled")
+TEST_CASE("matrix exponentials: rotations, decays, chains, badly scaled")
 {
     MatrixExponential e;
     std::vector<double> v(2), out(2);
     for (const double angle : {1e-8, 0.3, 7.0, 1e4})
     {
-        // Places in units that are 1e6 times too large.
+        // Positions in units that are 1e6 times too large.
         e.matrix().resize(2);
         e.matrix()(0, 0) = 0, e.matrix()(0, 1) = 1e6 * angle, e.matrix()(1, 0) = -1e-6 * angle, e.matrix()(1, 1) = 0;
         REQUIRE(e.compute());
@@ -47,7 +47,7 @@ TEST_CASE("matrix exponentials: turns, decays, chains, badly scaled")
     CHECK(!e.compute());
 }
 
-TEST_CASE("a spring with a damper and its weight: right to 1e-10 from 1e2 to 1e12 N/m, in steps of 1 ms to 100 ms")
+TEST_CASE("a spring with a damper and its weight: correct to 1e-10 from 1e2 to 1e12 N/m, in steps of 1 ms to 100 ms")
 {
     for (const double k : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
         for (const double h : {0.001, 1.0 / 30, 0.1})
@@ -66,7 +66,7 @@ TEST_CASE("a spring with a damper and its weight: right to 1e-10 from 1e2 to 1e1
         }
 }
 
-TEST_CASE("light and heavy: 1e-3 kg against 1e3 kg on 1e6 N/m keeps its momentum")
+TEST_CASE("a light and a heavy body: 1e-3 kg against 1e3 kg on 1e6 N/m conserve their momentum")
 {
     const double k = 1e6, m1 = 1e-3, m2 = 1e3, reduced = m1 * m2 / (m1 + m2), c = 2 * 0.01 * std::sqrt(k * reduced);
     Exponentials solver;
@@ -82,7 +82,7 @@ TEST_CASE("light and heavy: 1e-3 kg against 1e3 kg on 1e6 N/m keeps its momentum
     CHECK(std::fabs(stretch - expected) < 1e-13);
 }
 
-TEST_CASE("a jump of the wind on stiff drag is exact, and so is drive that is linear in time")
+TEST_CASE("a jump of the wind on stiff drag is exact, and so is a force that is linear in time")
 {
     for (const double h : {1e-3, 0.1, 1.0})
     {
@@ -99,7 +99,7 @@ TEST_CASE("a jump of the wind on stiff drag is exact, and so is drive that is li
     CHECK(solver.rows.linear[0]);
 }
 
-TEST_CASE("the books of linear forces close, however many turns a step holds, at a bounded price")
+TEST_CASE("the ledger of linear forces closes for any number of oscillations in a step, at a bounded cost")
 {
     for (const double k : {1e2, 1e6, 1e12})
         for (const double h : {0.01, 1.0})
@@ -117,7 +117,7 @@ TEST_CASE("the books of linear forces close, however many turns a step holds, at
         }
 }
 
-TEST_CASE("a stop that the motion does not reach is not felt, not even by the books")
+TEST_CASE("a stop that the motion does not reach has no effect, not even on the ledger")
 {
     Exponentials solver;
     const auto law = [](double, const auto& q, const auto&, auto& a)
@@ -129,7 +129,7 @@ TEST_CASE("a stop that the motion does not reach is not felt, not even by the bo
     CHECK(energy == doctest::Approx(0.5e4 * (1e-4 - p.place[0] * p.place[0])).epsilon(1e-8));
 }
 
-TEST_CASE("forces that bend: order 4, and books of order 4")
+TEST_CASE("nonlinear forces: order 4, and a ledger of order 4")
 {
     const auto run = [](int steps)
     {
@@ -171,7 +171,7 @@ TEST_CASE("a tumbling body on a spring: order 4 in its attitude")
     CHECK(order_of([&](int n) { return attitude_error(run(n), truth); }, 20) == doctest::Approx(4).epsilon(0.15));
 }
 
-TEST_CASE("large groups and overflow go to Radau5, told once")
+TEST_CASE("large groups and overflow fall back to Radau5, reported once")
 {
     Exponentials solver;
     solver.rows.max_size[0] = 3;
@@ -181,7 +181,7 @@ TEST_CASE("large groups and overflow go to Radau5, told once")
     CHECK(solver.rows.resolved.resolved[0] == "Radau5");
     REQUIRE(solver.events.count("solver.fell_back") == 1);
     CHECK(solver.events.all[0].message.find("4 numbers") != std::string::npos);
-    // What does not move is not counted.
+    // Members that do not move are not counted.
     Exponentials still;
     still.rows.max_size[0] = 2;
     Points q({1, 0}, {0, 0}, [](double, const auto& x, const auto&, auto& a) { a[0] = -x[0], a[1] = -x[1]; });
@@ -189,7 +189,7 @@ TEST_CASE("large groups and overflow go to Radau5, told once")
     CHECK(still.rows.resolved.resolved[0] == "Exponential");
 }
 
-TEST_CASE("derivatives by extrapolated differences are right to 1e-9")
+TEST_CASE("derivatives by extrapolated differences are correct to 1e-9")
 {
     Points p({0.3, -0.2}, {2, 0.5},
              [](double, const auto& q, const auto& v, auto& a)

@@ -37,7 +37,7 @@ double driven_error(const Advance& advance, int steps)
 {
     Points p = driven_oscillator();
     p.run(3.0 / steps, steps, advance);
-    CHECK(p.booked == doctest::Approx(steps).epsilon(1e-12));  // the ledger's shares of each step add up to 1
+    CHECK(p.booked == doctest::Approx(steps).epsilon(1e-12));  // the ledger's weights in each step add up to 1
     return std::fabs(p.place[0] - driven_place(3));
 }
 double driven_order(const Advance& advance, int steps)
@@ -56,7 +56,7 @@ TEST_CASE("semi-implicit Euler is of order 1, classical Runge-Kutta of order 4")
     }
 }
 
-TEST_CASE("semi-implicit Euler takes the new speed, Runge-Kutta the exact parabola")
+TEST_CASE("semi-implicit Euler uses the new speed, Runge-Kutta gives the exact parabola")
 {
     Points euler({0}, {2}, [](double, const auto&, const auto&, auto& a) { a[0] = -10; });
     Points rk4 = euler;
@@ -68,7 +68,7 @@ TEST_CASE("semi-implicit Euler takes the new speed, Runge-Kutta the exact parabo
     CHECK(rk4.coordinates()[0] == doctest::Approx(2 * 0.5 - 0.5 * 10 * 0.25).epsilon(1e-14));
 }
 
-TEST_CASE("a free box turns as Euler's equations say")
+TEST_CASE("a free box rotates according to Euler's equations")
 {
     Body coarse(diagonal(kBoxInertia), kBoxSpin), fine(diagonal(kBoxInertia), kBoxSpin);
     const Vec3 L = coarse.momentum();
@@ -85,7 +85,7 @@ TEST_CASE("a free box turns as Euler's equations say")
     CHECK(coarse.spin_energy() == doctest::Approx(0.49 / 3).epsilon(1e-8));
 }
 
-TEST_CASE("semi-implicit Euler turns a free box to first order")
+TEST_CASE("semi-implicit Euler rotates a free box with order 1")
 {
     const auto error = [](double h, int steps)
     {
@@ -96,9 +96,9 @@ TEST_CASE("semi-implicit Euler turns a free box to first order")
     CHECK(std::log2(error(1e-4, 50000) / error(5e-5, 100000)) == doctest::Approx(1).epsilon(0.05));
 }
 
-TEST_CASE("an unstable spin flips when it should")
+TEST_CASE("an unstable spin flips at the right time")
 {
-    // Dzhanibekov: I = (3, 2, 1), spin 10 about the middle axis, 1e-3 beside it; state at t = 10 in closed form.
+    // Dzhanibekov: I = (3, 2, 1), spin 10 about the middle axis, 1e-3 off it; state at t = 10 in closed form.
     // The error grows by e^5.8 per second near the axis: the flips are where a wrong gyroscopic term shows first.
     const auto error = [](double h, int steps)
     {
@@ -111,7 +111,7 @@ TEST_CASE("an unstable spin flips when it should")
     CHECK(error(2e-4, 50000) < 1e-7);
 }
 
-TEST_CASE("degenerate tops: a ball keeps its spin, a disc and a rod precess as they should")
+TEST_CASE("degenerate tops: a ball keeps its spin, a disc and a rod precess at the right rate")
 {
     Body ball(Mat3::diagonal(0.4, 0.4, 0.4), {1, 2, 3});
     ball.run(0.01, 1000, advance_rk4);
@@ -192,7 +192,7 @@ TEST_CASE("a box under a torque that depends on time, attitude and spin: every a
     CHECK(order(advance_rk4, 40) == doctest::Approx(4).epsilon(0.05));
 }
 
-TEST_CASE("splitting keeps the momentum of a free box to the last bit, and its energy for long")
+TEST_CASE("splitting conserves the momentum of a free box to the last bit, and its energy over a long time")
 {
     for (const double h : {0.01, 0.05, 0.1, 0.4})
     {
@@ -214,7 +214,7 @@ TEST_CASE("splitting keeps the momentum of a free box to the last bit, and its e
     }
 }
 
-TEST_CASE("splitting turns the free box to second and fourth order")
+TEST_CASE("splitting rotates the free box with orders 2 and 4")
 {
     const auto error = [](int order, double h, int steps)
     {
@@ -247,7 +247,7 @@ TEST_CASE("an oscillator's energy error stays bounded, without a slope")
     }
 }
 
-TEST_CASE("kicks by constant forces are the parabola, and their work is the change of energy")
+TEST_CASE("kicks by constant forces give the parabola, and their work is the change of energy")
 {
     for (const Advance& advance : {advance_verlet, splitting(2), splitting(4)})
     {
@@ -260,9 +260,9 @@ TEST_CASE("kicks by constant forces are the parabola, and their work is the chan
     }
 }
 
-TEST_CASE("a needle keeps its fast spin in every splitting")
+TEST_CASE("a needle keeps its fast spin with every splitting")
 {
-    // A rod, 1e-12 kg m^2 about itself at 1000 rad/s: momentum would not hold that spin.
+    // A rod, 1e-12 kg m^2 about its axis at 1000 rad/s: the momentum could not represent that spin.
     Body rod(Mat3::diagonal(1, 1, 1e-12), {0.1, 0, 1e3}, {}, true);
     rod.run(1e-4, 10000, splitting(4));
     const double rate = (1e-12 - 1) * 1e3;  // of the transverse spin in the body
@@ -271,7 +271,7 @@ TEST_CASE("a needle keeps its fast spin in every splitting")
     CHECK(std::hypot(w.x - 0.1 * std::cos(rate), w.y - 0.1 * std::sin(rate)) < 2e-9);
 }
 
-TEST_CASE("a needle that spins across its length turns like the top it is, in every splitting")
+TEST_CASE("a needle that spins across its length rotates like a symmetric top, with every splitting")
 {
     // I = (1e-12, 1, 1), 10 rad/s about z: the momentum is fixed, so the needle sweeps a cone about it.
     const Mat3 inertia = Mat3::diagonal(1e-12, 1, 1);

@@ -68,7 +68,7 @@ const Top kTops[] = {
 
 }  // namespace
 
-TEST_CASE("Jacobi's functions are right to rounding, from the circle to next to the separatrix")
+TEST_CASE("Jacobi's functions are correct to rounding, from the circle to close to the separatrix")
 {
     struct Sample
     {
@@ -93,7 +93,7 @@ TEST_CASE("Jacobi's functions are right to rounding, from the circle to next to 
     CHECK(EllipticModulus(0).at(1.5).sn == doctest::Approx(std::tanh(1.5)).epsilon(1e-15));
 }
 
-TEST_CASE("one step of any length turns a top as Euler's equations say")
+TEST_CASE("one step of any length rotates a top according to Euler's equations")
 {
     for (const Top& top : kTops)
     {
@@ -101,7 +101,7 @@ TEST_CASE("one step of any length turns a top as Euler's equations say")
         CAPTURE(top.inertia.z);
         const PrincipalAxes body = principal_axes(member(top.inertia));
         const FreeTop free(body, times(top.inertia, top.spin));
-        // Rounding of the start is multiplied as the motion multiplies it: e^25 for the second one, near its unstable axis.
+        // Rounding at the start grows like any disturbance of the motion: by e^25 for the second one, near its unstable axis.
         const double unstable = top.spin.y == 10 ? 1e5 : (top.spin.y == 5 ? 1e2 : 1);
         CHECK(length(times(body.reciprocal, free.momentum(top.time)) - top.spin_then) < 1e-13 * length(top.spin) * unstable);
         CHECK(attitude_error(free.turn(top.time), top.turn_then) < 2e-14 * unstable * std::fmax(1, length(top.spin) * top.time / 10));
@@ -158,7 +158,7 @@ TEST_CASE("an unstable spin flips on time, whatever the step")
         wing.run(10.0 / steps, steps, std::ref(exact));
         CHECK(length(wing.spin_B() - Vec3{9.1429206965016778e-3, -9.9999876110424964, 1.5772729522424334e-2}) < 5e-8);
     }
-    // The flip comes later by (2/5.77) ln 10 s per decade of the start's offset; one step sees it at 1e-12 too.
+    // The flip comes later by (2/5.77) ln 10 s per decade of the initial offset; one step finds it at 1e-12 as well.
     const PrincipalAxes body = principal_axes(member({3, 2, 1}));
     double before = 0;
     for (const double offset : {1e-3, 1e-6, 1e-9, 1e-12})
@@ -203,7 +203,7 @@ TEST_CASE("degenerate tops: ball, disc, rod, needle, rest, and the unstable axis
     CHECK(attitude_error(tiny.orientation, usual.orientation) < 1e-14);
 }
 
-TEST_CASE("a frame that is not principal turns the same body the same way")
+TEST_CASE("a body in a frame that is not principal rotates in the same way")
 {
     const Quat tilt = exp_rotation({0.3, -1.1, 0.7});
     const Mat3 R = rotation_matrix(tilt);
@@ -214,7 +214,7 @@ TEST_CASE("a frame that is not principal turns the same body the same way")
     CHECK(attitude_error(tilted.orientation * tilt, straight.orientation) < 3e-13);
 }
 
-TEST_CASE("the parabola is exact, and the ledger too")
+TEST_CASE("the parabola is exact, and so is the ledger")
 {
     for (const int per_second : {1, 60, 960})
     {
@@ -228,7 +228,7 @@ TEST_CASE("the parabola is exact, and the ledger too")
     }
 }
 
-TEST_CASE("what is not in closed form is advanced by a stated method, told once")
+TEST_CASE("motion without a closed form is advanced by a documented method, which is reported once")
 {
     const auto drag = [](double, const Body& b) { return Body::Load{-0.1 * b.velocity(), {}}; };
     Solver<ExactRows> exact(advance_exact);

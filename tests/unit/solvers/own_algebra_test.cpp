@@ -1,4 +1,4 @@
-// What stays own beside Eigen in the solvers: what Eigen's would lose.
+// Linear algebra of the solvers that is not Eigen's: cases in which Eigen's functions lose digits.
 #include "objects/solvers/dense_view.h"
 #include "objects/solvers/matrix_exponential.h"
 
@@ -8,7 +8,7 @@
 
 using namespace plab::solvers;
 
-TEST_CASE("LU: Eigen's takes rows as they come, and loses all digits where their units differ")
+TEST_CASE("LU: Eigen's does not scale rows, and loses all digits if their units differ")
 {
     // x = (1, 1). The first row is in small units: its pivot of 1 is the smallest of its row by far.
     Eigen::Matrix2d a;
@@ -25,9 +25,9 @@ TEST_CASE("LU: Eigen's takes rows as they come, and loses all digits where their
     CHECK(ours[1] == doctest::Approx(1).epsilon(1e-15));
 }
 
-TEST_CASE("exp(A): Eigen's does not balance, and loses digits where units differ")
+TEST_CASE("exp(A): Eigen's does not balance, and loses digits if units differ")
 {
-    // A turn by 1 rad between a place and a speed whose units are 1e12 apart: cos(1) on the diagonal.
+    // A rotation by 1 rad between a position and a speed whose units are 1e12 apart: cos(1) on the diagonal.
     Eigen::Matrix2d a;
     a << 0, 1e12, -1e-12, 0;
     const Eigen::Matrix2d theirs = a.exp();

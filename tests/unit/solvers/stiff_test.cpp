@@ -61,9 +61,9 @@ TEST_CASE("dense factors solve real and complex systems, and refuse singular one
     CHECK(c[1].imag() == doctest::Approx(1));
 }
 
-TEST_CASE("dense factors of more than one panel, with rows of units that are far apart; who wants them to stop is asked")
+TEST_CASE("dense factors of more than one panel, with rows whose units are far apart; an interruption is checked")
 {
-    // Rows of places and of speeds: the second half is 1e9 times as large. x = (1, 2, 3, ...).
+    // Rows of positions and of speeds: the second half is 1e9 times as large. x = (1, 2, 3, ...).
     constexpr std::size_t n = 70;
     Factors<double> factors;
     const auto fill = [&]
@@ -136,7 +136,7 @@ TEST_CASE("HIRES, eight reactions")
     CHECK(digits > 8);
 }
 
-TEST_CASE("springs from soft to 1e12 N/m at steps of 10 ms; books close")
+TEST_CASE("springs from soft to 1e12 N/m at steps of 10 ms; the ledger closes")
 {
     for (const double k : {1e2, 1e6, 1e12})
     {
@@ -164,7 +164,7 @@ TEST_CASE("a jump of the wind on stiff drag, and quadratic drag")
     CHECK(q.place[0] == doctest::Approx(kDragPlaceAt5).epsilon(1e-9));
 }
 
-TEST_CASE("Radau5 turns bodies, and its trials see the same bits")
+TEST_CASE("Radau5 rotates bodies, and its trials give the same bits")
 {
     Radau solver(1e-10, 1e-13), trial(1e-10, 1e-13);
     trial.trial = true;
@@ -174,7 +174,7 @@ TEST_CASE("Radau5 turns bodies, and its trials see the same bits")
     CHECK(tried.orientation == box.orientation);
 }
 
-TEST_CASE("Radau5 gives up in bounded time where nothing can be done")
+TEST_CASE("Radau5 gives up in bounded time on an impossible problem")
 {
     Radau solver(1e-9, 1e-12);
     Points nan({1}, {0}, [](double t, const auto&, const auto&, auto& a) { a[0] = t > 0.5 ? std::nan("") : 0.0; });
@@ -189,7 +189,7 @@ TEST_CASE("Radau5 gives up in bounded time where nothing can be done")
     CHECK(std::isfinite(p.place[0]));
 }
 
-TEST_CASE("the implicit midpoint rule is of order 2, with drag and with turning bodies")
+TEST_CASE("the implicit midpoint rule is of order 2, with drag and with rotating bodies")
 {
     const auto oscillator = [](int steps)
     {
@@ -218,7 +218,7 @@ TEST_CASE("the implicit midpoint rule is of order 2, with drag and with turning 
     CHECK(order_of(box, 250) == doctest::Approx(2).epsilon(0.02));
 }
 
-TEST_CASE("the implicit midpoint rule keeps a spring's energy at any stiffness, and drains no more than dampers do")
+TEST_CASE("the implicit midpoint rule conserves a spring's energy at any stiffness, and dissipates no more than dampers do")
 {
     for (const double k : {1e2, 1e6, 1e12})
     {
@@ -234,10 +234,10 @@ TEST_CASE("the implicit midpoint rule keeps a spring's energy at any stiffness, 
     Midpoint solver;
     Points wind({0}, {0}, [](double, const auto&, const auto& v, auto& a) { a[0] = -1e6 * (v[0] - 10); });
     wind.run(0.01, 3, std::ref(solver));
-    CHECK(std::fabs(wind.speed() - 10) < 10.001);  // A-stable, not L-stable: it rings about the answer
+    CHECK(std::fabs(wind.speed() - 10) < 10.001);  // A-stable, not L-stable: it oscillates about the solution
 }
 
-TEST_CASE("the implicit midpoint rule halves its step where it must, and says where it failed")
+TEST_CASE("the implicit midpoint rule halves its step if necessary, and reports where it failed")
 {
     Midpoint solver;
     Points wall({1}, {-1}, [](double, const auto& q, const auto&, auto& a) { a[0] = 1e4 * std::exp(-2e3 * q[0]); });

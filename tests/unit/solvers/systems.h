@@ -1,4 +1,4 @@
-/// Systems with known solutions, as the host would present them to a solver.
+/// Systems with known solutions, presented to a solver as by the host.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ namespace plab::test
 /// One step of a solver on a system.
 using Advance = std::function<void(double h, DynamicSystem&)>;
 
-/// Events of a solver, kept.
+/// Keeps the events of a solver.
 class Events final : public EventSink
 {
 public:
@@ -93,7 +93,7 @@ public:
     virtual void evaluate_forces(double t) = 0;
     /// W, of the forces at the state just evaluated; what the ledger sums.
     virtual double power() const { return 0; }
-    /// Runs n steps of length h; what moved goes into the state, the chart starts anew.
+    /// Runs n steps of length h; the displacement goes into the state, and the chart starts again.
     void run(double h, int steps, const Advance& advance)
     {
         for (int i = 0; i < steps; ++i)

@@ -1,5 +1,5 @@
-// Closed forms of joints, springs, gears and contacts against digits from elsewhere: mpmath, 30 digits, by quadrature or from the
-// formulas beside each; never from this code.
+// Closed forms of joints, springs, gears and contacts against independent digits: mpmath, 30 digits, by quadrature or from the
+// formula given with each; never from this code.
 #include <numbers>
 
 #include "study/exact/exact.h"
@@ -70,7 +70,7 @@ Scene slope(const std::string& velocity, const std::string& friction = "0.6")
 
 }  // namespace
 
-TEST_CASE("a body on a hinge or a ball is the pendulum of its inertia: period 4 K(1/2) / sqrt(g/L) from the level")
+TEST_CASE("a body on a hinge or a ball joint is the pendulum of its inertia: period 4 K(1/2) / sqrt(g/L) from the horizontal")
 {
     const double period = 2.36784194757623745;
     for (const std::string joint : {"Constraint/Ball", "Constraint/Hinge' axis='0 1 0"})
@@ -152,7 +152,7 @@ TEST_CASE("gears: six meshes of ten to one both ways, a ring that closes, an eng
     CHECK(has(refusal(broken, "gears"), "is contradictory"));
 }
 
-TEST_CASE("a box on a slope: down, up and back, held, across")
+TEST_CASE("a box on a slope: sliding down, up and back, at rest, and across")
 {
     const double p = 3.3552176060248105, f = 0.6 * 9.218384609909762;
     CHECK(near(exact_at(slope("2 0 0"), "slide", "box", 0.5).position.x, 1 + 0.125 * (p - f), 1e-15));
@@ -175,7 +175,7 @@ TEST_CASE("a box on a slope: down, up and back, held, across")
     CHECK(distance(begin.velocity, {0.5, -1.5, 0}) < 1e-12);
 }
 
-TEST_CASE("a rocking block: times of impact by quadrature, Housner's factor, at rest in the end")
+TEST_CASE("a rocking block: times of impact by quadrature, Housner's factor, and rest at the end")
 {
     const Scene s = Scene::file("scenes/studies/rocking_block.xml");
     const std::vector<double> times = contact_times(s, "rocking", 1.6);
@@ -187,7 +187,7 @@ TEST_CASE("a rocking block: times of impact by quadrature, Housner's factor, at 
     CHECK(near(tilt(0), 2 * std::sin(0.05), 1e-15));
     CHECK(near(tilt(0.655863215804936542), -2 * std::sin(0.5 * 0.0843380236142950377), 1e-13));
     CHECK(near(tilt(1.23129222934816207), 2 * std::sin(0.5 * 0.0720548723145059452), 1e-13));
-    // No jump of the place at an impact; the turning speed keeps 0.9423...
+    // No jump of the position at an impact; the angular speed is multiplied by 0.9423...
     const ExactState before = exact_at(s, "rocking", "block", times[0] - 1e-9), after = exact_at(s, "rocking", "block", times[0] + 1e-9);
     CHECK(distance(before.position, after.position) < 1e-8);
     CHECK(near(after.angular_velocity.y / before.angular_velocity.y, 0.942307692307692308, 1e-7));
@@ -201,7 +201,7 @@ TEST_CASE("a rocking block: times of impact by quadrature, Housner's factor, at 
     CHECK(exact_at(squat, "rest", "box", 3).position.z == 0.1);
 }
 
-TEST_CASE("a ball on a contact spring: when it touches, how deep, how fast it leaves")
+TEST_CASE("a ball on a contact spring: time of contact, depth, and speed of separation")
 {
     const Scene s = Scene::file("scenes/studies/contact_spring.xml");
     const double touch = 0.451523640985730904, lasts = 0.0319950863080954309;
@@ -212,7 +212,7 @@ TEST_CASE("a ball on a contact spring: when it touches, how deep, how fast it le
     CHECK(has(refusal(Scene::file("scenes/studies/bounce.xml"), "spring-bounce"), "no Response/Penalty"));
 }
 
-TEST_CASE("statics: columns stand; what topples, hangs or moves is refused")
+TEST_CASE("statics: columns are accepted; scenes that topple, hang or move are refused")
 {
     CHECK(exact_at(Scene::file("scenes/studies/stack.xml"), "rest", "cube20", 2).position.z == 19.5);
     const auto pair = [](const std::string& upper)

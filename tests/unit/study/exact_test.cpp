@@ -1,4 +1,4 @@
-// Closed forms against digits that were computed elsewhere (113-bit arithmetic, or 30-digit formulas).
+// Closed forms against independently computed digits (113-bit arithmetic, or 30-digit formulas).
 #include <numbers>
 
 #include "study/exact/elliptic.h"
@@ -132,7 +132,7 @@ TEST_CASE("B1: the damped oscillator, weak, critical and over-damped")
     CHECK(near(over.velocity.x, 100 * (std::exp(-15.0) - std::exp(-0.6)) / 48, 1e-14));
 }
 
-TEST_CASE("a pendulum keeps its energy, repeats itself, and goes round if it is fast enough")
+TEST_CASE("a pendulum conserves its energy, is periodic, and rotates if it is fast enough")
 {
     const auto scene = [](const std::string& speed)
     {
@@ -157,7 +157,7 @@ TEST_CASE("a pendulum keeps its energy, repeats itself, and goes round if it is 
     CHECK(near(exact_at(rest, "pendulum", "a", 4 * quarter_period(std::cos(1.25) * std::cos(1.25)) / 2).angle, 2.5, 1e-13));
 }
 
-TEST_CASE("a bouncing ball comes to rest when the sum of its flights is over")
+TEST_CASE("a bouncing ball comes to rest at the sum of its flight times")
 {
     const Scene s = Scene::file("scenes/studies/bounce.xml");
     const double first = std::sqrt(2 / 9.81), up = 0.8 * 9.81 * first;
@@ -170,7 +170,7 @@ TEST_CASE("a bouncing ball comes to rest when the sum of its flights is over")
     CHECK(near((*solution)->contacts(1)[0].time, first, 1e-15));
 }
 
-TEST_CASE("a scene that a closed form does not describe is refused, and why")
+TEST_CASE("a scene that a closed form does not describe is refused with the reason")
 {
     const Scene bounce = Scene::file("scenes/studies/bounce.xml"), box = Scene::file("scenes/studies/free_box.xml");
     CHECK(has(refusal(bounce, "parabola"), "bodies may collide"));

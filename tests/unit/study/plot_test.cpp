@@ -1,4 +1,4 @@
-// Pictures: scales, ticks, the front, and that what is written is well-formed.
+// Pictures: scales, ticks, the front, and that the output is well-formed.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -86,7 +86,7 @@ TEST_CASE("scales map their ends to 0 and 1, and numbers are short")
     CHECK(short_number(0) == "0");
 }
 
-TEST_CASE("the front holds whom nobody beats")
+TEST_CASE("the front holds the points that no other point dominates")
 {
     const StudyResult r = sample();
     CHECK(pareto_front(r) == std::vector<std::size_t>{0, 2, 3});
@@ -99,7 +99,7 @@ TEST_CASE("the front holds whom nobody beats")
         std::any_of(reported.begin(), reported.end(), [](const auto& s) { return has(s, "One run gave no result (not finite): Broken"); }));
 }
 
-TEST_CASE("pictures are well-formed SVG and PNG; the report holds them, and nothing from outside")
+TEST_CASE("pictures are well-formed SVG and PNG; the report contains them, without external resources")
 {
     const StudyResult r = sample();
     const auto pictures = pictures_of(r);

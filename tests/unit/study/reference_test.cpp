@@ -1,4 +1,4 @@
-// What three runs say about the truth: extrapolated where they converge as a method does, doubted where they do not.
+// The estimate of the solution from three runs: extrapolated if they converge like a method, marked as uncertain if they do not.
 #include "study/reference.h"
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@ using namespace plab::study;
 namespace
 {
 
-/// Three runs whose values at t = 1 s are given; the truth is known to the caller.
+/// Three runs whose values at t = 1 s are given; the solution is known to the caller.
 Reference three(double y1, double y2, double y4)
 {
     std::vector<RunRecord> runs(3);
@@ -28,7 +28,7 @@ Reference three(double y1, double y2, double y4)
     return auto_reference(runs, "Algorithm", "0.1");
 }
 
-/// Runs with errors kSmall h^p at h = 1/10, 1/20, 1/40 from the truth 2: so small that mixed errors have their order, too.
+/// Runs with errors kSmall h^p at h = 1/10, 1/20, 1/40 from the solution 2: so small that mixed errors have their order, too.
 constexpr double kSmall = 1e-4;
 Reference of_order(double p)
 {
@@ -62,7 +62,7 @@ TEST_CASE("below order 0.9 nothing is extrapolated: not converged, and an uncert
         CHECK(!r.converges);
         CHECK(!r.converged[0]);
         CHECK(r.time_series[0].values[1] == 2 + kSmall * std::pow(0.025, p));
-        // What goes on at the order seen ends where the uncertainty says; no wider, unless the runs differ by more.
+        // Continued convergence at the observed order ends within the uncertainty; it is no wider, unless the runs differ by more.
         CHECK(r.uncertainty[0].series_absolute >= error_of(r) * (1 - 1e-9));
         const double most = kSmall * (std::pow(0.1, p) - std::pow(0.05, p));
         CHECK(r.uncertainty[0].series_absolute < 1.01 * std::max(error_of(r), most));
@@ -72,7 +72,7 @@ TEST_CASE("below order 0.9 nothing is extrapolated: not converged, and an uncert
     }
 }
 
-TEST_CASE("runs that come no closer are doubted by more than they differ")
+TEST_CASE("runs that do not converge get an uncertainty larger than their differences")
 {
     for (const auto& [y1, y2, y4] : {std::tuple{2.1, 1.9, 2.1}, {2.1, 2.2, 2.4}, {2.0, 2.001, 2.1}, {2.0, 2.0, 2.1}})
     {
@@ -84,7 +84,7 @@ TEST_CASE("runs that come no closer are doubted by more than they differ")
     }
 }
 
-TEST_CASE("the same to round-off is converged; an order that no method has is not")
+TEST_CASE("runs that agree to round-off have converged; runs with an implausible order have not")
 {
     const Reference same = three(2, 2 + 4e-16, 2);
     CHECK(same.converges);
@@ -95,7 +95,7 @@ TEST_CASE("the same to round-off is converged; an order that no method has is no
     CHECK(jump.words.find("unchanged: ball.x") != std::string::npos);
 }
 
-TEST_CASE("an uncertain reference is told")
+TEST_CASE("an uncertain reference is reported")
 {
     StudyResult r;
     r.reference = of_order(0.62);

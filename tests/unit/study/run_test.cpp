@@ -1,4 +1,4 @@
-// One run: what it notes is what the scene did, and a run that goes wrong is a record that says so.
+// One run: its record is what happened in the scene, and a run that fails gives a record with the failure.
 #include "study/run.h"
 
 #include <map>
@@ -45,7 +45,7 @@ std::uint64_t count_nothing() { return 42; }
 
 }  // namespace
 
-TEST_CASE("a recorded run ends in the state that the scene ends in; so does a timed one")
+TEST_CASE("a recorded run ends in the final state of the scene; so does a timed one")
 {
     const std::string file = "scenes/fan_and_balloons.xml";
     Scene scene = Scene::file(file);
@@ -110,7 +110,7 @@ model::SceneSpec compiled_file(const std::string& file)
     return scene.take();
 }
 
-/// What an observer of the metrics adds up over a run.
+/// What an observer of the metrics accumulates over a run.
 struct Live
 {
     std::vector<publish::Metrics> samples;
@@ -149,7 +149,7 @@ TEST_CASE("live metrics and a study agree on energy, momenta, violation, evaluat
     {
         const char* file;
         int per_second, steps;
-        bool by_work;  ///< energy that nobody put in: kinetic less all work
+        bool by_work;  ///< energy without a source: kinetic less all work
     };
     for (const Run& run : {Run{"scenes/fan_and_balloons.xml", 240, 960, true}, Run{"scenes/studies/double_pendulum.xml", 120, 120, false},
                            Run{"scenes/studies/bounce.xml", 120, 240, true}, Run{"scenes/studies/stack.xml", 60, 30, true},
@@ -186,7 +186,7 @@ TEST_CASE("live metrics and a study agree on energy, momenta, violation, evaluat
     }
 }
 
-TEST_CASE("a spring with a damper loses energy, and that is no error")
+TEST_CASE("a spring with a damper loses energy, and that is not an error")
 {
     const RunRecord record =
         record_run(library(),
@@ -197,24 +197,24 @@ TEST_CASE("a spring with a damper loses energy, and that is no error")
     for (const double d : record.energy.drift) CHECK(std::fabs(d) < 1e-4 * record.energy.scale);
 }
 
-TEST_CASE("a stiff spring at a long step blows up: told as that, and no further than that")
+TEST_CASE("a stiff spring at a long step diverges: this is reported, and the run ends there")
 {
     const model::SceneSpec spec = compiled_file("scenes/studies/spring_stand.xml");
     auto explicit_one = apply(spec, library(), {{"solver", "RungeKutta4"}, {"dt", "1/60"}});
     REQUIRE(explicit_one.ok());
     RunOptions how;
     how.until = 2, how.quantities = {"table.position.z"};
-    const RunRecord blown = record_run(library(), *explicit_one, how);
-    CHECK(blown.outcome == Outcome::BlewUp);
-    CHECK(name_of(blown.outcome) == "blew up");
-    CHECK(blown.why.find("table") != std::string::npos);
-    CHECK(blown.reached < 2);
+    const RunRecord failed = record_run(library(), *explicit_one, how);
+    CHECK(failed.outcome == Outcome::BlewUp);
+    CHECK(name_of(failed.outcome) == "blew up");
+    CHECK(failed.why.find("table") != std::string::npos);
+    CHECK(failed.reached < 2);
     auto exponential = apply(spec, library(), {{"solver", "Exponential"}, {"dt", "1/60"}});
     REQUIRE(exponential.ok());
     CHECK(record_run(library(), *exponential, how).ok());
 }
 
-TEST_CASE("what does not converge goes on, and is counted as a warning; a solver that gives up has failed")
+TEST_CASE("a run that does not converge continues, and is counted as a warning; a solver that gives up has failed")
 {
     const model::SceneSpec stack = compiled_file("scenes/studies/stack.xml");
     auto few = apply(stack, library(), {{"manager", "SequentialImpulse"}, {"manager.max_iterations", "1"}});
@@ -234,7 +234,7 @@ TEST_CASE("what does not converge goes on, and is counted as a warning; a solver
     CHECK((!gave_up.ok() || !gave_up.warnings.empty()));
 }
 
-TEST_CASE("a run that goes wrong is a record with the reason")
+TEST_CASE("a run that fails is a record with the reason")
 {
     const RunRecord lost =
         record_run(library(), compiled(kBall + force("driven:add_force(driven.position * (1e300 * 10 ^ (400 * t)))")), options(2));
@@ -272,7 +272,7 @@ TEST_CASE("a swap inside a run is carried out and answered; one that is refused 
     CHECK(record.swaps[0].step == 40);
     CHECK(record.swaps[0].swaps.front().to == "Solver/SemiImplicitEuler");
     CHECK(record.allocations == 0);
-    // Semi-implicit Euler from t = 0.4 on: late by g dt/2 a second.
+    // Semi-implicit Euler from t = 0.4 on: late by g dt/2 per second.
     CHECK(record.time_series[0].values.back() == doctest::Approx(1 - 0.5 * 9.81 - 0.6 * 9.81 * 0.005).epsilon(1e-9));
     how.swaps.push_back({60, "nobody", "Solver/SemiImplicitEuler"});
     const RunRecord refused = record_run(library(), compiled(kBall + kWeight), how);
@@ -288,7 +288,7 @@ TEST_CASE("a swap inside a run is carried out and answered; one that is refused 
 
 TEST_CASE("allocations are counted in warm steps: not in the first ones, nor those after a swap")
 {
-    // Each step is seen to allocate once.
+    // Each step allocates once.
     static std::uint64_t calls = 0;
     const auto count = [](double until, std::vector<SwapAt> swaps)
     {

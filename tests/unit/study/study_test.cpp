@@ -63,7 +63,7 @@ std::vector<RecordedContact> impacts(std::initializer_list<double> times)
 
 }  // namespace
 
-TEST_CASE("all combinations, dt fastest, algorithms in front")
+TEST_CASE("all combinations: dt varies fastest, algorithms slowest")
 {
     const auto algorithm = parse_algorithm("fast: contact.response=None");
     REQUIRE(algorithm.ok());
@@ -80,7 +80,7 @@ TEST_CASE("all combinations, dt fastest, algorithms in front")
     CHECK(!parse_algorithm("solver").ok());
 }
 
-TEST_CASE("each run has a name of its own, and no setting is overridden unseen")
+TEST_CASE("each run has a name of its own, and no setting is overridden silently")
 {
     const auto why = [](const std::vector<std::string>& algorithms, const std::vector<std::string>& vary)
     {
@@ -102,7 +102,7 @@ TEST_CASE("each run has a name of its own, and no setting is overridden unseen")
     CHECK(has(why({"a: x=A dt=1/60"}, {"dt=1/60,1/30"}), "dt is set by --algorithm and varied"));
 }
 
-TEST_CASE("settings: types, parameters, entries of scripts; what does not hold is said")
+TEST_CASE("settings: types, parameters, entries of scripts; invalid ones are reported")
 {
     const model::SceneSpec scene = scene_of("scenes/studies/bounce.xml");
     const auto done =
@@ -138,7 +138,7 @@ TEST_CASE("instants that step lengths share")
     CHECK(shared({"2/3", "1/2"}).seconds == 2.0);
 }
 
-TEST_CASE("errors are mixed and relative to how far the reference goes; attitudes are angles")
+TEST_CASE("errors are mixed and relative to the range of the reference; attitudes are angles")
 {
     Quantity q;
     q.width = 2;
@@ -214,7 +214,7 @@ TEST_CASE("auto: Richardson finds the order, and its uncertainty holds against t
     CHECK(r.points[0].error() == doctest::Approx(exact.points[0].error()).epsilon(0.01));
 }
 
-TEST_CASE("a reference from a file: the course that a study wrote")
+TEST_CASE("a reference from a file: the trajectory that a study wrote")
 {
     const std::string file = std::string(PLAB_BINARY_DIR) + "/unit_study_reference.csv";
     Plan p = plan("scenes/studies/projectile.xml", {"solver=SemiImplicitEuler", "dt=1/60"}, "exact:parabola",
@@ -242,7 +242,7 @@ TEST_CASE("bounces: exact with a resolution, late without")
     CHECK(r.points[0].contacts.worst_time_error > 1e-3);
 }
 
-TEST_CASE("auto: an uncertainty that holds where the error is known, for order 2 and for round-off")
+TEST_CASE("auto: the uncertainty is correct where the error is known, for order 2 and for round-off")
 {
     for (const auto& [solver, order] : {std::pair<std::string, double>{"StoermerVerlet", 2}, {"Exponential", 0}})
     {
@@ -258,7 +258,7 @@ TEST_CASE("auto: an uncertainty that holds where the error is known, for order 2
     }
 }
 
-TEST_CASE("a list of numbers: all of it, or one; the name that plabd's trace has")
+TEST_CASE("a list of numbers: all of it or one element, with the name in plabd's trace")
 {
     const StudyResult r =
         study_of(plan("scenes/studies/robertson.xml", {"solver=Radau5", "dt=1/10"}, "none", {"reaction.values", "reaction.values.2"}, 1));
@@ -272,7 +272,7 @@ TEST_CASE("a list of numbers: all of it, or one; the name that plabd's trace has
     CHECK(has(run_study(library(), plan("scenes/studies/robertson.xml", {}, "none", {"reaction.values.4"}, 1)).error().text(), "values"));
 }
 
-TEST_CASE("the response by rows gets its manager, which can be chosen and set")
+TEST_CASE("the response by rows gets its manager, which can be selected and set")
 {
     const model::SceneSpec scene = scene_of("scenes/studies/bounce.xml");
     const auto done = apply(scene, library(),
@@ -287,7 +287,7 @@ TEST_CASE("the response by rows gets its manager, which can be chosen and set")
     CHECK(s.load(*done).ok());
 }
 
-TEST_CASE("a run that is lost is no small error: it is named, left out of the front, and timed up to there")
+TEST_CASE("a failed run does not count as a small error: it is named, left out of the front, and timed up to its failure")
 {
     const StudyResult r = study_of(plan("scenes/studies/spring_stand.xml", {"solver=RungeKutta4,Exponential", "dt=1/60,1/7680"},
                                         "exact:oscillator", {"table.position.z"}, 0.1));
@@ -322,7 +322,7 @@ TEST_CASE("one run has no range, and runs that agree have none either")
     CHECK(energy({0, 0}) == "Energy is kept to round-off by all.");
 }
 
-TEST_CASE("nothing to study is an error that says what would be right")
+TEST_CASE("a plan without anything to study is an error that says what would be right")
 {
     const std::string file = "scenes/studies/projectile.xml";
     const auto why = [](const Plan& p)

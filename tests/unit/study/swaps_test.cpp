@@ -1,4 +1,4 @@
-// Swaps in all runs of a study: by step or by time, checked before anything runs, told if a run refuses one.
+// Swaps in all runs of a study: by step or by time, checked before anything runs, reported if a run refuses one.
 #include "study/swaps.h"
 
 #include "model/values.h"
@@ -23,7 +23,7 @@ std::vector<model::StepLength> lengths(std::initializer_list<const char*> texts)
     return out;
 }
 
-/// What is wrong with a swap in runs of 2 s; "none" and its time in ms if nothing is.
+/// The error of a swap in runs of 2 s; "none" and its time in ms if there is no error.
 std::string settled(const std::string& text, const std::vector<model::StepLength>& of)
 {
     auto swap = parse_swap(text);
@@ -52,7 +52,7 @@ std::string wrong(const Plan& p)
 {
     const auto before = check_swaps(library(), p);
     const auto done = run_study(library(), p);
-    CHECK_MESSAGE(before.ok() == done.ok(), "what is checked before is what the study would say");
+    CHECK_MESSAGE(before.ok() == done.ok(), "the check before gives the verdict of the study");
     return before ? "none" : before.error().text();
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("a step is a whole number, a time has a unit; both come before the end
     CHECK(has(settled("9000000000000000000:solver=Exact", one), "the runs end at"));
 }
 
-TEST_CASE("a step of several lengths is no time; a time has to be a step of all")
+TEST_CASE("with several step lengths a step is not a time; a time has to be a step of all")
 {
     const auto two = lengths({"1/60", "1/50"});
     CHECK(has(settled("30:solver=Exact", two), "step 30 is at 0.5 s with dt = "));
@@ -106,7 +106,7 @@ TEST_CASE("ids and types are checked before the runs, with the short names of --
     CHECK(wrong(plan("bounce.xml", {"dt=1/60"}, {"0:contact.response=Rows", "1:contact.response.manager=SoftStep"}, "none")) == "none");
 }
 
-TEST_CASE("a swap that one algorithm does not know is that run's result; a reference that cannot make it is an error")
+TEST_CASE("a swap that one algorithm does not support is that run's result; a reference that cannot make it is an error")
 {
     const StudyResult r =
         study_of(plan("bounce.xml", {"contact.response=Rows,Impulse", "dt=1/60"}, {"0.5s:contact.response.manager=SoftStep"}, "none"));
@@ -136,7 +136,7 @@ TEST_CASE("all runs and the reference swap at one time: the order is the method'
     CHECK(study_of(p).reference.order[0] == doctest::Approx(1).epsilon(0.01));
 }
 
-TEST_CASE("a swap that a run refuses is its outcome, and the console's")
+TEST_CASE("a swap that a run refuses is its outcome, and is reported on the console")
 {
     const std::string body =
         "<component id='motor' type='State/Shaft' inertia='1'/><component id='out' type='State/Shaft' inertia='1'/>"

@@ -40,7 +40,7 @@ std::vector<Json> lines(const std::string& text)
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// A participant with writers, pLab's and a stranger's.
+/// A participant with writers, of pLab's types and of a foreign one.
 class Bus
 {
 public:
@@ -132,7 +132,7 @@ stranger_Reading reading()
 
 }  // namespace
 
-TEST_CASE("list shows pLab's topics and those of strangers")
+TEST_CASE("list shows pLab's topics and foreign ones")
 {
     Writers writers;
     const wire::Entity writer = writers.bus.foreign(stranger_Reading_desc, "readings", true);
@@ -159,7 +159,7 @@ TEST_CASE("list shows pLab's topics and those of strangers")
     CHECK(has(table.output, "(default)"));
 }
 
-TEST_CASE("a stranger's sample is printed with its names, as a tree and as JSON")
+TEST_CASE("a foreign sample is printed with its names, as a tree and as JSON")
 {
     Bus bus;
     const wire::Entity writer = bus.foreign(stranger_Reading_desc, "readings", true);
@@ -190,7 +190,7 @@ TEST_CASE("an appendable type, which only XCDR2 carries, is read as well")
     CHECK(Json::parse(out.output)["sample"].dump() == R"({"number":-5,"words":["one","three"],"color":"RED","value":0.25})");
 }
 
-TEST_CASE("what is not understood is said by name, and is measured all the same")
+TEST_CASE("types that are not understood are reported by name, and are measured nevertheless")
 {
     Bus bus;
     const wire::Entity writer = bus.foreign(stranger_Undecided_desc, "undecided", false);
@@ -207,10 +207,10 @@ TEST_CASE("what is not understood is said by name, and is measured all the same"
     CHECK(has(labelled.errors, "a bounded string in its key"));
 }
 
-TEST_CASE("instances that have gone are told by their key")
+TEST_CASE("disposed instances are reported by their key")
 {
     Writers writers;
-    // A key as long as ids are: Cyclone DDS has a place of 16 bytes for those that it takes for short ones.
+    // A key as long as ids are: Cyclone DDS has a field of 16 bytes for those that it takes for short ones.
     const plab_v2_SceneObject red = object("red.arm.upper.hinge.with_a_long_name"), blue = object("blue");
     Process process(topics_command({"print", "plab/objects", "--partition", writers.server, "--json", "-n", "3"}));
     REQUIRE(writers.objects.write(red) == 0);
@@ -251,7 +251,7 @@ TEST_CASE("rate and bandwidth measure what is written")
     CHECK(has(human.output, "stddev"));
 }
 
-TEST_CASE("a topic that nobody writes is 3, with the nearest name; wrong use is 2; Ctrl-C is a normal end")
+TEST_CASE("a topic without writers gives 3, with the nearest name; wrong use gives 2; Ctrl-C is a normal end")
 {
     Writers writers;
     const Outcome none = topics({"print", "plab/stats", "--timeout", "0.5"});

@@ -40,7 +40,7 @@ public:
 
     bool is_watched() const { return frames_.readers() > 0; }
 
-    void tell_status(std::int64_t step)
+    void publish_status(std::int64_t step)
     {
         plab_v2_Server s{};
         s.name = text(name_), s.version = text("0"), s.host = text("test"), s.scene_file = text("fall.xml"), s.overload = text("");
@@ -48,7 +48,7 @@ public:
         (void)server_.write(s);
     }
 
-    void tell_scene()
+    void publish_scene()
     {
         std::vector<plab_v2_View> cameras{{text("behind"), {0, 8, 2}, {0, 0, 1.5}, {0, 0, 1}, 0.7},
                                           {text("front"), {0, -8, 2}, {0, 0, 1.5}, {0, 0, 1}, 0.7}};
@@ -57,24 +57,24 @@ public:
         s.objects = 3, s.interactions = static_cast<std::uint32_t>(script_.interactions);
         point_to(s.cameras, cameras);
         (void)scene_.write(s);
-        tell_shape("round", "sphere", {0.5, 0, 0});
-        tell_shape("flat", "plane", {0, 0, 0});
-        tell_shape("cube", "box", {0.4, 0.4, 0.4});
-        tell_object("ball", 1, "body", "dynamic", {0, 0, 3}, {1, 0, 0}, "round");
-        tell_object("floor", 2, "body", "static", {0, 0, 0}, {-1, -1, -1}, "flat");
-        tell_object("wheel", 3, "shaft", "dynamic", {2, 0, 1}, {-1, -1, -1}, "");
+        publish_shape("round", "sphere", {0.5, 0, 0});
+        publish_shape("flat", "plane", {0, 0, 0});
+        publish_shape("cube", "box", {0.4, 0.4, 0.4});
+        publish_object("ball", 1, "body", "dynamic", {0, 0, 3}, {1, 0, 0}, "round");
+        publish_object("floor", 2, "body", "static", {0, 0, 0}, {-1, -1, -1}, "flat");
+        publish_object("wheel", 3, "shaft", "dynamic", {2, 0, 1}, {-1, -1, -1}, "");
     }
 
-    void tell_interactions(const std::string& response, std::int64_t since)
+    void publish_interactions(const std::string& response, std::int64_t since)
     {
-        tell_interaction("gravity", "Field/Gravity", 0);
-        tell_interaction("response", response, since);
-        for (std::size_t i = 2; i < script_.interactions; ++i) tell_interaction("wire" + std::to_string(i), "Field/Wire", 0);
+        publish_interaction("gravity", "Field/Gravity", 0);
+        publish_interaction("response", response, since);
+        for (std::size_t i = 2; i < script_.interactions; ++i) publish_interaction("wire" + std::to_string(i), "Field/Wire", 0);
     }
 
-    void tell_late_box() { tell_object("late", 4, "body", "dynamic", {-2, 0, 1}, {0, 1, 0}, "cube"); }
+    void publish_late_box() { publish_object("late", 4, "body", "dynamic", {-2, 0, 1}, {0, 1, 0}, "cube"); }
 
-    void tell_frame(std::int64_t step, std::uint64_t revision)
+    void publish_frame(std::int64_t step, std::uint64_t revision)
     {
         const double t = time_of(step), z = height_at(t);
         std::vector<plab_v2_BodyState> bodies{{1, {0, 0, z}, {1, 0, 0, 0}, {0, 0, -9.81 * t}, {0, 0, 0}}};
@@ -86,7 +86,7 @@ public:
         (void)frames_.write(f);
     }
 
-    void next_run() { ++run_, tell_scene(), tell_interactions("Response/Impulse", 0); }
+    void next_run() { ++run_, publish_scene(), publish_interactions("Response/Impulse", 0); }
     double time_of(std::int64_t step) const { return script_.first_time + static_cast<double>(step) * FakeServer::kDt; }
 
 private:
@@ -96,15 +96,15 @@ private:
         writer = wire::Writer<T>::make(participant, publisher_).take();
     }
 
-    void tell_shape(const char* id, const char* form, const plab_v2_Vector& size)
+    void publish_shape(const char* id, const char* form, const plab_v2_Vector& size)
     {
         plab_v2_Shape s{};
         s.component_id = text(id), s.type_name = text("Shape/Any"), s.form = text(form), s.size = size, s.orientation = {1, 0, 0, 0};
         (void)shapes_.write(s);
     }
 
-    void tell_object(const char* id, std::uint32_t handle, const char* kind, const char* motion, const plab_v2_Vector& position,
-                     const plab_v2_Vector& color, const char* shape)
+    void publish_object(const char* id, std::uint32_t handle, const char* kind, const char* motion, const plab_v2_Vector& position,
+                        const plab_v2_Vector& color, const char* shape)
     {
         std::vector<char*> shapes;
         if (*shape != 0) shapes.push_back(text(shape));
@@ -117,7 +117,7 @@ private:
         (void)objects_.write(o);
     }
 
-    void tell_interaction(const std::string& id, const std::string& type, std::int64_t since)
+    void publish_interaction(const std::string& id, const std::string& type, std::int64_t since)
     {
         plab_v2_Interaction i{};
         i.component_id = text(id), i.name = text(id), i.type_name = text(type), i.family = text("any"), i.run = run_, i.since = since;
@@ -138,8 +138,8 @@ private:
 
 void nap(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
-/// Plays the script from its first step on. The states of a real server come at its own pace, whoever listens; here
-/// they wait for a subscriber, so that the tests know what it can see.
+/// Plays the script from its first step on. The states of a real server come at its own pace, with or without readers; here
+/// they wait for a subscriber, so that the tests know what it receives.
 void play(const Script& script, Stage& stage, const std::stop_token& stop)
 {
     const auto start = Clock::now();
@@ -152,11 +152,11 @@ void play(const Script& script, Stage& stage, const std::stop_token& stop)
         const std::int64_t own = step - base;
         if (stage.time_of(own) > script.until + 1e-9) return;
         if (own == script.reset_at && base == 0) base = step, stage.next_run();
-        if (own == script.swap_at && base == 0) ++revision, stage.tell_interactions("Response/Penalty", own);
+        if (own == script.swap_at && base == 0) ++revision, stage.publish_interactions("Response/Penalty", own);
         if (own == script.late_at) listed_late = step + static_cast<std::int64_t>(0.1 * script.rate / FakeServer::kDt);
-        if (step == listed_late) stage.tell_late_box();
-        if (step % 4 == 0) stage.tell_frame(step - base, revision);
-        if (step % status_period == 0) stage.tell_status(step - base);
+        if (step == listed_late) stage.publish_late_box();
+        if (step % 4 == 0) stage.publish_frame(step - base, revision);
+        if (step % status_period == 0) stage.publish_status(step - base);
         std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
                                                   static_cast<double>(step + 1) * FakeServer::kDt / script.rate)));
     }
@@ -186,9 +186,9 @@ void FakeServer::serve(const std::stop_token& stop)
     const auto participant = wire::join(wire::domain_from_environment().take());
     if (!participant) return;
     Stage stage(script_, name_, *participant);
-    stage.tell_scene();
-    stage.tell_interactions("Response/Impulse", 0);
-    stage.tell_status(0);
+    stage.publish_scene();
+    stage.publish_interactions("Response/Impulse", 0);
+    stage.publish_status(0);
     while (!stop.stop_requested() && (script_.paused || !stage.is_watched())) nap(0.01);
     nap(0.05);
     if (!stop.stop_requested()) play(script_, stage, stop);

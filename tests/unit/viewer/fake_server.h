@@ -14,9 +14,9 @@ struct Script
 {
     double rate = 1;             ///< of real time; states come 60 times per simulated second
     double first_time = 0;       ///< s
-    double until = 0.5;          ///< s; then it stands still
-    bool leaves = false;         ///< or ends, in order
-    bool paused = false;         ///< stands still from the start, and sends no states
+    double until = 0.5;          ///< s; then time stops
+    bool leaves = false;         ///< or the server ends, in an orderly way
+    bool paused = false;         ///< from the start, and sends no states
     std::int64_t swap_at = -1;   ///< step from which the response is another one
     std::int64_t late_at = -1;   ///< step from which states have a box, which the catalogue lists 0.1 s later
     std::int64_t reset_at = -1;  ///< step at which run 2 begins

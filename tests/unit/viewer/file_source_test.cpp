@@ -1,4 +1,4 @@
-// States out of a recording, each with the scene of its step.
+// States from a recording, each with the scene of its step.
 #include "viewer/file_source.h"
 
 #include <doctest/doctest.h>
@@ -29,7 +29,7 @@ const std::string& response_of(const view::Moment& moment) { return moment.scene
 
 }  // namespace
 
-TEST_CASE("a recording gives all its states in their order, and the algorithm that was at work")
+TEST_CASE("a recording gives all its states in order, and the algorithm in use")
 {
     MadeOptions options;
     options.steps_after = 50;
@@ -49,7 +49,7 @@ TEST_CASE("a recording gives all its states in their order, and the algorithm th
     CHECK(*source->closed() == "the recording ends at t = 0.500 s");
 }
 
-TEST_CASE("a time in the middle is come to without reading what was before, also where frames name only what moved")
+TEST_CASE("a time in the middle is found without reading what is before it, also if frames name only moved objects")
 {
     for (const bool only_moved : {false, true})
     {
@@ -69,7 +69,7 @@ TEST_CASE("a time in the middle is come to without reading what was before, also
     }
 }
 
-TEST_CASE("a time that only a later run has is found there; a file without objects is refused")
+TEST_CASE("a time that only a later run reaches is found there; a file without objects is refused")
 {
     MadeOptions options;
     options.steps = 50, options.steps_after = 100;

@@ -22,7 +22,7 @@ using namespace plab;
 using test::FakeServer;
 using test::Script;
 
-/// Tests have a domain of their own, on this host, whatever the user's environment says.
+/// Tests have a domain of their own, on this host, whatever the user's environment.
 const bool environment_set = setenv("PLAB_DOMAIN", "57", 1) == 0 && unsetenv("CYCLONEDDS_URI") == 0 && unsetenv("PLAB_INTERFACE") == 0 &&
                              unsetenv("PLAB_SERVER") == 0;
 
@@ -127,7 +127,7 @@ double row_of_height(double z, int height)
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// The time that the program says this picture is of, s.
+/// The time of this picture that the program prints, s.
 double time_of(const std::string& text, const std::string& picture)
 {
     const std::string lead = picture + ": t = ";
@@ -146,7 +146,7 @@ TEST_CASE("pictures at named times show the ball where it falls")
                                      " --shot 0.2@behind=" + folder / "c.png");
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK(has(run.text, "a.png: t = 0.000 s, step 0\n"));
-    // The first state at or after 0.4 s; on a busy machine that may be a later one, and then it says so.
+    // The first state at or after 0.4 s; on a busy machine that may be a later one, which is then reported.
     const double later = time_of(run.text, "b.png");
     CHECK(later >= 0.4);
     CHECK(later < 0.5);
@@ -166,7 +166,7 @@ TEST_CASE("frames at equal simulated times, interpolated between the states")
 {
     FakeServer server({});
     Folder folder("frames");
-    // States come each 4/240 s: at 25 frames a second most lie between two.
+    // States come every 4/240 s: at 25 frames per second most frames lie between two states.
     const Run run = view(server, "--no-captions --at 0 --fps 25 --duration 0.2 --frames " + folder / "out");
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK(has(run.text, "5 frames, "));
@@ -178,7 +178,7 @@ TEST_CASE("frames at equal simulated times, interpolated between the states")
     CHECK_FALSE(std::filesystem::exists(folder / "out/frame_0005.png"));
 }
 
-TEST_CASE("frames that cannot be had are told, and the exit code says so")
+TEST_CASE("frames that cannot be made are reported, also by the exit code")
 {
     Folder folder("missing");
     {
@@ -201,7 +201,7 @@ TEST_CASE("frames that cannot be had are told, and the exit code says so")
     }
 }
 
-TEST_CASE("an object that the states have before the catalogue is skipped, then seen")
+TEST_CASE("an object that is in the states before it is in the catalogue is skipped, then drawn")
 {
     FakeServer server({.until = 1, .late_at = 24});
     Folder folder("late");
@@ -282,7 +282,7 @@ TEST_CASE("exit codes: no server 3, wrong use 2, what the scene does not have 1,
     CHECK(folder.files() == 1);
 }
 
-TEST_CASE("a film has the frames that were asked for")
+TEST_CASE("a film has the requested frames")
 {
     if (std::system("command -v ffmpeg > /dev/null && command -v ffprobe > /dev/null") != 0)
     {
@@ -301,7 +301,7 @@ TEST_CASE("a film has the frames that were asked for")
     CHECK(folder.files() == 1);
 }
 
-TEST_CASE("a reset while it films goes on with the new run, and is told")
+TEST_CASE("after a reset the film continues with the new run, and this is reported")
 {
     FakeServer server({.until = 0.6, .reset_at = 48});
     Folder folder("reset");

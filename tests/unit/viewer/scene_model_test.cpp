@@ -1,4 +1,4 @@
-// Catalogue and state in, geometry and text out: no bus, no picture.
+// From catalogue and state to geometry and text: no bus, no picture.
 #include "viewer/scene_model.h"
 
 #include <doctest/doctest.h>
@@ -73,7 +73,7 @@ SceneModel model_of(const link::CatalogueContents& snapshot)
 
 }  // namespace
 
-TEST_CASE("a body is drawn where its state says, its shape turned with it; a static one where the catalogue says")
+TEST_CASE("a body is drawn in the pose of its state, together with its shape; a static one in the pose of the catalogue")
 {
     SceneModel model = model_of(sample());
     State state = at(0);
@@ -90,7 +90,7 @@ TEST_CASE("a body is drawn where its state says, its shape turned with it; a sta
     CHECK(floor->pose.p.z == 9);
 }
 
-TEST_CASE("capsules and cylinders are forms of their own; a compound is drawn as its triangles")
+TEST_CASE("capsules and cylinders have shapes of their own; a compound is drawn as its triangles")
 {
     link::CatalogueContents snapshot = sample();
     snapshot.shapes["round"].form = "capsule";
@@ -107,7 +107,7 @@ TEST_CASE("capsules and cylinders are forms of their own; a compound is drawn as
     CHECK(find_form(model_of(snapshot).draw(at(0)), render::Form::Cylinder) != nullptr);
 }
 
-TEST_CASE("a shaft without shapes is an axle with a mark that turns by its angle about the axle")
+TEST_CASE("a shaft without shapes is drawn as an axle with a mark that rotates by its angle")
 {
     SceneModel model = model_of(sample());
     State state = at(0);
@@ -127,7 +127,7 @@ TEST_CASE("a shaft without shapes is an axle with a mark that turns by its angle
     CHECK(arm.z == near(-radius * std::cos(0.3)));
 }
 
-TEST_CASE("the radius of an axle follows its inertia within bounds")
+TEST_CASE("the radius of an axle depends on its inertia, within bounds")
 {
     // A disk of radius 0.1 m, length 0.05 m, density 1000: J = m r^2 / 2.
     const double mass = 1000 * std::numbers::pi * 0.1 * 0.1 * 0.05;
@@ -136,7 +136,7 @@ TEST_CASE("the radius of an axle follows its inertia within bounds")
     CHECK(axle_of_inertia(1e6).radius == 0.5);
 }
 
-TEST_CASE("what the catalogue or the state does not know yet is left out, and comes with it")
+TEST_CASE("objects that the catalogue or the state does not have yet are left out until it has them")
 {
     link::CatalogueContents snapshot = sample();
     SceneModel model = model_of(snapshot);
@@ -147,14 +147,14 @@ TEST_CASE("what the catalogue or the state does not know yet is left out, and co
     model.use(std::make_shared<link::CatalogueContents>(snapshot));
     CHECK(model.draw(state).items.size() == 5);
     CHECK(model.draw(at(0)).items.size() == 4);
-    SUBCASE("a handle of another run is somebody else's")
+    SUBCASE("a handle of another run means another object")
     {
         state.run = 2;
         CHECK(model.draw(state).items.size() == 1);
     }
 }
 
-TEST_CASE("meshes are handed over once, and again only when one changes")
+TEST_CASE("meshes are passed on once, and again only when one changes")
 {
     link::CatalogueContents snapshot = sample();
     snapshot.shapes["tetra"] = {"tetra",
@@ -197,7 +197,7 @@ TEST_CASE("a caption shows each algorithm as it was at the step of the state")
     CHECK(lines(100).back() == "contact: CDetection/Other");
 }
 
-TEST_CASE("of many interactions the most expensive are shown, and how many more there are")
+TEST_CASE("of many interactions the most expensive ones are shown, and the number of the others")
 {
     link::CatalogueContents snapshot = sample();
     snapshot.metrics.emplace();
@@ -218,7 +218,7 @@ TEST_CASE("of many interactions the most expensive are shown, and how many more 
     CHECK(lines[13] == "and 30 more");
 }
 
-TEST_CASE("an object without a colour has one of its id; a colour that is given is kept")
+TEST_CASE("an object without a colour gets one from its id; a given colour is kept")
 {
     link::CatalogueContents snapshot = sample();
     snapshot.objects["ball"].color = Vec3{0.1, 0.2, 0.3};
@@ -228,7 +228,7 @@ TEST_CASE("an object without a colour has one of its id; a colour that is given 
     CHECK(color_of_id("wheel") == color_of_id("wheel"));
 }
 
-TEST_CASE("the view: a named camera, the front one, everything; and what the options change")
+TEST_CASE("the view: a named camera, the front one, everything; and the effect of the options")
 {
     link::CatalogueContents snapshot = sample();
     snapshot.scene->cameras = {{"side", {9, 0, 0}, {}, {0, 0, 1}, 0.5}, {"front", {0, -9, 0}, {}, {0, 0, 1}, 0.6}};

@@ -27,7 +27,7 @@ struct Drawn
     double time, x;
 };
 
-/// Feeds states of these times, and gives what was drawn.
+/// Supplies states of these times, and returns what was drawn.
 std::vector<Drawn> frames_of(Sequence& sequence, const std::vector<State>& states)
 {
     std::vector<Drawn> out;
@@ -59,7 +59,7 @@ std::optional<ParseEnd> parse(std::vector<const char*> words, ViewerOptions& opt
 
 }  // namespace
 
-TEST_CASE("between two states positions and angles go linearly, orientations by the shorter way at a constant rate")
+TEST_CASE("between two states positions and angles are interpolated linearly, orientations by the shorter rotation at a constant rate")
 {
     State a = state_at(1), b = state_at(1.4);
     b.bodies[0].pose.q = {-b.bodies[0].pose.q.w, 0, 0, -b.bodies[0].pose.q.z};  // the same rotation
@@ -76,7 +76,7 @@ TEST_CASE("between two states positions and angles go linearly, orientations by 
     CHECK(interpolate(b, a, 1.0).bodies.size() == 1);
 }
 
-TEST_CASE("frames are of equal simulated times, whenever states come")
+TEST_CASE("frames are at equal intervals of simulated time, whenever states arrive")
 {
     Sequence sequence({.per_second = 10, .origin = {}, .duration = 0.5, .until = {}});
     const auto frames = frames_of(sequence, states_from(2.0, 3.0, 0.07));
@@ -100,7 +100,7 @@ TEST_CASE("the last frame is at --until, and it takes no state beyond it")
     CHECK(sequence.done());
 }
 
-TEST_CASE("frames of before the first state are counted, not invented")
+TEST_CASE("frames before the first state are counted, not invented")
 {
     Sequence sequence({.per_second = 10, .origin = 0.0, .duration = 1.0, .until = {}});
     const auto frames = frames_of(sequence, states_from(0.35, 1.0, 0.01));
@@ -111,7 +111,7 @@ TEST_CASE("frames of before the first state are counted, not invented")
     CHECK(sequence.drawn() == 6);
 }
 
-TEST_CASE("a new run goes on with the next number at its own first time")
+TEST_CASE("a new run continues with the next number at its own first time")
 {
     Sequence sequence({.per_second = 10, .origin = {}, .duration = 0.6, .until = {}});
     auto states = states_from(1.0, 1.25, 0.05);
@@ -138,7 +138,7 @@ TEST_CASE("the buffer keeps the first and the last state of each cell of the gri
     CHECK(buffer.given_up() == 0);
 }
 
-TEST_CASE("a full buffer keeps what is old and what is newest, and counts what it gave up")
+TEST_CASE("a full buffer keeps the oldest states and the newest one, and counts those that it dropped")
 {
     MomentBuffer buffer({}, 4);
     for (int i = 0; i < 10; ++i) buffer.push({state_at(i), nullptr});
@@ -149,7 +149,7 @@ TEST_CASE("a full buffer keeps what is old and what is newest, and counts what i
     CHECK_FALSE(buffer.closed());
     buffer.push({state_at(11), nullptr});
     buffer.close("gone");
-    CHECK_FALSE(buffer.closed());  // there is one left to take
+    CHECK_FALSE(buffer.closed());  // one is left to take
     CHECK(buffer.pop(link::Seconds(0)).has_value());
     CHECK(buffer.closed() == "gone");
 }
@@ -166,7 +166,7 @@ TEST_CASE("shots and vectors on the command line")
     for (const char* bad : {"", "1 2", "1 2 3 4", "1 2 x", "1 2 nan"}) CHECK_FALSE(parse_vector(bad).ok());
 }
 
-TEST_CASE("wrong use ends with code 2 and says why")
+TEST_CASE("wrong use ends with code 2 and the reason")
 {
     const auto says = [](std::vector<const char*> words)
     {

@@ -26,7 +26,7 @@ struct Things
 
 }  // namespace
 
-TEST_CASE("rows stay where they are, freed ones are used again with defaults")
+TEST_CASE("rows keep their indices, freed ones are used again with defaults")
 {
     Registrar registrar;
     registrar.component<Things>("Thing/Plain", "a thing");
@@ -46,7 +46,7 @@ TEST_CASE("rows stay where they are, freed ones are used again with defaults")
     CHECK(table.component_of_row()[c] == 12);
 }
 
-TEST_CASE("a row's fields go into bytes and come back")
+TEST_CASE("a row's fields are written to bytes and read back")
 {
     Registrar registrar;
     registrar.component<Things>("Thing/Plain", "a thing");
@@ -68,7 +68,7 @@ TEST_CASE("a row's fields go into bytes and come back")
     CHECK(rows.record[a] == record);
 }
 
-TEST_CASE("position and velocity are those of the frame that the author sees")
+TEST_CASE("position and velocity are those of the author's frame")
 {
     Scene s(
         "<component id=\"b\" type=\"State/RigidBody\" mass=\"2\" inertia=\"1 1 1\" center_of_mass=\"0.5 0 0\" position=\"1 2 3\" "
@@ -81,13 +81,13 @@ TEST_CASE("position and velocity are those of the frame that the author sees")
     CHECK(distance(bodies.position[0], {1, 2.5, 3}) < 1e-15);
     CHECK(distance(bodies.velocity[0], {0, 0, 0}) < 1e-15);
     s.run(1);
-    // C stays; B circles it.
+    // C does not move; B circles it.
     CHECK(distance(s.vec("b", "position"), Vec3{1, 2.5, 3} - rotate(s.quat("b", "orientation"), Vec3{0.5, 0, 0})) < 1e-12);
     REQUIRE(s.ask(simulation::SetOperation{"b", "position", std::string("0 0 0")}).done);
     CHECK(distance(s.vec("b", "position"), {}) < 1e-15);
 }
 
-TEST_CASE("a backup brings back values and structure")
+TEST_CASE("a backup restores values and structure")
 {
     Scene s(
         "<component id=\"a\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"2\"/><component id=\"b\" type=\"State/Shaft\" "

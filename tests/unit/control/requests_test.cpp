@@ -1,4 +1,4 @@
-// What plabctl sends, and what it makes of the reply.
+// What plabctl sends, and how it prints the reply.
 #include <chrono>
 #include <future>
 #include <memory>
@@ -14,7 +14,7 @@ using Values = std::vector<std::pair<std::string, std::string>>;
 
 }  // namespace
 
-TEST_CASE("a swap says what it did")
+TEST_CASE("a swap reports its effect")
 {
     FakeServer server(test_domain(), "lab");
     const Outcome human = lab("swap contact.response --to Response/None --param restitution=0.5 --param note=a=b");
@@ -84,7 +84,7 @@ TEST_CASE("a file keeps its name in messages")
     std::remove(file.c_str());
 }
 
-TEST_CASE("set: ids with dots, names with dots, several at once")
+TEST_CASE("the command set: ids with dots, names with dots, several at once")
 {
     FakeServer server(test_domain(), "lab");
     CHECK(lab("set red.mass=0.03 red.position='1 2 3' contact.response.restitution=0.5 --at 999999999").code == 0);
@@ -102,7 +102,7 @@ TEST_CASE("set: ids with dots, names with dots, several at once")
     CHECK(lab("set red.mass").code == 2);
 }
 
-TEST_CASE("every command sends what the contract says and nothing else")
+TEST_CASE("every command sends exactly what the contract requires")
 {
     FakeServer server(test_domain(), "lab");
     struct Case
@@ -137,18 +137,18 @@ TEST_CASE("every command sends what the contract says and nothing else")
     CHECK(has(lab("dt").out, "(1/240)"));
 }
 
-TEST_CASE("no reply is a time-out")
+TEST_CASE("a missing reply is a time-out")
 {
     FakeServer server(test_domain(), "lab");
     const Outcome silent = lab("remove silent --timeout 0.6");
     CHECK(silent.code == 3);
     CHECK(has(silent.err, "no reply from server 'lab'"));
-    // It may still take effect, and can be taken back under this name.
+    // It may still take effect, and can be cancelled under this name.
     CHECK(has(silent.err, "can take effect before its next step"));
     CHECK(has(silent.err, "'plabctl --server lab cancel "));
 }
 
-TEST_CASE("a request for a later step stands as long as its server")
+TEST_CASE("a request for a later step is valid as long as its server")
 {
     auto server = std::make_unique<FakeServer>(test_domain(), "lab");
     const std::string request = "remove silent --at 999999999 --timeout ";
@@ -166,7 +166,7 @@ TEST_CASE("a request for a later step stands as long as its server")
     CHECK_FALSE(has(gone.err, "the request remains valid"));
 }
 
-TEST_CASE("numbers that are out of range are refused, with a number that would do")
+TEST_CASE("numbers out of range are refused, and the message gives a valid one")
 {
     FakeServer server(test_domain(), "lab");
     struct Case
@@ -200,7 +200,7 @@ TEST_CASE("numbers that are out of range are refused, with a number that would d
     }
     const Outcome steps = lab("step 9223372036854775807");
     CHECK(steps.code == 0);
-    // It was asked for once; how often the request had to be sent is nobody's concern.
+    // It was requested once; how often the request had to be sent is not reported.
     CHECK_MESSAGE(!has(steps.out, "carried out before"), steps.out);
     CHECK(server.last().parts.at(0).argument == "9223372036854775807");
     CHECK(lab("step --json").json()["repeated"] == false);
@@ -209,7 +209,7 @@ TEST_CASE("numbers that are out of range are refused, with a number that would d
     CHECK(lab("objects --timeout 1e8").code == 0);
 }
 
-TEST_CASE("shutdown waits until the server is gone")
+TEST_CASE("shutdown waits until the server has ended")
 {
     FakeServer server(test_domain(), "lab");
     CHECK(plabctl("shutdown").code == 0);

@@ -1,4 +1,4 @@
-// What the server says is gone: believed after a moment, unless the server goes itself.
+// Disposals of instances: accepted after a moment, unless the server itself is ending.
 #include "recorder/pending_disposals.h"
 
 #include <doctest/doctest.h>
@@ -25,7 +25,7 @@ Disposal disposal(const std::string& key) { return {"plab/objects", key, 1, 0, 0
 
 }  // namespace
 
-TEST_CASE("a parting is believed when its doubt is over")
+TEST_CASE("a disposal is accepted when its waiting time is over")
 {
     PendingDisposals disposals;
     disposals.add(disposal("a"), kStart);
@@ -36,7 +36,8 @@ TEST_CASE("a parting is believed when its doubt is over")
     CHECK(disposals.take(kStart + std::chrono::hours(1)).empty());
 }
 
-TEST_CASE("a thing that comes back was gone; what was heard before it stays in order, and a goodbye is forgotten")
+TEST_CASE(
+    "an instance that comes back had been disposed of; earlier disposals stay in order, and the end of the server cancels pending ones")
 {
     PendingDisposals disposals;
     for (const char* key : {"a", "b", "c"}) disposals.add(disposal(key), kStart);
@@ -47,7 +48,7 @@ TEST_CASE("a thing that comes back was gone; what was heard before it stays in o
     CHECK(disposals.take(kStart + std::chrono::hours(1)).empty());
 }
 
-TEST_CASE("the key of an instance that is gone is a text in either byte order; bytes that are none give nothing")
+TEST_CASE("the key of a disposed instance is read as text in either byte order; invalid bytes give nothing")
 {
     const recording::Bytes little{0, 1, 0, 0, 4, 0, 0, 0, 'r', 'e', 'd', 0};
     const recording::Bytes big{0, 0, 0, 0, 0, 0, 0, 4, 'r', 'e', 'd', 0};

@@ -1,4 +1,4 @@
-// Disks that are full, broken, or slow, under the recorder's file.
+// Full, broken or slow disks under the recorder's file.
 #include "recorder/async_writer.h"
 
 #include <doctest/doctest.h>
@@ -17,14 +17,14 @@ using recorder::WriteProgress;
 namespace
 {
 
-/// What a test does to the disk while the tape writes.
+/// What a test does to the disk during writing.
 struct Disk
 {
     std::mutex mutex;
     Bytes bytes;
     std::size_t capacity = std::numeric_limits<std::size_t>::max();  ///< beyond it: as on a full disk, a short write, then an error
     bool is_broken = false;                                          ///< every call fails, truncate() too
-    std::atomic<bool> is_stuck{false};                               ///< a write does not come back
+    std::atomic<bool> is_stuck{false};                               ///< a write does not return
 
     Bytes copy()
     {
@@ -69,7 +69,7 @@ private:
     std::shared_ptr<Disk> disk_;
 };
 
-/// A tape that is fed with numbers, one each millisecond.
+/// A writer that receives numbers, one each millisecond.
 class Fed
 {
 public:
@@ -91,7 +91,7 @@ public:
             std::this_thread::sleep_for(1ms);
         }
     }
-    /// Until `is_so` of the progress; false after 3 s.
+    /// Waits until `is_so` holds for the progress; false after 3 s.
     template <class Condition>
     bool comes_to(Condition is_so)
     {
@@ -104,7 +104,7 @@ public:
     std::uint64_t offered = 0;
 };
 
-/// What is on the disk now, as a reader finds it.
+/// The present content of the disk, as a reader finds it.
 struct OnDisk
 {
     explicit OnDisk(Disk& disk) : bytes(disk.copy()), reader(open(bytes)) {}
@@ -132,7 +132,7 @@ std::vector<std::uint64_t> numbers_in(const Reader& reader)
     }
 }
 
-/// 0, 1, 2, ... but for those that are missing.
+/// 0, 1, 2, ... without those that are missing.
 bool ascends(const std::vector<std::uint64_t>& numbers)
 {
     return std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>()) == numbers.end();
@@ -149,7 +149,7 @@ std::uint64_t reported_missing(const Reader& reader)
 
 }  // namespace
 
-TEST_CASE("a disk that fills up and stays full: the end says so, soon, and what came before is whole")
+TEST_CASE("a disk that fills up and stays full: this is soon reported at the end, and everything before is complete")
 {
     Fed fed;
     fed.put(100);
@@ -200,7 +200,7 @@ TEST_CASE("a disk that has room for all messages and none for the end of the fil
     CHECK(numbers_in(found.reader).size() == 100);
 }
 
-TEST_CASE("a disk that fails for a while: the file goes on, tells its gap, and nobody forgets that there was one")
+TEST_CASE("a disk that fails for a while: the file continues and notes its gap, and the gap is reported at the end")
 {
     Fed fed;
     fed.put(50);
@@ -233,7 +233,7 @@ TEST_CASE("a disk that fails for a while: the file goes on, tells its gap, and n
     CHECK(reported_missing(reader) == closed->dropped.messages);
 }
 
-TEST_CASE("what waits for a disk that works again only at the end is in the file all the same")
+TEST_CASE("messages that wait for a disk that works again only at the end are nevertheless in the file")
 {
     Fed fed;
     {
@@ -243,7 +243,7 @@ TEST_CASE("what waits for a disk that works again only at the end is in the file
     fed.put(40);
     REQUIRE(fed.comes_to([](const WriteProgress& p) { return p.trouble.has_value(); }));
     fed.writer->attach(0, "blueprint.xml", "text/xml", "<plab/>");
-    fed.put(1);  // wakes the writer, whose next trial is some time away
+    fed.put(1);  // wakes the writer, whose next attempt is some time away
     {
         const std::lock_guard lock(fed.disk->mutex);
         fed.disk->is_broken = false;
@@ -257,14 +257,14 @@ TEST_CASE("what waits for a disk that works again only at the end is in the file
     CHECK(closed->dropped.messages + closed->messages == fed.offered);
 }
 
-TEST_CASE("a disk that does not answer: who records does not wait, and what finds no room is counted")
+TEST_CASE("a disk that does not respond: the recording thread does not wait, and messages without room are counted")
 {
     constexpr std::size_t kRoom = 20'000;
     Fed fed(kRoom);
     fed.put(20);
     REQUIRE(fed.comes_to([](const WriteProgress& p) { return p.messages == 20; }));
     fed.disk->is_stuck = true;
-    fed.put(30);  // the writer is in it now
+    fed.put(30);  // the writer is now blocked in a write
     const auto begin = Clock::now();
     for (int i = 0; i < 200; ++i, ++fed.offered)
         (void)fed.writer->put({&wire::topic_of<plab_v2_Frame>(), fed.offered * 1'000'000, 0, Bytes(256, 0)});

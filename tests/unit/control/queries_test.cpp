@@ -1,9 +1,9 @@
-// What plabctl prints of a server: lists, show, wait.
+// What plabctl prints about a server: lists, show, wait.
 #include "plabctl.h"
 
 using namespace plab::test;
 
-TEST_CASE("servers lists those of the domain, and it is an error if there are none")
+TEST_CASE("the command servers lists those of the domain, and it is an error if there are none")
 {
     const Outcome nobody = plabctl("servers --json");
     CHECK(nobody.code == 3);
@@ -28,7 +28,7 @@ TEST_CASE("servers lists those of the domain, and it is an error if there are no
     CHECK(plabctl("servers --json").json()["servers"][1]["recording"]["dropped"] == 3);
 }
 
-TEST_CASE("a server is found by name, or if it is the only one")
+TEST_CASE("a server is found by its name, or because it is the only one")
 {
     FakeServer lab(test_domain(), "lab");
     CHECK(plabctl("objects").code == 0);
@@ -44,7 +44,7 @@ TEST_CASE("a server is found by name, or if it is the only one")
     CHECK(plabctl("objects -s other").code == 0);
 }
 
-TEST_CASE("objects shows where things are now")
+TEST_CASE("the command objects shows the present positions")
 {
     FakeServer server(test_domain(), "lab");
     const Json json = lab("objects --json").json();
@@ -66,7 +66,7 @@ TEST_CASE("objects shows where things are now")
     CHECK(table.err.empty());
 }
 
-TEST_CASE("a table fits the terminal, and elsewhere nothing is cut")
+TEST_CASE("a table fits the terminal; without a terminal nothing is cut")
 {
     FakeServer server(test_domain(), "lab");
     const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabctl --domain " + std::to_string(test_domain());
@@ -90,7 +90,7 @@ TEST_CASE("a table fits the terminal, and elsewhere nothing is cut")
     CHECK(has(lab("interactions --color always").out, "\x1b[31m"));
 }
 
-TEST_CASE("interactions joins the catalogue with the metrics")
+TEST_CASE("the command interactions joins the catalogue with the metrics")
 {
     FakeServer server(test_domain(), "lab");
     const Json json = lab("interactions --json").json();
@@ -106,7 +106,7 @@ TEST_CASE("interactions joins the catalogue with the metrics")
     CHECK(has(table.out, "quarantined"));
 }
 
-TEST_CASE("types: part of a name, a family, or what can replace a component")
+TEST_CASE("the command types selects by part of a name, by family, or by what can replace a component")
 {
     FakeServer server(test_domain(), "lab");
     CHECK(lab("types --json").json()["types"].size() == 6);
@@ -121,7 +121,7 @@ TEST_CASE("types: part of a name, a family, or what can replace a component")
     CHECK(has(unknown.err, "did you mean 'contact.response'?"));
 }
 
-TEST_CASE("show prints everything known of a thing")
+TEST_CASE("the command show prints everything known about a component")
 {
     FakeServer server(test_domain(), "lab");
     const Outcome red = lab("show red");
@@ -133,7 +133,7 @@ TEST_CASE("show prints everything known of a thing")
     CHECK(has(response.out, "how much it bounces"));
     CHECK(has(response.out, "must be from 0 to 1"));
     CHECK(has(response.out, "  function f()\n  end\n"));
-    CHECK_FALSE(has(response.out, "\x1b"));  // it came with the name
+    CHECK_FALSE(has(response.out, "\x1b"));  // it was part of the name
     CHECK(has(lab("show Response/None").out, "2 or more"));
     const Json json = lab("show contact.response --json").json();
     CHECK(json["kind"] == "interaction");
@@ -144,7 +144,7 @@ TEST_CASE("show prints everything known of a thing")
     CHECK(has(unknown.err, "no object, shape, interaction or type 'rad', did you mean 'red'?"));
 }
 
-TEST_CASE("wait: for readiness, for a step, and not for ever")
+TEST_CASE("the command wait waits for readiness or for a step, and not for ever")
 {
     CHECK(plabctl("wait --timeout 0.5").code == 3);
     FakeServer server(test_domain(), "lab");

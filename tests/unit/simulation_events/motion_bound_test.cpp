@@ -1,4 +1,4 @@
-// Bounds inside a piece hold, and are sharp where motion is simple. Played against dense sampling.
+// Bounds on the motion inside a piece hold, and are sharp if the motion is simple. Compared with dense sampling.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -87,7 +87,7 @@ TEST_CASE("balls: the bound is the time of impact itself")
     const double T = 1, hit = (2 - std::sqrt(0.09 - 0.01)) / 10;
     CHECK(std::fabs(p.clearance(0, T, motions, extents).of_balls() - hit) < 1e-14);
     CHECK(extents[0].arm == 0);
-    // Falling onto a flat thing, the way along its normal is as exact.
+    // For a fall onto a plane, the distance along its normal is exact as well.
     Pair q;
     q.add(box({5, 5, 0.1}), {}, {}, {}, {});
     q.add(sphere(0.1), {0.3, 0.2, 1.2}, {3, 0, -1}, {1, 2, 3}, {0, 0, -9.81});
@@ -95,7 +95,7 @@ TEST_CASE("balls: the bound is the time of impact itself")
     CHECK(std::fabs(q.clearance(0, T, motions, extents).along({0, 0, 1}, 1) - fall) < 1e-14);
 }
 
-TEST_CASE("whatever spins, flies and falls: along a normal nothing closes before the bound says so")
+TEST_CASE("for any spinning, flying and falling bodies, no gap along a normal closes before its bound")
 {
     std::uint64_t seed = 11;
     int hits = 0, early = 0;
@@ -120,7 +120,7 @@ TEST_CASE("whatever spins, flies and falls: along a normal nothing closes before
     }
     CHECK(early == 0);
     REQUIRE(hits > 60);
-    CHECK(sharp / hits > 0.4);  // and it is of some use
+    CHECK(sharp / hits > 0.4);  // and the bound is often sharp
 }
 
 TEST_CASE("steps by the bound converge to a corner's impact like Newton's method")
@@ -143,20 +143,20 @@ TEST_CASE("steps by the bound converge to a corner's impact like Newton's method
     CHECK(looks <= 12);
 }
 
-TEST_CASE("a spin that shows at no end of a piece is bounded by the momentum")
+TEST_CASE("a spin that is not visible at either end of a piece is bounded by the momentum")
 {
-    // I = (1, 2, 3), almost about the middle axis: it turns over within the piece.
+    // I = (1, 2, 3), almost about the middle axis: it flips within the piece.
     Pair p;
     p.add(box({0.1, 0.1, 0.1}), {}, {}, {0.01, 5, 0.01}, {});
     p.bodies.inertia_B[0] = Mat3::diagonal(1, 2, 3), p.bodies.inverse_inertia_B[0] = Mat3::diagonal(1, 0.5, 1.0 / 3);
-    // The spin goes over to the opposite and is 5 all the time: I w^2 / 2 = 25, L = 10, and all of it may go nowhere else.
+    // The spin changes to the opposite one and is 5 all the time: I w^2 / 2 = 25, L = 10, and the bound must contain it.
     const MotionBound c = motion_bound_of(p.bodies, 0, extent_of(p.bodies, p.shapes, 0), 0, p.at(0, 0), 1, p.at(0, 0));
     CHECK(c.turning.spin >= std::sqrt(100.0 / 2 * (1 + 1.0 / 3) - 100.0 / 3));
     CHECK(c.turning.spin < 6);
     CHECK(c.turning.spin_up >= 5 * 5 / 4.0);
 }
 
-TEST_CASE("how far a body gets is no less than any point of it")
+TEST_CASE("the bound on a body's displacement is no less than that of any of its points")
 {
     Pair p;
     p.add(box({0.3, 0.1, 0.2}), {1, 2, 3}, {2, 0, 4}, {0, 20, 0}, {0, 0, -40});
