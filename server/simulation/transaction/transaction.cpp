@@ -151,9 +151,19 @@ Result<void> Transaction::apply_one(const AddOperation& op)
 
 Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
 {
-    auto fragment = model::compile(op.blueprint, run_->world().types(), &run_->world().scene(), context_->limits);
-    if (!fragment) return fragment.errors();
-    return apply_one(AddOperation{fragment.take()});
+    world::World& world = run_->world();
+    if (!op.prepared || !op.prepared->fits(world.scene()))
+    {
+        auto fragment = model::compile(*op.blueprint, world.types(), &world.scene(), context_->limits);
+        if (!fragment) return fragment.errors();
+        return apply_one(AddOperation{fragment.take()});
+    }
+    const auto& whole = op.prepared->whole;
+    if (!whole) return whole.errors();
+    structural_ = true;
+    const std::vector<model::ComponentSpec>& specs = (*whole)->components;
+    for (std::size_t k = world.scene().components.size(); k < specs.size(); ++k) touched_.push_back(specs[k].id);
+    return world.add(*whole);
 }
 
 Result<void> Transaction::apply_one(const RemoveOperation& op)
