@@ -111,7 +111,6 @@ private:
         groups_.group_of_shaft.assign(world_.host().shafts.size(), kNoIndex);
         groups_.group_of_quantities.assign(world_.host().quantities.size(), kNoIndex);
         std::vector<std::uint32_t> group_of_rank(world_.in_id_order().size(), kNoIndex);
-        groups_.all.reserve(world_.host().bodies.size() + world_.host().shafts.size() + world_.host().quantities.size());
         for (const std::uint32_t i : world_.in_id_order())
         {
             const world::Component& c = world_.component(i);

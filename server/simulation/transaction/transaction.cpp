@@ -144,9 +144,14 @@ Result<void> Transaction::apply(const Operation& operation)
 
 Result<void> Transaction::apply_one(const AddOperation& op)
 {
-    structural_ = true;
-    for (const model::ComponentSpec& c : op.fragment.components) touched_.push_back(c.id);
+    note_added(op.fragment.components, 0);
     return run_->world().add(op.fragment);
+}
+
+void Transaction::note_added(const std::vector<model::ComponentSpec>& specs, std::size_t first)
+{
+    structural_ = true;
+    for (std::size_t k = first; k < specs.size(); ++k) touched_.push_back(specs[k].id), added_.push_back(specs[k].id);
 }
 
 Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
@@ -160,9 +165,7 @@ Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
     }
     const auto& whole = op.prepared->whole;
     if (!whole) return whole.errors();
-    structural_ = true;
-    const std::vector<model::ComponentSpec>& specs = (*whole)->components;
-    for (std::size_t k = world.scene().components.size(); k < specs.size(); ++k) touched_.push_back(specs[k].id);
+    note_added((*whole)->components, world.scene().components.size());
     return world.add(*whole);
 }
 
