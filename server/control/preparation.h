@@ -1,4 +1,7 @@
 /// What can be done for a request before it takes effect, on another thread than the one that steps.
+///
+/// Only values are made here: plugins are loaded, blueprints compiled, ids and participants resolved. The rows of components are made and
+/// prepared on the step thread, because the Prepare of a plugin reads and writes the tables of the running scene.
 #pragma once
 
 #include <memory>
