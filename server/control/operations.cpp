@@ -347,7 +347,7 @@ Description description_of(const simulation::Operation& operation)
         }
         Description operator()(const AddBlueprintOperation& op) const
         {
-            return {"add", op.blueprint.components.empty() ? "" : op.blueprint.components.front().id, ""};
+            return {"add", op.blueprint->components.empty() ? "" : op.blueprint->components.front().id, ""};
         }
         Description operator()(const RemoveOperation& op) const { return {"remove", op.id, ""}; }
         Description operator()(const SwapOperation& op) const { return {"swap", op.id, op.type}; }

@@ -23,7 +23,7 @@ struct Wanted
 };
 
 /// Checks everything that needs no scene: verbs, names and numbers. The rest is checked when the request takes effect. A <plab>
-/// to load is compiled here (and its plugins are loaded); one to add is compiled when the request takes effect. Each error
+/// to load is compiled here (and its plugins are loaded); for one to add see preparation.h. Each error
 /// names the operation: "operation 2 (swap): needs an argument: the new type".
 Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types, const model::CompileLimits& limits = {});
 

@@ -3,30 +3,18 @@
 #include <pthread.h>
 
 #include <csignal>
-#include <set>
 #include <utility>
+
+#include "control/preparation.h"
 
 namespace plab::daemon
 {
 namespace
 {
 
-/// Loads the plugin of a type, also if only the end of its name is written. Whether the type fits is checked when the request takes
-/// effect; an error here will occur there again.
-void load_named(model::TypeSource& types, const std::string& written)
-{
-    for (const std::string& name : types.names())
-        if (name == written || name.ends_with("/" + written)) (void)types.require(name);
-}
-
-void collect_types(const std::vector<model::ComponentNode>& nodes, std::set<std::string>& out)
-{
-    for (const model::ComponentNode& node : nodes)
-    {
-        if (!node.type.empty()) out.insert(node.type);
-        collect_types(node.children, out);
-    }
-}
+/// How long the reader waits for the requests before an addition to be carried out, so that it can be compiled for the scene that they
+/// leave. A step or a trial may take longer; then the addition is compiled for the scene that is there.
+constexpr std::chrono::milliseconds kLongestWait(100);
 
 }  // namespace
 
@@ -64,33 +52,55 @@ bool RequestReader::take(ReadRequest& request)
     if (read_.empty()) return false;
     request = std::move(read_.front());
     read_.pop_front();
+    ++taken_;
     return true;
+}
+
+void RequestReader::show(std::shared_ptr<const model::SceneSpec> scene)
+{
+    {
+        const std::lock_guard lock(mutex_);
+        if (served_ == taken_ && scene_ == scene) return;
+        served_ = taken_;
+        if (scene_ != scene) outdated_.push_back(std::exchange(scene_, std::move(scene)));
+    }
+    changed_.notify_all();
 }
 
 void RequestReader::finish(std::chrono::milliseconds most)
 {
+    // The caller is the thread for which an addition may be waiting.
+    {
+        const std::lock_guard lock(mutex_);
+        is_finishing_ = true;
+    }
     notify();
     std::unique_lock lock(mutex_);
     (void)changed_.wait_for(lock, most, [this] { return !notified_ && !reading_; });
+    is_finishing_ = false;
 }
 
 void RequestReader::run(const std::stop_token& stop)
 {
     for (;;)
     {
+        std::vector<std::shared_ptr<const model::SceneSpec>> outdated;  // destroyed here, not on the step thread
         {
             std::unique_lock lock(mutex_);
-            if (!changed_.wait(lock, stop, [this] { return notified_; })) return;
+            if (!changed_.wait(lock, stop, [this] { return notified_ || !outdated_.empty(); })) return;
+            outdated.swap(outdated_);
+            if (!notified_) continue;
             notified_ = false, reading_ = true;
         }
         ReadRequest next;
         while (!stop.stop_requested() && source_(next.text))
         {
             next.wanted = control::wanted_of(next.text, *types_, limits_);
-            if (next.wanted) load_types(*next.wanted);
+            if (next.wanted) prepare(next.wanted->request, stop);
             {
                 const std::lock_guard lock(mutex_);
                 read_.push_back(std::exchange(next, {}));
+                ++handed_over_;
             }
             ready_();
         }
@@ -102,18 +112,18 @@ void RequestReader::run(const std::stop_token& stop)
     }
 }
 
-void RequestReader::load_types(const control::Wanted& wanted)
+/// The scene after the requests that were read so far, if they are carried out soon.
+std::shared_ptr<const model::SceneSpec> RequestReader::present_scene(const std::stop_token& stop)
 {
-    std::set<std::string> named;
-    for (const simulation::Operation& op : wanted.request.operations)
-    {
-        if (const auto* swap = std::get_if<simulation::SwapOperation>(&op)) named.insert(swap->type);
-        const auto* add = std::get_if<simulation::AddBlueprintOperation>(&op);
-        if (!add) continue;
-        collect_types(add->blueprint.components, named);
-        for (const model::RepeatNode& repeat : add->blueprint.repeats) collect_types(repeat.components, named);
-    }
-    for (const std::string& type : named) load_named(*types_, type);
+    std::unique_lock lock(mutex_);
+    (void)changed_.wait_for(lock, stop, kLongestWait, [this] { return served_ == handed_over_ || is_finishing_; });
+    return scene_;
+}
+
+void RequestReader::prepare(simulation::Request& request, const std::stop_token& stop)
+{
+    control::load_types(request, *types_);
+    if (control::has_additions(request)) control::prepare_additions(request, *types_, present_scene(stop), limits_);
 }
 
 }  // namespace plab::daemon

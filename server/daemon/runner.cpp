@@ -133,7 +133,9 @@ bool Run::serve()
 {
     service_.take_requests();
     // A server that is to end does not wait first, even if it is paused.
-    if (!s_.apply_due()) return service_.shutdown_wanted();
+    const bool any = s_.apply_due();
+    service_.show_scene();
+    if (!any) return service_.shutdown_wanted();
     // The catalogue goes first, so that a client that has the reply can rely on it.
     service_.publish(false);
     fine_ = service_.answer() && fine_;

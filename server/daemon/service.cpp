@@ -146,6 +146,11 @@ void Service::take_requests()
     }
 }
 
+void Service::show_scene()
+{
+    if (reader_) reader_->show(simulation_->world().lend_scene());
+}
+
 void Service::take_last_requests(std::chrono::milliseconds most)
 {
     if (reader_) reader_->finish(most);

@@ -42,7 +42,10 @@ public:
     Result<void> save(const std::string& file) const;
     /// Passes requests that have arrived on the bus, and have been read, to the simulation; invalid ones are refused.
     void take_requests();
-    /// The same, after those that have arrived have been read, for which it waits: the run is to end.
+    /// Shows the scene, as the requests that were taken have left it, to the thread that reads the next ones. To be called after they
+    /// have been carried out.
+    void show_scene();
+    /// Like take_requests(), after those that have arrived have been read, for which it waits: the run is to end.
     void take_last_requests(std::chrono::milliseconds most);
     /// Answers requests that took effect or failed: to clients, as events, as log lines. False if one of the command line was
     /// refused, because the run is then not the one that was asked for.

@@ -76,9 +76,9 @@ Image World::image() const
 Result<void> World::revive(const Image& image)
 {
     assert(components().empty());
-    describe(image.scene->settings, image.scene->file);
+    scene_.edit() = *image.scene;
     Errors errors;
-    (void)create_all(*image.scene, errors);
+    (void)create_from(0, errors);
     if (!errors.empty()) return errors;
     // Values are loaded before Prepare, which uses them, and again afterwards, because Prepare may overwrite some.
     load_cells(image, errors);

@@ -8,7 +8,7 @@ namespace plab::world
 {
 
 /// Backups of a world hold its structure in this way: a copy costs one pointer, and only a change of structure costs more. Not for use by
-/// several threads, except for values that were lent.
+/// several threads at a time, except for values that were lent; a holder may be handed over to another thread.
 template <class T>
 class Shared
 {

@@ -1,6 +1,7 @@
 #include "world/world.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 
 #include "model/alike.h"
@@ -172,20 +173,20 @@ void add_placed(Errors& out, const Errors& errors, const model::ComponentSpec& s
 
 }  // namespace
 
-/// Creates rows for all components of `scene`, with their values and roles; nothing is prepared yet.
-std::vector<World::Created> World::create_all(const model::SceneSpec& scene, Errors& errors)
+/// Creates rows for the components of the scene from the `first` one on, with their values and roles; nothing is prepared yet.
+std::vector<World::Created> World::create_from(std::size_t first, Errors& errors)
 {
     std::vector<Created> created;
-    for (const model::ComponentSpec& spec : scene.components)
+    const std::vector<model::ComponentSpec>& specs = scene_->components;
+    created.reserve(specs.size() - first);
+    directory_.edit().components.reserve(components().size() + specs.size() - first);
+    for (std::size_t k = first; k < specs.size(); ++k)
     {
-        auto made = create(spec);
-        if (!made)
-        {
+        auto made = create(specs[k]);
+        if (made)
+            created.push_back({*made, &specs[k]});
+        else
             errors.insert(errors.end(), made.errors().begin(), made.errors().end());
-            continue;
-        }
-        created.push_back({*made, &spec});
-        scene_.edit().components.push_back(spec);
     }
     sort_by_id();
     for (const Created& c : created)
@@ -193,32 +194,58 @@ std::vector<World::Created> World::create_all(const model::SceneSpec& scene, Err
     return created;
 }
 
-Result<void> World::add(const model::SceneSpec& scene)
+std::vector<World::Created> World::in_order_of_preparation(const std::vector<Created>& created) const
 {
-    const Backup before = backup();
-    Errors errors;
-    std::vector<Created> created = create_all(scene, errors);
-    if (errors.empty())
+    struct Place
     {
-        std::sort(created.begin(), created.end(),
-                  [&](const Created& a, const Created& b) {
-                      return std::pair(prepare_order(a.component), rank_[a.component]) <
-                             std::pair(prepare_order(b.component), rank_[b.component]);
-                  });
-        for (const Created& c : created)
-        {
-            // prepare() searches all components for the place of an error, so after a first error the cost would be quadratic in their
-            // number. Its other results are not needed then, except for shapes, by which bodies are measured.
-            const bool in_full = errors.empty() || component(c.component).facet == Facet::Shape;
-            auto done = in_full || component(c.component).table == kNoIndex ? prepare(c.component) : run(c.component, Phase::Prepare);
-            if (!done) add_placed(errors, done.errors(), *c.spec);
-            initialize_motion(c.component);
-        }
-        refresh_open_roles();
+        int order;
+        std::uint32_t rank, index;
+    };
+    std::vector<Place> places;
+    places.reserve(created.size());
+    for (std::uint32_t k = 0; k < created.size(); ++k)
+        places.push_back({prepare_order(created[k].component), rank_[created[k].component], k});
+    std::sort(places.begin(), places.end(),
+              [](const Place& a, const Place& b) { return std::pair(a.order, a.rank) < std::pair(b.order, b.rank); });
+    std::vector<Created> out;
+    out.reserve(created.size());
+    for (const Place& place : places) out.push_back(created[place.index]);
+    return out;
+}
+
+Result<void> World::add(const model::SceneSpec& fragment)
+{
+    const std::size_t first = scene_->components.size();
+    std::vector<model::ComponentSpec>& specs = scene_.edit().components;
+    specs.insert(specs.end(), fragment.components.begin(), fragment.components.end());
+    return add_from(first);
+}
+
+Result<void> World::add(const Shared<model::SceneSpec>& whole)
+{
+    const std::size_t first = scene_->components.size();
+    assert(whole->components.size() >= first);
+    scene_ = whole;
+    return add_from(first);
+}
+
+Result<void> World::add_from(std::size_t first)
+{
+    Errors errors;
+    const std::vector<Created> created = create_from(first, errors);
+    if (!errors.empty()) return model::first_of_alike(std::move(errors));
+    for (const Created& c : in_order_of_preparation(created))
+    {
+        // prepare() searches all components for the place of an error, so after a first error the cost would be quadratic in their
+        // number. Its other results are not needed then, except for shapes, by which bodies are measured.
+        const bool in_full = errors.empty() || component(c.component).facet == Facet::Shape;
+        auto done = in_full || component(c.component).table == kNoIndex ? prepare(c.component) : run(c.component, Phase::Prepare);
+        if (!done) add_placed(errors, done.errors(), *c.spec);
+        initialize_motion(c.component);
     }
-    if (errors.empty()) return {};
-    restore(before);
-    return model::first_of_alike(std::move(errors));
+    if (!errors.empty()) return model::first_of_alike(std::move(errors));
+    refresh_open_roles();
+    return {};
 }
 
 void World::refresh_open_roles()

@@ -75,8 +75,12 @@ public:
     explicit World(model::TypeSource& types) : types_(&types) {}
 
     // Structure ------------------------------------------------------------------------------------------------------
-    /// Adds all components of `scene` or none; ids must be new. Binds roles and prepares rows.
-    Result<void> add(const model::SceneSpec& scene);
+    /// Adds all components of `fragment`; ids must be new. Binds roles and prepares rows. After an error the world is unusable until a
+    /// backup is restored.
+    Result<void> add(const model::SceneSpec& fragment);
+    /// The same for a scene that somebody put together in advance: `whole` consists of the components that are here, followed by those to
+    /// be added.
+    Result<void> add(const Shared<model::SceneSpec>& whole);
     /// Removes a component. The caller has checked that no component refers to it. Its row stays parked until release_parked().
     void remove(std::uint32_t component);
     /// Replaces the component's row by a row of `spec.type`, with values that are already resolved; the old row is parked. On error
@@ -141,6 +145,8 @@ public:
     HostTables& host() { return host_; }
     const HostTables& host() const { return host_; }
     const model::SceneSpec& scene() const { return *scene_; }
+    /// The present scene, for any thread. Whoever holds it can tell by its address whether the scene has changed since.
+    std::shared_ptr<const model::SceneSpec> lend_scene() const { return scene_.lend(); }
     /// Sets the settings and the file name; to be called before components are added.
     void describe(const model::SceneSettings& settings, const std::string& file);
     model::TypeSource& types() const { return *types_; }
@@ -156,7 +162,9 @@ private:
         std::uint32_t component;
         const model::ComponentSpec* spec;
     };
-    std::vector<Created> create_all(const model::SceneSpec& scene, Errors& errors);
+    std::vector<Created> create_from(std::size_t first, Errors& errors);
+    std::vector<Created> in_order_of_preparation(const std::vector<Created>& created) const;
+    Result<void> add_from(std::size_t first);
     void load_cells(const Image& image, Errors& errors);
     Result<std::uint32_t> create(const model::ComponentSpec& spec);
     Result<std::uint32_t> table_for(const std::string& type);

@@ -86,10 +86,11 @@ int World::prepare_order(std::uint32_t component) const
 {
     const Component& c = directory_->components[component];
     if (c.table == kNoIndex) return 0;
-    const bool refers_to_shape = std::any_of(tables_[c.table]->schema().roles().begin(), tables_[c.table]->schema().roles().end(),
-                                             [](const Role& r) { return r.facets == std::vector<Facet>{Facet::Shape}; });
-    if (c.facet == Facet::Shape) return refers_to_shape ? 2 : 1;
-    return c.facet == Facet::Component ? 4 : 3;
+    if (c.facet != Facet::Shape) return c.facet == Facet::Component ? 4 : 3;
+    const auto& roles = tables_[c.table]->schema().roles();
+    const bool refers_to_shape =
+        std::any_of(roles.begin(), roles.end(), [](const Role& r) { return r.facets.size() == 1 && r.facets.front() == Facet::Shape; });
+    return refers_to_shape ? 2 : 1;
 }
 
 Result<void> World::run(std::uint32_t component, Phase phase)

@@ -63,7 +63,7 @@ inline const std::vector<Layer>& layers()
         {"server/simulation/watch",
          {"server/sdk", "server/geometry", "server/model", "server/world", "server/simulation/contacts", "server/simulation/step"},
          {}},
-        {"server/simulation/requests", {"server/sdk", "server/model", "server/simulation/costs"}, {}},
+        {"server/simulation/requests", {"server/sdk", "server/model", "server/world", "server/simulation/costs"}, {}},
         {"server/simulation/run",
          {"server/sdk", "server/model", "server/world", "server/simulation/requests", "server/simulation/step", "server/simulation/watch"},
          {}},

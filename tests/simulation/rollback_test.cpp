@@ -15,7 +15,7 @@ AddBlueprintOperation add(const std::string& body)
 {
     auto blueprint = blueprint::read_blueprint("<plab version=\"1\">" + body + "</plab>", "request.xml");
     REQUIRE_MESSAGE(blueprint.ok(), (blueprint.ok() ? "" : first_error(blueprint.errors())));
-    return {blueprint.take()};
+    return AddBlueprintOperation(blueprint.take());
 }
 
 Reply ask(Scene& s, std::vector<Operation> operations)

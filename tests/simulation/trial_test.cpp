@@ -85,6 +85,33 @@ TEST_CASE("a trial steps the objects that the swap can affect, and no others")
     CHECK(response.trial.objects == 40);
 }
 
+TEST_CASE("a trial of an addition steps what is new and what it can touch; with a new fixed body, or a part, it steps everything")
+{
+    Scene s(gears_and_balls(3, 40));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(20);
+    const auto add = [&](const std::string& text)
+    {
+        const auto fragment = test::compile_text(test::whole_scene(text), "request.xml", &s.simulation().world().scene());
+        REQUIRE_MESSAGE(fragment.ok(), test::reasons(fragment));
+        const Reply reply = ask(s, {AddOperation{*fragment}});
+        REQUIRE_MESSAGE(reply.done, first_error(reply.errors));
+        CHECK(reply.trial.outcome == TrialReport::Outcome::Made);
+        return reply.trial;
+    };
+    const std::string ball = "type=\"State/RigidBody\" mass=\"1\" shape=\"r\" position=";
+    const TrialReport far = add("<component id=\"far\" " + ball + "\"0 0 5\"/>");
+    CHECK(far.objects == 1);
+    CHECK(!far.everything);
+    // It stands in b000, which is found out in the step.
+    const TrialReport near = add("<component id=\"near\" " + ball + "\"0 0 0.29\"/>");
+    CHECK(near.objects == 2);
+    const TrialReport wind = add("<component id=\"wind\" type=\"Field/Drag\" between=\"b001 b002\" linear=\"0.1\"/>");
+    CHECK(wind.objects == 2);
+    CHECK(add("<component id=\"shelf\" type=\"State/Static\" shape=\"f\" position=\"0 0 -1\"/>").everything);
+    CHECK(add("<component id=\"manager\" type=\"Manager/Direct\"/>").everything);
+}
+
 TEST_CASE("a trial leaves no trace: with it and without it the run has the same bits")
 {
     Scene with(gears_and_balls(3, 40)), without(gears_and_balls(3, 40));

@@ -41,8 +41,11 @@ void CostBook::rebuild(std::span<const std::uint32_t> owners, std::size_t tables
     owners_.clear();
     for (std::uint32_t i = 0; i < owners.size(); ++i)
     {
-        if (own_[i].table != owners[i]) own_[i] = {owners[i], 0, {}};
-        if (owners[i] != kNone) owners_.push_back(i);
+        if (owners[i] == kNone)
+            own_[i].reset();
+        else if (!own_[i] || own_[i]->table != owners[i])
+            own_[i] = std::make_unique<Account>(Account{owners[i], 0, {}});
+        if (own_[i]) owners_.push_back(i);
     }
     tables_.resize(tables);
 }
@@ -56,7 +59,7 @@ void CostBook::book(CostAccounts& accounts)
     const auto add = [](Account& account, std::int64_t ns)
     { account.total += static_cast<double>(ns), account.window.push(static_cast<double>(ns)); };
     for (const std::uint32_t i : owners_)
-        if (i < accounts.by_component.size()) add(own_[i], accounts.by_component[i]);
+        if (own_[i] && i < accounts.by_component.size()) add(*own_[i], accounts.by_component[i]);
     for (std::size_t t = 0; t < tables_.size() && t < accounts.by_table.size(); ++t) add(tables_[t], accounts.by_table[t]);
     accounts.clear();
 }

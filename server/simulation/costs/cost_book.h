@@ -1,6 +1,8 @@
 /// Statistics of the cost of steps: sums since the scene was built, and a window of the latest steps for medians and their spread.
 #pragma once
 
+#include <memory>
+
 #include "simulation/costs/cost_meter.h"
 #include "simulation/costs/spread.h"
 
@@ -35,7 +37,7 @@ public:
     /// The component was removed; a new component that reuses its index starts with empty statistics.
     void forget(std::uint32_t component)
     {
-        if (component < own_.size()) own_[component] = {};
+        if (component < own_.size()) own_[component].reset();
     }
     /// To be called at the end of a step: adds the accounts to the statistics and clears them.
     void book(CostAccounts& accounts);
@@ -44,14 +46,14 @@ public:
     /// Mean since the scene was built, ns per step: of the whole step (all threads), and of the work that belongs to no component.
     double mean() const { return mean_of(total_); }
     double mean_of_host() const { return mean_of(host_total_); }
-    double mean_of_component(std::uint32_t i) const { return i < own_.size() ? mean_of(own_[i].total) : 0.0; }
+    double mean_of_component(std::uint32_t i) const { return owns(i) ? mean_of(own_[i]->total) : 0.0; }
     double mean_of_table(std::uint32_t t) const { return t < tables_.size() ? mean_of(tables_[t].total) : 0.0; }
     /// Median and spread over the latest steps.
     Spread step() const { return step_.spread(); }
     Spread host() const { return host_.spread(); }
-    Spread of_component(std::uint32_t i) const { return owns(i) ? own_[i].window.spread() : Spread{}; }
+    Spread of_component(std::uint32_t i) const { return owns(i) ? own_[i]->window.spread() : Spread{}; }
     Spread of_table(std::uint32_t t) const { return t < tables_.size() ? tables_[t].window.spread() : Spread{}; }
-    bool owns(std::uint32_t i) const { return i < own_.size() && own_[i].table != kNone; }
+    bool owns(std::uint32_t i) const { return i < own_.size() && own_[i]; }
 
 private:
     static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -63,7 +65,8 @@ private:
     };
     double mean_of(double total) const { return steps_ == 0 ? 0.0 : total / static_cast<double>(steps_); }
 
-    std::vector<Account> own_, tables_;
+    std::vector<std::unique_ptr<Account>> own_;  ///< by component; null: not timed on its own, as most are
+    std::vector<Account> tables_;
     std::vector<std::uint32_t> owners_;
     CostWindow step_, host_;
     double total_ = 0, host_total_ = 0;

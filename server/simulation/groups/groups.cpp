@@ -105,11 +105,26 @@ private:
         }
     }
 
+    /// Each group has one object that represents its set.
+    std::size_t count_groups()
+    {
+        const auto& all = world_.in_id_order();
+        const auto represents = [&](std::uint32_t i)
+        {
+            const Facet facet = world_.component(i).facet;
+            const bool is_object = facet == Facet::Body || facet == Facet::Shaft || facet == Facet::Quantities;
+            return is_object && motion_of(world_, world_.component(i).ref(i)) != Motion::Static &&
+                   sets_.find(world_.rank(i)) == world_.rank(i);
+        };
+        return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), represents));
+    }
+
     void make_groups()
     {
         groups_.group_of_body.assign(world_.host().bodies.size(), kNoIndex);
         groups_.group_of_shaft.assign(world_.host().shafts.size(), kNoIndex);
         groups_.group_of_quantities.assign(world_.host().quantities.size(), kNoIndex);
+        groups_.all.reserve(count_groups());
         std::vector<std::uint32_t> group_of_rank(world_.in_id_order().size(), kNoIndex);
         for (const std::uint32_t i : world_.in_id_order())
         {

@@ -4,6 +4,7 @@
 /// transaction: either all of them take effect at one step boundary, or none does.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +15,7 @@
 #include "model/scene.h"
 #include "plab/context.h"
 #include "simulation/costs/spread.h"
+#include "world/shared.h"
 
 namespace plab::simulation
 {
@@ -32,10 +34,25 @@ struct AddOperation
 {
     model::SceneSpec fragment;
 };
-/// Adds the components of a blueprint. It is compiled when the request takes effect, so it may refer to components that exist then.
+/// What a blueprint adds to a scene, compiled in advance: on any thread, for a scene that may have changed by the time it is used.
+struct PreparedAddition
+{
+    std::weak_ptr<const model::SceneSpec> present;  ///< the scene for which it was compiled
+    /// The present scene followed by what is added; or why it cannot be added.
+    Result<world::Shared<model::SceneSpec>> whole = Error{};
+
+    /// Whether `scene` is still the one for which it was compiled. A scene that was lent never changes; a changed one has another address.
+    bool fits(const model::SceneSpec& scene) const { return present.lock().get() == &scene; }
+};
+
+/// Adds the components of a blueprint. It may refer to components that exist when the request takes effect: if nothing fitting was
+/// prepared, it is compiled then.
 struct AddBlueprintOperation
 {
-    model::Blueprint blueprint;
+    explicit AddBlueprintOperation(model::Blueprint of) : blueprint(std::make_shared<const model::Blueprint>(std::move(of))) {}
+
+    std::shared_ptr<const model::Blueprint> blueprint;  ///< shared with copies of the request: the history, snapshots
+    std::shared_ptr<const PreparedAddition> prepared;   ///< null: nothing
 };
 /// Removes a component, or an object with everything inside it. Refused while other components refer to it.
 struct RemoveOperation

@@ -33,7 +33,7 @@ std::size_t bytes_of(const Request& request)
     {
         out += sizeof op;
         if (const auto* add = std::get_if<AddOperation>(&op)) out += add->fragment.components.size() * kEachComponent;
-        if (const auto* add = std::get_if<AddBlueprintOperation>(&op)) out += add->blueprint.components.size() * kEachComponent;
+        if (const auto* add = std::get_if<AddBlueprintOperation>(&op)) out += add->blueprint->components.size() * kEachComponent;
         if (const auto* swap = std::get_if<SwapOperation>(&op)) out += swap->values.size() * kEachValue;
         if (const auto* set = std::get_if<SetOperation>(&op))
             if (const auto* text = std::get_if<std::string>(&set->value)) out += text->size();
@@ -97,6 +97,9 @@ void History::note(const Run& run, const Request& request)
     if (begins_a_run(request.operations.front())) return;  // begin() is called for these
     Asked asked{request, run.clock.tick, bytes_of(request)};
     asked.request.at.reset(), asked.request.revision.reset();
+    // What was prepared for it fits no later scene and would keep a copy of the whole scene alive.
+    for (Operation& op : asked.request.operations)
+        if (auto* add = std::get_if<AddBlueprintOperation>(&op)) add->prepared.reset();
     // It took effect, whatever the result of its trial was. That result may have depended on the clock, so there is no trial in the
     // replay.
     asked.request.trial.budget = TrialChoice::Budget::None;

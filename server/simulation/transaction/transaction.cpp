@@ -144,16 +144,29 @@ Result<void> Transaction::apply(const Operation& operation)
 
 Result<void> Transaction::apply_one(const AddOperation& op)
 {
-    structural_ = true;
-    for (const model::ComponentSpec& c : op.fragment.components) touched_.push_back(c.id);
+    note_added(op.fragment.components, 0);
     return run_->world().add(op.fragment);
+}
+
+void Transaction::note_added(const std::vector<model::ComponentSpec>& specs, std::size_t first)
+{
+    structural_ = true;
+    for (std::size_t k = first; k < specs.size(); ++k) touched_.push_back(specs[k].id), added_.push_back(specs[k].id);
 }
 
 Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
 {
-    auto fragment = model::compile(op.blueprint, run_->world().types(), &run_->world().scene(), context_->limits);
-    if (!fragment) return fragment.errors();
-    return apply_one(AddOperation{fragment.take()});
+    world::World& world = run_->world();
+    if (!op.prepared || !op.prepared->fits(world.scene()))
+    {
+        auto fragment = model::compile(*op.blueprint, world.types(), &world.scene(), context_->limits);
+        if (!fragment) return fragment.errors();
+        return apply_one(AddOperation{fragment.take()});
+    }
+    const auto& whole = op.prepared->whole;
+    if (!whole) return whole.errors();
+    note_added((*whole)->components, world.scene().components.size());
+    return world.add(*whole);
 }
 
 Result<void> Transaction::apply_one(const RemoveOperation& op)

@@ -63,6 +63,8 @@ private:
     Result<void> go_back(const Op& op);
     Result<void> apply_one(const AddOperation& op);
     Result<void> apply_one(const AddBlueprintOperation& op);
+    /// For an addition: the components from the `first` one on are to be new.
+    void note_added(const std::vector<model::ComponentSpec>& specs, std::size_t first);
     Result<void> apply_one(const RemoveOperation& op);
     Result<void> apply_one(const SwapOperation& op);
     Result<void> apply_one(const SetOperation& op);
@@ -118,6 +120,7 @@ private:
     double energy_before_ = 0, energy_applied_ = 0;  ///< J, of the whole scene at the boundary
     bool structural_ = false;
     std::vector<std::string> touched_;  ///< ids that were added, removed or changed
+    std::vector<std::string> added_;    ///< by add operations
 };
 
 /// The ids of `id` and of everything inside it, innermost first.

@@ -23,6 +23,8 @@ constexpr double kStepsOfBudget = 10;
 constexpr double kMeasureOld = 0.45, kMeasureNew = 0.95;
 constexpr double kMeasureUnlimited = 2e7;
 
+bool adds(const Operation& op) { return std::holds_alternative<AddOperation>(op) || std::holds_alternative<AddBlueprintOperation>(op); }
+
 /// `*` matches any text and `?` any character.
 bool is_pattern(const std::string& id) { return id.find_first_of("*?") != std::string::npos; }
 
@@ -111,9 +113,11 @@ void Transaction::mark_touched(TrialScope& scope) const
             mark(set->id);
         else if (const auto* push = std::get_if<PushOperation>(&operation))
             mark(push->id);
-        else if (affects_the_run(operation))
+        else if (affects_the_run(operation) && !(adds(operation) && !added_.empty()))
             scope.add_everything();
     }
+    for (const std::string& id : added_)
+        if (const std::uint32_t i = run_->world().find(id); i != kNoIndex) scope.add_new(i);
 }
 
 TrialStep Transaction::next_step() const

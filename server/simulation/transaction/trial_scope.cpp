@@ -52,11 +52,24 @@ void TrialScope::add(std::uint32_t component)
     visit(component);
 }
 
-void TrialScope::visit(std::uint32_t component)
+void TrialScope::add_new(std::uint32_t component)
 {
+    fit();
     const world::Component& c = world_->component(component);
-    if (c.table == kNoIndex || std::exchange(visited_[component], 1) != 0) return;
-    if (is_object(c.facet)) return add_object(c.ref(component));
+    if (c.table == kNoIndex || c.facet == Facet::Shape) return;  // a shape acts only through the bodies that have it
+    if (is_object(c.facet))
+    {
+        (void)mark(c.ref(component));
+        everything_ = everything_ || !holds(c.ref(component));
+        return;
+    }
+    (void)mark_participants(component);
+    everything_ = everything_ || !acts_on_scope(component);
+}
+
+/// Marks the objects that the component names in its roles. Returns false if it has no such role.
+bool TrialScope::mark_participants(std::uint32_t component)
+{
     bool any = false;
     for (const Role& role : world_->table_of(component).schema().roles())
     {
@@ -64,7 +77,15 @@ void TrialScope::visit(std::uint32_t component)
         any = true;
         for (const Ref r : world_->participants(component, role)) (void)mark(r);
     }
-    if (any) return;
+    return any;
+}
+
+void TrialScope::visit(std::uint32_t component)
+{
+    const world::Component& c = world_->component(component);
+    if (c.table == kNoIndex || std::exchange(visited_[component], 1) != 0) return;
+    if (is_object(c.facet)) return add_object(c.ref(component));
+    if (mark_participants(component)) return;
     for (const std::uint32_t referrer : world_->referrers(component)) visit(referrer);
 }
 

@@ -19,6 +19,10 @@ public:
     void add(std::uint32_t component);
     /// Adds one object.
     void add(Ref object);
+    /// Adds what a component acts on that the request has made. Only its own roles count, because nothing that existed before refers to
+    /// it. What rests on a new fixed body, and what a component does that names no moving object, is not known before the step: then
+    /// everything is in the scope.
+    void add_new(std::uint32_t component);
     void add_everything() { everything_ = true; }
     bool has_everything() const { return everything_; }
 
@@ -37,6 +41,7 @@ private:
     void fit();
     void visit(std::uint32_t component);
     bool mark(Ref object);
+    bool mark_participants(std::uint32_t component);
     bool close_over_clusters(const Groups& groups);
     void add_object(Ref object);
     template <class Pairs>

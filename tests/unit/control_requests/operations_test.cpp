@@ -62,7 +62,7 @@ TEST_CASE("each verb becomes its operation")
     CHECK(only<simulation::SnapshotOperation>({"snapshot", "before.2_a-b", "", "", {}}).name == "before.2_a-b");
     const auto add =
         only<simulation::AddBlueprintOperation>({"add", "", "", "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>", {}});
-    CHECK(add.blueprint.components.size() == 1);
+    CHECK(add.blueprint->components.size() == 1);
     const auto load = only<simulation::LoadOperation>({"load", "", "a.xml", "<plab version=\"1\"><scene dt=\"1/100\"/></plab>", {}});
     CHECK(load.scene.settings.dt.denominator == 100);
     CHECK(wanted({{"shutdown", "", "", "", {}}})->shutdown);

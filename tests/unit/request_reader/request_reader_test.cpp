@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <thread>
 
 #include "plugins/library.h"
 
@@ -115,6 +116,50 @@ TEST_CASE("when a request can be taken, the plugins of the types that it names a
     REQUIRE(await(reader, next));
     REQUIRE_MESSAGE(next.wanted.ok(), next.wanted.error().text());
     CHECK(has_loaded(library, "Field/Gravity"));
+}
+
+TEST_CASE("an addition is compiled for the scene that the requests before it leave")
+{
+    FakeBus bus;
+    plugins::PluginLibrary library;
+    RequestReader reader([&](publish::RequestText& text) { return bus.take(text); }, library, {}, [] {});
+    const auto first = std::make_shared<const model::SceneSpec>(), second = std::make_shared<const model::SceneSpec>();
+    reader.show(first);
+    bus.send(operation("remove", "old")), bus.send(operation("add", "", "", "<component id=\"a\" type=\"Shape/Sphere\" radius=\"1\"/>"));
+    reader.notify();
+    RequestReader::ReadRequest next;
+    REQUIRE(await(reader, next));
+    std::this_thread::sleep_for(10ms);  // the reader could go on if it did not wait
+    reader.show(second);                // now the first request has been carried out
+    REQUIRE(await(reader, next));
+    REQUIRE_MESSAGE(next.wanted.ok(), next.wanted.error().text());
+    const auto& add = std::get<simulation::AddBlueprintOperation>(next.wanted->request.operations.front());
+    REQUIRE(add.prepared);
+    CHECK(add.prepared->fits(*second));
+    CHECK_FALSE(add.prepared->fits(*first));
+    REQUIRE_MESSAGE(add.prepared->whole.ok(), add.prepared->whole.error().text());
+    CHECK((*add.prepared->whole)->components.size() == 1);
+}
+
+TEST_CASE("an addition does not wait forever for the requests before it, and not at all at the end")
+{
+    FakeBus bus;
+    plugins::PluginLibrary library;
+    RequestReader reader([&](publish::RequestText& text) { return bus.take(text); }, library, {}, [] {});
+    const auto scene = std::make_shared<const model::SceneSpec>();
+    reader.show(scene);
+    for (int i = 0; i < 3; ++i) bus.send(operation("add", "", "", "<component id=\"a\" type=\"Shape/Sphere\" radius=\"1\"/>"));
+    reader.notify();
+    // The step thread is busy: it neither takes requests nor shows a scene.
+    RequestReader::ReadRequest next;
+    std::this_thread::sleep_for(20ms);
+    const auto begin = std::chrono::steady_clock::now();
+    reader.finish(5s);
+    CHECK(std::chrono::steady_clock::now() - begin < 4s);
+    int read = 0;
+    for (; reader.take(next); ++read)
+        CHECK(std::get<simulation::AddBlueprintOperation>(next.wanted->request.operations.front()).prepared->fits(*scene));
+    CHECK(read == 3);
 }
 
 TEST_CASE("finish waits until all requests that have arrived are read, but not longer than allowed")

@@ -61,7 +61,7 @@ simulation::AddBlueprintOperation added(const std::string& body)
 {
     auto blueprint = blueprint::read_blueprint(whole_scene(body), "request");
     REQUIRE_MESSAGE(blueprint.ok(), reasons(blueprint));
-    return {blueprint.take()};
+    return simulation::AddBlueprintOperation(blueprint.take());
 }
 
 Footprint footprint(const simulation::Simulation& s)
