@@ -11,9 +11,9 @@ namespace plab::solvers
 namespace
 {
 
-constexpr std::size_t kStages = 7;
-constexpr double kNode[kStages] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
-constexpr double kTable[kStages][kStages - 1] = {
+constexpr std::size_t kDormandPrinceStages = 7;
+constexpr double kDormandPrinceNode[kDormandPrinceStages] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
+constexpr double kTable[kDormandPrinceStages][kDormandPrinceStages - 1] = {
     {},
     {1.0 / 5},
     {3.0 / 40, 9.0 / 40},
@@ -22,16 +22,16 @@ constexpr double kTable[kStages][kStages - 1] = {
     {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
     {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
 };
-constexpr const double* kWeight = kTable[kStages - 1];
-constexpr double kError[kStages] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+constexpr const double* kDormandPrinceWeight = kTable[kDormandPrinceStages - 1];
+constexpr double kError[kDormandPrinceStages] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 constexpr double kSafety = 0.9, kShrink = 0.2, kGrow = 10, kIntegral = 0.04;  // part II, eq. (2.43): beta = 0.04
 
-double weight_of(std::size_t stage) { return stage < kStages - 1 ? kWeight[stage] : 0.0; }
+double weight_of(std::size_t stage) { return stage < kDormandPrinceStages - 1 ? kDormandPrinceWeight[stage] : 0.0; }
 
-class Advance
+class DormandPrinceStep
 {
 public:
-    Advance(double h, const Tolerance& tolerance, DormandPrinceMemory& memory, DynamicSystem& system)
+    DormandPrinceStep(double h, const Tolerance& tolerance, DormandPrinceMemory& memory, DynamicSystem& system)
         : h_(h), tolerance_(tolerance), m_(memory), flat_(system)
     {
         m_.fit(flat_.size());
@@ -79,7 +79,7 @@ private:
     /// section II.4) from the rates and their change along an Euler step.
     double first_size()
     {
-        flat_.evaluate(0, m_.y, m_.slope[0], booked_ = kWeight[0]);
+        flat_.evaluate(0, m_.y, m_.slope[0], booked_ = kDormandPrinceWeight[0]);
         flat_.sizes(m_.y, m_.slope[0], h_, m_.sizes);
         FlatSystem::scales(tolerance_, m_.units, m_.sizes, m_.scale);
         const double value = FlatSystem::norm(m_.y, m_.scale), rate = FlatSystem::norm(m_.slope[0], m_.scale);
@@ -96,7 +96,7 @@ private:
     /// The slope at the start of an internal step is known; its share in the ledger depends on the length of the step.
     void first_stage(double step)
     {
-        const double share = kWeight[0] * step / h_;
+        const double share = kDormandPrinceWeight[0] * step / h_;
         if (share != booked_) flat_.evaluate(t_, m_.y, m_.error, share - booked_);
         booked_ = share;
     }
@@ -104,15 +104,15 @@ private:
     /// Computes stages 2 to 7, and the error in units of the tolerance.
     double attempt(double step)
     {
-        for (std::size_t s = 1; s < kStages; ++s)
+        for (std::size_t s = 1; s < kDormandPrinceStages; ++s)
         {
             stage_point(s, step);
-            flat_.evaluate(t_ + kNode[s] * step, m_.next, m_.slope[s], weight_of(s) * step / h_);
+            flat_.evaluate(t_ + kDormandPrinceNode[s] * step, m_.next, m_.slope[s], weight_of(s) * step / h_);
         }
         for (std::size_t i = 0; i < m_.y.size(); ++i)
         {
             double e = 0;
-            for (std::size_t s = 0; s < kStages; ++s) e += kError[s] * m_.slope[s][i];
+            for (std::size_t s = 0; s < kDormandPrinceStages; ++s) e += kError[s] * m_.slope[s][i];
             m_.error[i] = step * e;
         }
         scale(step);
@@ -141,11 +141,11 @@ private:
     /// Cancels the bookings of the stages after the first one of a rejected internal step. The slopes stay valid.
     void take_back(double step)
     {
-        for (std::size_t s = 1; s + 1 < kStages; ++s)
+        for (std::size_t s = 1; s + 1 < kDormandPrinceStages; ++s)
         {
-            if (kWeight[s] == 0) continue;
+            if (kDormandPrinceWeight[s] == 0) continue;
             stage_point(s, step);
-            flat_.evaluate(t_ + kNode[s] * step, m_.next, m_.error, -kWeight[s] * step / h_);
+            flat_.evaluate(t_ + kDormandPrinceNode[s] * step, m_.next, m_.error, -kDormandPrinceWeight[s] * step / h_);
         }
     }
 
@@ -183,7 +183,7 @@ void DormandPrince54Rows::describe(Schema& schema)
 DormandPrinceCounts advance_by_dormand_prince(double h, const Tolerance& tolerance, std::int64_t max_substeps, DormandPrinceMemory& memory,
                                               DynamicSystem& system)
 {
-    return Advance(h, tolerance, memory, system).run(max_substeps);
+    return DormandPrinceStep(h, tolerance, memory, system).run(max_substeps);
 }
 
 void report_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts)

@@ -10,20 +10,21 @@ namespace plab::solvers
 namespace
 {
 
-constexpr double kNode = 0.75;
+constexpr double kInnerNode = 0.75;
 constexpr double kCorrection = 32.0 / 9;
-constexpr double kRounding = 1e-11;  ///< a smaller nonlinearity counts as none
-constexpr double kSlight = 1e-8;     ///< with a nonlinearity below this the corrected step is as good as exact
+constexpr double kRoundingOfNonlinearity = 1e-11;  ///< a smaller nonlinearity counts as none
+constexpr double kSlight = 1e-8;                   ///< with a nonlinearity below this the corrected step is as good as exact
 constexpr std::size_t kHuge = 16;
 constexpr double kAlike = 10;  ///< times what the bend at the node is, in other points
 constexpr Tolerance kTolerated{1e-9, 1e-11};
 constexpr Tolerance kRadauTolerance{1e-9, 1e-12};
 constexpr std::int64_t kRadauSubsteps = 100000;
 
-class Advance
+class ExponentialStep
 {
 public:
-    Advance(double h, std::size_t most, ExponentialMemory& memory, DynamicSystem& system) : h_(h), most_(most), m_(memory), flat_(system)
+    ExponentialStep(double h, std::size_t most, ExponentialMemory& memory, DynamicSystem& system)
+        : h_(h), most_(most), m_(memory), flat_(system)
     {
         m_.fit(flat_.size());
         flat_.read(m_.y);
@@ -39,7 +40,7 @@ public:
         if (out.fine)
         {
             bend = correct();
-            out.linear = bend <= kRounding, out.fine = std::isfinite(bend);
+            out.linear = bend <= kRoundingOfNonlinearity, out.fine = std::isfinite(bend);
             if (out.fine && only_linear) out.fine = is_as_good_as_linear(bend);
             out.sways = out.fine && !is_steady();
             out.fine = out.fine && !out.sways;
@@ -198,8 +199,8 @@ private:
     double correct()
     {
         along(2, 3, m_.middle);
-        const double bend = find_defect(kNode * h_, m_.middle);
-        if (!std::isfinite(bend) || bend <= kRounding) return bend;
+        const double bend = find_defect(kInnerNode * h_, m_.middle);
+        if (!std::isfinite(bend) || bend <= kRoundingOfNonlinearity) return bend;
         along(0, 1, m_.plain);
         // Nonlinear forces may set numbers in motion that the linear ones left at rest.
         const std::size_t known = m_.moving.size();
@@ -228,10 +229,10 @@ private:
         if (turns <= 1) return true;
         along(2, 3, m_.middle);
         if (has_run_away()) return false;
-        flat_.evaluate(kNode * h_, m_.middle, m_.other);
+        flat_.evaluate(kInnerNode * h_, m_.middle, m_.other);
         std::copy(m_.middle.begin(), m_.middle.end(), m_.work.begin());
         for (const std::size_t j : m_.moving) m_.work[j] += probe(j);
-        flat_.evaluate(kNode * h_, m_.work, m_.slope);
+        flat_.evaluate(kInnerNode * h_, m_.work, m_.slope);
         const double allowed = std::min(0.05, 0.1 / (turns * turns));
         for (std::size_t i = flat_.places(); i < flat_.size(); ++i)
         {
@@ -367,7 +368,7 @@ void ExponentialRows::describe(Schema& schema)
 
 ExponentialCounts advance_by_exponential(double h, bool only_linear, std::size_t most, ExponentialMemory& memory, DynamicSystem& system)
 {
-    return Advance(h, most, memory, system).run(only_linear);
+    return ExponentialStep(h, most, memory, system).run(only_linear);
 }
 
 void advance_exponential(const StepContext& context, Row row, ExponentialRows& rows, DynamicSystem& system)

@@ -11,9 +11,9 @@ namespace plab::solvers
 namespace
 {
 
-constexpr double kShare = 0.1;         ///< share of the others' d1 that is added to the member's own
-constexpr double kNegligible = 1e-9;   ///< relative to the speeds: a smaller d3 is irrelevant
-constexpr double kRounding = 0x1p-43;  ///< relative to a body's size per step, or to a rad: likewise irrelevant
+constexpr double kShare = 0.1;                 ///< share of the others' d1 that is added to the member's own
+constexpr double kNegligible = 1e-9;           ///< relative to the speeds: a smaller d3 is irrelevant
+constexpr double kRoundingOfMotion = 0x1p-43;  ///< relative to a body's size per step, or to a rad: likewise irrelevant
 constexpr double kStiff = 0.5, kOverSpin = 4;
 
 double spin_of(DynamicSystem& system, std::size_t body, std::span<const double> u)
@@ -55,7 +55,7 @@ public:
             {
                 const Norms n = norms(m), &others = each_alone_ ? n : all[m.quantities ? 1 : 0];
                 if (!std::isfinite(n.third)) out.value = std::numeric_limits<double>::infinity(), out.too_much = true;
-                if (!(h_ * n.third > kNegligible * others.speed + (m.quantities ? 0 : kRounding * m.size / h_))) return;
+                if (!(h_ * n.third > kNegligible * others.speed + (m.quantities ? 0 : kRoundingOfMotion * m.size / h_))) return;
                 const double found = std::sqrt(2 * n.third / (n.first + (each_alone_ ? 0 : kShare * others.first)));
                 out.value = std::fmax(out.value, found);
                 if (!(found <= kStiff))

@@ -12,15 +12,16 @@ namespace plab::solvers
 namespace
 {
 
-constexpr int kFixedPointIterations = 12, kNewtonIterations = 12, kJacobians = 3, kParts = 64;
+constexpr int kFixedPointIterations = 12, kMidpointNewtonIterations = 12, kJacobians = 3, kParts = 64;
 constexpr double kGoodContraction = 0.3;
 /// Rounding may stop the iteration above the tolerance; up to this factor the result is accepted.
 constexpr double kNoise = 100;
 
-class Advance
+class ImplicitMidpointStep
 {
 public:
-    Advance(double h, double tolerance, ImplicitMidpointMemory& memory, DynamicSystem& system) : h_(h), m_(memory), flat_(system)
+    ImplicitMidpointStep(double h, double tolerance, ImplicitMidpointMemory& memory, DynamicSystem& system)
+        : h_(h), m_(memory), flat_(system)
     {
         tolerance_ = {tolerance, 1e-3 * tolerance};
         m_.fit(flat_.size());
@@ -94,7 +95,7 @@ private:
     {
         if (!newton) m_.z = m_.y;
         double before = 0;
-        const int limit = newton ? kNewtonIterations : kFixedPointIterations;
+        const int limit = newton ? kMidpointNewtonIterations : kFixedPointIterations;
         for (int k = 0; k < limit; ++k)
         {
             if (k > 0) flat_.evaluate(t + 0.5 * h, m_.z, m_.f);
@@ -143,7 +144,7 @@ void ImplicitMidpointRows::describe(Schema& schema)
 void advance_implicit_midpoint(const StepContext& context, Row row, ImplicitMidpointRows& rows, DynamicSystem& system)
 {
     const StepContext start = context;  // evaluations change the host's context
-    Advance advance(start.dt, rows.relative_tolerance[row], rows.memory[row], system);
+    ImplicitMidpointStep advance(start.dt, rows.relative_tolerance[row], rows.memory[row], system);
     const double reached = advance.run();
     if (is_trial(start)) return;
     rows.iterations[row] = advance.iterations(), rows.substeps[row] = advance.substeps(), rows.evaluations[row] = advance.evaluations();

@@ -33,11 +33,11 @@ constexpr double kWeight8[4] = {0.362683783378361982965150, 0.313706645877887287
                                 0.101228536290376259152531};
 constexpr int kPowers = 17;
 
-using Column = Eigen::Map<Eigen::VectorXd>;
+using VectorView = Eigen::Map<Eigen::VectorXd>;
 
-Column column_of(std::vector<double>& numbers, std::size_t from, std::size_t count)
+VectorView column_of(std::vector<double>& numbers, std::size_t from, std::size_t count)
 {
-    return Column(numbers.data() + from, static_cast<Eigen::Index>(count));
+    return VectorView(numbers.data() + from, static_cast<Eigen::Index>(count));
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ void MatrixExponential::apply(int root, std::span<const double> v, std::span<dou
 {
     const SquareMatrix<double>& e = root_[static_cast<std::size_t>(root)];
     const std::size_t n = e.size();
-    Column sum(out.data(), static_cast<Eigen::Index>(n));
+    VectorView sum(out.data(), static_cast<Eigen::Index>(n));
     sum.setZero();
     // By columns: one division for each, and sums that do not wait for one another.
     for (std::size_t j = 0; j < n; ++j) sum += v[j] / scale_[j] * view(e).col(static_cast<Eigen::Index>(j));
@@ -142,7 +142,7 @@ void MatrixExponential::start_gram(std::size_t constant)
     powers_[constant] = 1 / scale_[constant];
     for (std::size_t k = 1; k < kPowers; ++k)
     {
-        Column power = column_of(powers_, k * n, n);
+        VectorView power = column_of(powers_, k * n, n);
         power.noalias() = view(a_) * column_of(powers_, (k - 1) * n, n);
         power /= static_cast<double>(k);
     }
@@ -158,7 +158,7 @@ void MatrixExponential::start_gram(std::size_t constant)
             for (std::size_t k = kPowers; k-- > 0;) y = y * theta + powers_[k * n + i];
             left_[i] = y;
         }
-        const Column y = column_of(left_, 0, n);
+        const VectorView y = column_of(left_, 0, n);
         view(gram_).noalias() += std::ldexp(weight, -squarings_) * y * y.transpose();
     }
 }
@@ -185,7 +185,7 @@ std::size_t MatrixExponential::moments(std::size_t constant, std::size_t count, 
     // Of components that hardly vary the variance is rounding.
     left_.resize(n);
     for (std::size_t i = 0; i < n; ++i) left_[i] = 1e-15 * gram_(i, i);
-    const Column of_mean = column_of(mean, 0, n);
+    const VectorView of_mean = column_of(mean, 0, n);
     view(gram_).noalias() -= of_mean * of_mean.transpose();
     const std::size_t rank = factorise_covariance(constant, count, spread);
     for (std::size_t i = 0; i < n; ++i) mean[i] *= scale_[i];
@@ -208,7 +208,7 @@ std::size_t MatrixExponential::factorise_covariance(std::size_t constant, std::s
         if (best == n) break;
         const double root = std::sqrt(gram_(best, best));
         spread.resize((rank + 1) * n, 0.0);
-        Column column = column_of(spread, rank * n, count);
+        VectorView column = column_of(spread, rank * n, count);
         for (std::size_t i = 0; i < count; ++i) column[static_cast<Eigen::Index>(i)] = i == constant ? 0.0 : gram_(i, best) / root;
         view(gram_).topLeftCorner(column.size(), column.size()).noalias() -= column * column.transpose();
         gram_(best, best) = 0;

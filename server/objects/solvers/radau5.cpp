@@ -14,10 +14,10 @@ namespace
 
 using namespace radau;
 
-class Advance
+class Radau5Step
 {
 public:
-    Advance(double h, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
+    Radau5Step(double h, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
         : h_(h), m_(memory), flat_(system), stages_(flat_, memory)
     {
         // The estimate is of order 3: see the header.
@@ -181,7 +181,7 @@ void Radau5Rows::describe(Schema& schema)
 
 Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system)
 {
-    return Advance(h, tolerance, memory, system).run(max_substeps);
+    return Radau5Step(h, tolerance, memory, system).run(max_substeps);
 }
 
 void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts)

@@ -15,7 +15,7 @@ struct StageOfMethod
     double sum_weight;  ///< six times that: exact
 };
 
-constexpr std::array<StageOfMethod, 4> kStages{{
+constexpr std::array<StageOfMethod, 4> kRungeKutta4Stages{{
     {0.0, 0.5, 1.0 / 6, 1},
     {0.5, 0.5, 1.0 / 3, 2},
     {0.5, 1.0, 1.0 / 3, 2},
@@ -33,7 +33,7 @@ void go_to_stage(std::size_t s, double h, DynamicSystem& system, const StageSlop
     const auto x = system.coordinates();
     const auto u = system.speeds();
     const auto u0 = system.workspace(0);
-    const double length = s == 0 ? 0.0 : h * kStages[s - 1].next;
+    const double length = s == 0 ? 0.0 : h * kRungeKutta4Stages[s - 1].next;
     for (std::size_t i = 0; i < u.size(); ++i)
     {
         x[i] = s == 0 ? 0.0 : length * slopes.dx[s - 1][i];
@@ -61,9 +61,9 @@ void advance_by_runge_kutta4(double h, DynamicSystem& system, StageSlopes* slope
     const std::size_t n = u.size();
 
     for (std::size_t i = 0; i < n; ++i) u0[i] = u[i], sum_dx[i] = 0, sum_du[i] = 0;
-    for (std::size_t s = 0; s < kStages.size(); ++s)
+    for (std::size_t s = 0; s < kRungeKutta4Stages.size(); ++s)
     {
-        const StageOfMethod& stage = kStages[s];
+        const StageOfMethod& stage = kRungeKutta4Stages[s];
         system.evaluate(stage.time * h, stage.weight);
         if (slopes) copy(dx, slopes->dx[s]), copy(du, slopes->du[s]);
         for (std::size_t i = 0; i < n; ++i)
@@ -84,10 +84,10 @@ void advance_by_runge_kutta4(double h, DynamicSystem& system, StageSlopes* slope
 void find_slopes(double h, DynamicSystem& system, StageSlopes& slopes)
 {
     copy(system.speeds(), system.workspace(0));
-    for (std::size_t s = 0; s < kStages.size(); ++s)
+    for (std::size_t s = 0; s < kRungeKutta4Stages.size(); ++s)
     {
         go_to_stage(s, h, system, slopes);
-        system.evaluate(kStages[s].time * h, 0);
+        system.evaluate(kRungeKutta4Stages[s].time * h, 0);
         copy(system.coordinate_rates(), slopes.dx[s]), copy(system.speed_rates(), slopes.du[s]);
     }
     go_to_stage(0, h, system, slopes);
@@ -95,10 +95,10 @@ void find_slopes(double h, DynamicSystem& system, StageSlopes& slopes)
 
 void take_back_runge_kutta4(double h, DynamicSystem& system, const StageSlopes& slopes)
 {
-    for (std::size_t s = 0; s < kStages.size(); ++s)
+    for (std::size_t s = 0; s < kRungeKutta4Stages.size(); ++s)
     {
         go_to_stage(s, h, system, slopes);
-        system.evaluate(kStages[s].time * h, -kStages[s].weight);
+        system.evaluate(kRungeKutta4Stages[s].time * h, -kRungeKutta4Stages[s].weight);
     }
     go_to_stage(0, h, system, slopes);
 }
