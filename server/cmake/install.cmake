@@ -27,7 +27,7 @@ endforeach()
 install(TARGETS plabd plab-bus plabctl plab-log RUNTIME DESTINATION bin COMPONENT server)
 # No plugins for scenes: plabd loads them by their names, and starts the plab-bus beside it, when it joins the bus or records.
 install(TARGETS plab_bus plab_record LIBRARY DESTINATION lib/plab COMPONENT server)
-install(DIRECTORY scenes DESTINATION share/plab COMPONENT server PATTERN "*.md" EXCLUDE)
+install(DIRECTORY scenes DESTINATION share/plab COMPONENT server PATTERN "*.md" EXCLUDE PATTERN exact EXCLUDE)
 install(TARGETS plab-view RUNTIME DESTINATION bin COMPONENT viewer)
 install(TARGETS plab-study RUNTIME DESTINATION bin COMPONENT study)
 install(DIRECTORY server/docs/ DESTINATION share/doc/plab COMPONENT doc FILES_MATCHING PATTERN "*.md" PATTERN "*.png")

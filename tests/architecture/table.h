@@ -85,7 +85,8 @@ inline const std::vector<Layer>& layers()
         {"server/wire", {"server/sdk", "server/model", "server/simulation", "server/publish", "idl"}, {}},
         {"server/bus/channel", {"server/sdk", "server/model", "server/simulation", "server/publish"}, {"sys/", "unistd.h", "fcntl.h"}},
         {"server/bus/process",
-         {"server/sdk", "server/model", "server/simulation", "server/publish", "server/wire", "server/bus", "server/bus/channel", "idl"},
+         {"server/sdk", "server/model", "server/simulation", "server/publish", "server/wire", "server/bus", "server/bus/channel",
+          "server/program", "idl"},
          {"dds/", "sys/", "unistd.h", "fcntl.h", "poll.h", "pthread.h"}},
         {"server/bus",
          {"server/sdk", "server/model", "server/simulation", "server/publish", "server/bus/channel", "idl"},
@@ -103,9 +104,10 @@ inline const std::vector<Layer>& layers()
          false},
         {"server/study",
          {"server/sdk", "server/model", "server/world", "server/blueprint", "server/plugins", "server/simulation", "server/publish",
-          "server/figures", "server/program", "server/completion"},
+          "server/figures", "server/program", "server/completion", "scenes/exact"},
          {"CLI/", "nlohmann/", "time.h", "unistd.h", "sys/utsname.h"},
          false},
+        {"scenes/exact", {"server/sdk", "server/model", "server/world", "server/simulation"}, {}},
         {"server/program", {"server/sdk"}, {"CLI/", "signal.h", "sys/ioctl.h", "time.h", "unistd.h"}, false},
         {"server/picture", {"server/sdk"}, {"cairo/", "png.h"}},
         {"server/figures", {"server/sdk", "server/picture"}, {"cairo/"}, false},
@@ -141,7 +143,7 @@ inline const std::vector<Layer>& layers()
          false},
         {"tests/bus/foreign", {"server", "clients", "idl", "tests"}, {"doctest/", "fastdds/", "plabPubSubTypes.h"}, false},
         {"tests",
-         {"server", "interactions", "clients", "idl"},
+         {"server", "interactions", "clients", "idl", "scenes"},
          {"doctest/", "nlohmann/", "dds/", "Eigen/", "unsupported/Eigen/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h", "sys/",
           "poll.h", "termios.h", "arpa/", "netinet/"}},
     };
@@ -158,7 +160,7 @@ inline const Words& generated_files()
 /// Folders that includes are relative to, beside the file's own folder and the root of its layer.
 inline const Words& include_roots()
 {
-    static const Words roots{"server/sdk", "server", "interactions", "clients", "tests", ""};
+    static const Words roots{"server/sdk", "server", "interactions", "clients", "tests", "scenes", ""};
     return roots;
 }
 
