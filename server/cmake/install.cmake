@@ -67,7 +67,7 @@ foreach(name plab-sdk plab-link)
   configure_file(server/cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/package/${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/package/${name}.pc DESTINATION lib/pkgconfig COMPONENT sdk)
 endforeach()
-# Its checks are those of the tests.
+# Its checks are those of the tests; without PLAB_TESTS and PLAB_CONFORMANCE it is not there.
 if(TARGET plab-conformance)
   install(TARGETS plab-conformance EXPORT plab-sdk RUNTIME DESTINATION bin COMPONENT sdk)
   install(DIRECTORY tests/conformance/scenes/ DESTINATION share/plab/conformance COMPONENT sdk)
@@ -98,11 +98,23 @@ function(plab_install_help program component)
   set_property(GLOBAL APPEND PROPERTY PLAB_HELP help_${program})
   install(FILES ${page} DESTINATION share/man/man1 COMPONENT ${component})
 endfunction()
-foreach(program plabd plabctl plab-log)
+foreach(program plabd plab-bus plabctl plab-log)
   plab_install_help(${program} server)
 endforeach()
 plab_install_help(plab-view viewer)
 plab_install_help(plab-study study)
+plab_install_help(plab-manifest sdk)
+if(TARGET plab-conformance)
+  plab_install_help(plab-conformance sdk)
+endif()
+
+# Debian wants one in each package.
+foreach(component_package "server plab" "viewer plab-view" "sdk plab-dev")
+  string(REPLACE " " ";" pair ${component_package})
+  list(GET pair 0 component)
+  list(GET pair 1 package)
+  install(FILES server/cmake/copyright DESTINATION share/doc/${package} COMPONENT ${component})
+endforeach()
 
 # All that is installed, and none of the tests.
 get_property(help GLOBAL PROPERTY PLAB_HELP)

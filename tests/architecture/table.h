@@ -27,6 +27,7 @@ inline const std::vector<Layer>& layers()
         {"server/model", {"server/sdk"}, {}},
         {"server/world", {"server/sdk", "server/model"}, {}},
         {"server/blueprint", {"server/sdk", "server/model"}, {"expat.h"}, false},
+        {"server/plugins/manifest_main", {"server/sdk", "server/model", "server/plugins", "server/program"}, {}},
         {"server/plugins", {"server/sdk", "server/model"}, {"dlfcn.h"}, false},
         {"server/completion", {"server/sdk", "server/model", "server/blueprint", "server/plugins", "server/program"}, {"unistd.h"}, false},
         // From below: what a step is made of, a run, snapshots of it and transactions on it, and the simulation that owns them.
