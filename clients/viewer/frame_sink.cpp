@@ -18,7 +18,7 @@ public:
     {
         char name[40];
         std::snprintf(name, sizeof name, "/frame_%04llu.png", static_cast<unsigned long long>(index));
-        return render::write_png(path_ + name, picture);
+        return picture::write_png(path_ + name, picture);
     }
     Result<void> finish() override { return {}; }
 

@@ -54,7 +54,7 @@ Result<void> take_shot(const Shot& shot, const Moment& moment, Painter& painter)
 {
     auto picture = painter.paint(moment, shot.camera);
     if (!picture) return picture.errors();
-    if (auto written = render::write_png(shot.file, **picture); !written) return written;
+    if (auto written = picture::write_png(shot.file, **picture); !written) return written;
     std::printf("%s: t = %s, step %lld\n", shot.file.c_str(), in_seconds(moment.state.time).c_str(),
                 static_cast<long long>(moment.state.step));
     std::fflush(stdout);

@@ -156,17 +156,22 @@ std::string completion_lines(const CommandOutline& program, const std::vector<st
     return out;
 }
 
-std::optional<std::string> answer_for_shell(const CLI::App& app, int argc, const char* const* argv, const std::string& version,
+std::optional<std::string> answer_for_shell(const CommandOutline& program, int argc, const char* const* argv, const std::string& version,
                                             const ValueSource& values, const std::string& more)
 {
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     if (words.empty() || (words[0] != "--complete" && words[0] != "--print")) return {};
-    const CommandOutline program = outline_of(app);
     if (words[0] == "--complete") return completion_lines(program, {words.begin() + 1, words.end()}, values);
     if (words.size() == 2 && words[1] == "man") return man_page(program, version, more);
     const std::string script = words.size() == 2 ? completion_script(program.name, words[1]) : std::string();
     if (script.empty()) return {};
     return script;
+}
+
+std::optional<std::string> answer_for_shell(const CLI::App& app, int argc, const char* const* argv, const std::string& version,
+                                            const ValueSource& values, const std::string& more)
+{
+    return answer_for_shell(outline_of(app), argc, argv, version, values, more);
 }
 
 }  // namespace plab::program

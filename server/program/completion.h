@@ -56,5 +56,7 @@ std::string completion_script(const std::string& program, const std::string& she
 /// What the hidden first words --print (man, bash, zsh, fish) and --complete ask for; nothing: an ordinary command line.
 std::optional<std::string> answer_for_shell(const CLI::App& app, int argc, const char* const* argv, const std::string& version,
                                             const ValueSource& values = {}, const std::string& more = {});
+std::optional<std::string> answer_for_shell(const CommandOutline& program, int argc, const char* const* argv, const std::string& version,
+                                            const ValueSource& values = {}, const std::string& more = {});
 
 }  // namespace plab::program

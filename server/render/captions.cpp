@@ -46,7 +46,7 @@ CaptionPainter::CaptionPainter(std::uint32_t picture_height)
 {
 }
 
-void CaptionPainter::paint(const std::vector<Caption>& captions, Picture& picture) const
+void CaptionPainter::paint(const std::vector<Caption>& captions, Picture& picture)
 {
     const auto below = std::count_if(captions.begin(), captions.end(), [](const Caption& c) { return c.bottom; });
     int top = margin_ + line_ / 2, bottom = static_cast<int>(picture.height) - margin_ - (static_cast<int>(below) - 1) * line_;
@@ -58,14 +58,14 @@ void CaptionPainter::paint(const std::vector<Caption>& captions, Picture& pictur
     }
 }
 
-void CaptionPainter::paint_line(const std::string& text, int left, int baseline, Picture& picture) const
+void CaptionPainter::paint_line(const std::string& text, int left, int baseline, Picture& picture)
 {
     struct Placed
     {
         const Glyph* glyph;
         int left;
     };
-    const int dots = 3 * font_.glyph('.').advance, end = static_cast<int>(picture.width) - margin_;
+    const int dots = 3 * font_.glyph(".").advance, end = static_cast<int>(picture.width) - margin_;
     std::vector<Placed> line;
     int pen = left;
     for (std::string_view rest = text; !rest.empty();)
@@ -77,7 +77,7 @@ void CaptionPainter::paint_line(const std::string& text, int left, int baseline,
     if (pen > end)
     {
         while (!line.empty() && pen + dots > end) pen = line.back().left, line.pop_back();
-        for (int i = 0; i < 3; ++i, pen += dots / 3) line.push_back({&font_.glyph('.'), pen});
+        for (int i = 0; i < 3; ++i, pen += dots / 3) line.push_back({&font_.glyph("."), pen});
     }
     // All outlines are below all letters.
     for (const bool ink : {false, true})

@@ -17,10 +17,10 @@ public:
     explicit CaptionPainter(std::uint32_t picture_height);
     /// Lines are in their order, in a block at the top left and one at the bottom left. A line that is too long for the picture
     /// ends in dots; lines that exceed its height are left out.
-    void paint(const std::vector<Caption>& captions, Picture& picture) const;
+    void paint(const std::vector<Caption>& captions, Picture& picture);
 
 private:
-    void paint_line(const std::string& text, int left, int baseline, Picture& picture) const;
+    void paint_line(const std::string& text, int left, int baseline, Picture& picture);
 
     Font font_;
     int margin_, line_;  ///< pixels

@@ -1,148 +1,95 @@
 #include "font.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <iterator>
-#include <numbers>
+#include <cstddef>
 
-#include "font_strokes.h"
+#include "picture/lettering.h"
 
 namespace plab::render
 {
 namespace
 {
 
-constexpr double kCapital = 14, kGap = 4.1;  ///< in the units of the strokes
-constexpr double kPen = 2.05;                ///< width of a stroke in these units
-constexpr double kSeam = 0.16;               ///< width of the outline, relative to the height of capitals
+constexpr double kLeastSeam = 1.3, kSeam = 0.16;  ///< width of the outline: pixels, and relative to the height of capitals
+constexpr std::string_view kReplacement = "\xef\xbf\xbd";
 
-struct Point
+/// Canvas whose pixels are coverage alone.
+picture::Canvas make_canvas(int width, int height, double size)
 {
-    double x = 0, y = 0;
-};
-using Polyline = std::vector<Point>;
-
-/// The numbers of a text such as "1,2.5,3".
-std::vector<double> numbers_of(std::string_view text)
-{
-    std::vector<double> out;
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    while (at < end)
-    {
-        double value = 0;
-        at = std::from_chars(at, end, value).ptr + 1;
-        out.push_back(value);
-    }
+    const picture::Surface surface(cairo_image_surface_create(CAIRO_FORMAT_A8, width, height));
+    picture::Canvas out(cairo_create(surface.get()));
+    picture::select_letters(out.get(), size);
     return out;
 }
 
-void add_arc(Polyline& line, const std::vector<double>& arc)
+/// Typefaces differ in how high capitals are for their size; a typeface without letters counts as any other.
+double size_for(double capital)
 {
-    constexpr int kParts = 24;
-    for (int i = 0; i <= kParts; ++i)
-    {
-        const double angle = (arc[4] + (arc[5] - arc[4]) * i / kParts) * std::numbers::pi / 180;
-        line.push_back({arc[0] + arc[2] * std::cos(angle), arc[1] + arc[3] * std::sin(angle)});
-    }
+    constexpr double kTried = 100;
+    const picture::Canvas canvas = make_canvas(1, 1, kTried);
+    cairo_text_extents_t extents{};
+    cairo_text_extents(canvas.get(), "H", &extents);
+    return extents.height > 0 ? capital * kTried / extents.height : capital / 0.7;
 }
 
-std::vector<Polyline> polylines_of(std::string_view path)
+std::vector<std::uint8_t> coverage_of(cairo_t* canvas, const Glyph& glyph)
 {
-    std::vector<Polyline> out(1);
-    while (!path.empty())
-    {
-        const std::string_view word = path.substr(0, path.find(' '));
-        path.remove_prefix(std::min(path.size(), word.size() + 1));
-        if (word == "/")
-            out.emplace_back();
-        else if (word.front() == '@')
-            add_arc(out.back(), numbers_of(word.substr(1)));
-        else if (const auto xy = numbers_of(word); xy.size() == 2)
-            out.back().push_back({xy[0], xy[1]});
-    }
+    cairo_surface_t* surface = cairo_get_target(canvas);
+    cairo_surface_flush(surface);
+    std::vector<std::uint8_t> out;
+    const unsigned char* row = cairo_image_surface_get_data(surface);
+    for (int y = 0; y < glyph.height; ++y, row += cairo_image_surface_get_stride(surface)) out.insert(out.end(), row, row + glyph.width);
     return out;
 }
 
-double distance_to_segment(const Point& p, const Point& a, const Point& b)
+/// Nothing if cairo refuses the text.
+Glyph drawn(const std::string& letter, double size, double seam)
 {
-    const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
-    const double along = squared > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0) : 0;
-    return std::hypot(p.x - a.x - along * dx, p.y - a.y - along * dy);
-}
-
-double distance_to(const Point& p, const std::vector<Polyline>& lines)
-{
-    double least = 1e9;
-    for (const Polyline& line : lines)
-        for (std::size_t i = 0; i + 1 < line.size(); ++i) least = std::min(least, distance_to_segment(p, line[i], line[i + 1]));
-    return least;
-}
-
-/// Coverage of a pixel at distance `away` from the path of a pen with this half width.
-std::uint8_t coverage(double half_width, double away)
-{
-    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(half_width - away + 0.5, 0.0, 1.0)));
-}
-
-Glyph rasterized(const Strokes& strokes, double capital)
-{
-    const double scale = capital / kCapital;
-    const double pen = std::max(0.5 * kPen * scale, 0.75), seam = pen + std::max(1.3, kSeam * capital);
+    cairo_text_extents_t extents{};
+    cairo_text_extents(make_canvas(1, 1, size).get(), letter.c_str(), &extents);
     Glyph out;
-    out.advance = static_cast<int>(std::lround((strokes.width + kGap) * scale));
-    if (strokes.path.empty()) return out;
+    out.advance = static_cast<int>(std::lround(extents.x_advance));
+    if (!(extents.width > 0 && extents.height > 0)) return out;
+    const double around = seam + 1;
+    out.left = static_cast<int>(std::floor(extents.x_bearing - around)), out.top = static_cast<int>(std::ceil(around - extents.y_bearing));
+    out.width = static_cast<int>(std::ceil(extents.x_bearing + extents.width + around)) - out.left;
+    out.height = out.top + static_cast<int>(std::ceil(extents.y_bearing + extents.height + around));
 
-    std::vector<Polyline> lines = polylines_of(strokes.path);
-    Point low{1e9, 1e9}, high{-1e9, -1e9};
-    for (Polyline& line : lines)
-        for (Point& p : line)
-        {
-            // The middle of the pixel where the base line's strokes end: stems then fall on whole pixels more often.
-            p = {p.x * scale + 0.5 * kGap * scale, p.y * scale + 0.5};
-            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-        }
-    out.left = static_cast<int>(std::floor(low.x - seam - 1)), out.top = static_cast<int>(std::ceil(high.y + seam + 1));
-    out.width = static_cast<int>(std::ceil(high.x + seam + 1)) - out.left;
-    out.height = out.top - static_cast<int>(std::floor(low.y - seam - 1));
-    for (int y = 0; y < out.height; ++y)
-        for (int x = 0; x < out.width; ++x)
-        {
-            const double away = distance_to({out.left + x + 0.5, out.top - y - 0.5}, lines);
-            out.ink.push_back(coverage(pen, away));
-            out.seam.push_back(coverage(seam, away));
-        }
+    const picture::Canvas ink = make_canvas(out.width, out.height, size), outline = make_canvas(out.width, out.height, size);
+    for (cairo_t* canvas : {ink.get(), outline.get()}) cairo_move_to(canvas, -out.left, out.top);
+    cairo_show_text(ink.get(), letter.c_str());
+    out.ink = coverage_of(ink.get(), out);
+
+    cairo_text_path(outline.get(), letter.c_str());
+    cairo_fill_preserve(outline.get());
+    cairo_set_line_width(outline.get(), 2 * seam);
+    cairo_set_line_join(outline.get(), CAIRO_LINE_JOIN_ROUND);
+    cairo_stroke(outline.get());
+    out.seam = coverage_of(outline.get(), out);
     return out;
 }
 
 }  // namespace
 
-Font::Font(double capital)
+Font::Font(double capital) : size_(size_for(capital)), seam_(std::max(kLeastSeam, kSeam * capital)) {}
+
+const Glyph& Font::glyph(std::string_view letter)
 {
-    static_assert(std::size(kStrokes) == std::tuple_size_v<decltype(glyphs_)>);
-    for (std::size_t i = 0; i < glyphs_.size(); ++i) glyphs_[i] = rasterized(kStrokes[i], capital);
+    const auto [at, fresh] = glyphs_.try_emplace(std::string(letter));
+    if (fresh) at->second = drawn(at->first, size_, seam_);
+    return at->second;
 }
 
-const Glyph& Font::glyph(char32_t letter) const { return letter >= kFirst && letter <= kLast ? glyphs_[letter - kFirst] : glyphs_.back(); }
-
-char32_t next_letter(std::string_view& text)
+std::string_view next_letter(std::string_view& text)
 {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char lead = byte(0);
     const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : lead >= 0xc0 ? 2 : 1;
-    char32_t out = length == 1 ? lead : lead & (0x7f >> length);
-    for (std::size_t i = 1; i < length; ++i)
-    {
-        if (i >= text.size() || (byte(i) & 0xc0) != 0x80)
-        {
-            text.remove_prefix(1);
-            return lead;
-        }
-        out = (out << 6) | (byte(i) & 0x3f);
-    }
-    text.remove_prefix(length);
+    bool whole = lead < 0x80 || (lead >= 0xc0 && length <= text.size());
+    for (std::size_t i = 1; whole && i < length; ++i) whole = (byte(i) & 0xc0) == 0x80;
+    const std::string_view out = whole ? text.substr(0, length) : kReplacement;
+    text.remove_prefix(whole ? length : 1);
     return out;
 }
 

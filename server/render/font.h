@@ -1,9 +1,10 @@
-/// Letters as strokes, designed for this program: no font file is needed.
+/// The letters of captions, each drawn once.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace plab::render
@@ -23,15 +24,15 @@ class Font
 public:
     /// `capital`: height of capitals, in pixels.
     explicit Font(double capital);
-    /// Characters other than ASCII are shown as a box.
-    const Glyph& glyph(char32_t letter) const;
+    /// `letter` is one character in UTF-8. The glyph stays where it is.
+    const Glyph& glyph(std::string_view letter);
 
 private:
-    static constexpr char32_t kFirst = 32, kLast = 126;
-    std::array<Glyph, kLast - kFirst + 2> glyphs_;  ///< the last one is the box
+    double size_, seam_;  ///< of the typeface and of the outline, pixels
+    std::unordered_map<std::string, Glyph> glyphs_;
 };
 
-/// Removes the first letter from UTF-8 text and returns it; an invalid byte counts as a letter of its own.
-char32_t next_letter(std::string_view& text);
+/// Removes the first letter from UTF-8 text and returns it; for a byte that belongs to no letter, the replacement character.
+std::string_view next_letter(std::string_view& text);
 
 }  // namespace plab::render

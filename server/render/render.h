@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "picture/picture.h"
 #include "plab/result.h"
 #include "plab/rotation.h"
 #include "plab/vector.h"
@@ -64,12 +65,7 @@ struct Drawing
     std::vector<Caption> captions;
 };
 
-/// 8 bits per channel, red green blue alpha, rows from the top.
-struct Picture
-{
-    std::uint32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;
-};
+using picture::Picture;
 
 class Renderer
 {
@@ -81,9 +77,6 @@ public:
 
 /// Sizes from 16 to 8192 pixels.
 Result<std::unique_ptr<Renderer>> make_renderer(std::uint32_t width, std::uint32_t height);
-
-/// Writes to a temporary file and renames it, so that readers always see a complete picture.
-Result<void> write_png(const std::string& path, const Picture& picture);
 
 /// A view that shows all items from a pleasant angle (azimuth and elevation in rad about their centre), in a picture at least
 /// as wide as high. Planes and items that are not finite do not count.

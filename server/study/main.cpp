@@ -3,12 +3,12 @@
 #include <optional>
 
 #include "blueprint/reader.h"
+#include "exact/closed_form.h"
 #include "model/compile.h"
 #include "plugins/library.h"
 #include "program/interruption.h"
 #include "program/progress.h"
 #include "study/allocations.h"
-#include "study/exact/exact.h"
 #include "study/options.h"
 #include "study/suite.h"
 #include "study/write.h"
@@ -55,7 +55,7 @@ std::string duration_text(double seconds)
 
 int list_exact()
 {
-    for (const study::ExactEntry& e : study::exact_registry())
+    for (const exact::Entry& e : exact::closed_forms())
         std::printf("exact:%-14.*s %.*s\n%-20s needs: %.*s\n", static_cast<int>(e.name.size()), e.name.data(),
                     static_cast<int>(e.what.size()), e.what.data(), "", static_cast<int>(e.needs.size()), e.needs.data());
     return 0;

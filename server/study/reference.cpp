@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exact/closed_form.h"
 #include "model/numbers.h"
 #include "plab/rotation.h"
-#include "study/exact/exact.h"
 
 namespace plab::study
 {
@@ -152,15 +152,43 @@ Reference no_reference(std::size_t quantities, const std::string& why)
     return out;
 }
 
+/// The numbers of a quantity at t; NaN where the closed form does not cover it.
+void read_exact(const exact::Solution& solution, const world::World& world, const Quantity& q, double t, std::vector<double>& out)
+{
+    const std::size_t before = out.size();
+    const auto put = [&](std::initializer_list<double> v)
+    {
+        if (q.part)
+            out.push_back(v.begin()[*q.part]);
+        else
+            out.insert(out.end(), v);
+    };
+    const auto put_vector = [&](const Vec3& v) { put({v.x, v.y, v.z}); };
+    exact::State s;
+    const std::uint32_t i = world.find(q.id);
+    if (i != kNoIndex && solution.state(q.id, t, s))
+    {
+        const bool body = world.component(i).facet == Facet::Body;
+        const Vec3 offset = body ? -1.0 * rotate(s.orientation, world.host().bodies.center_B[world.component(i).host_index]) : Vec3{};
+        if (body && q.field == "position") put_vector(s.position + offset);
+        if (body && q.field == "linear_velocity") put_vector(s.velocity + cross(s.angular_velocity, offset));
+        if (q.field == "orientation") put({s.orientation.w, s.orientation.x, s.orientation.y, s.orientation.z});
+        if (body && q.field == "angular_velocity") put_vector(s.angular_velocity);
+        if (!body && q.field == "angle") put({s.angle});
+        if (!body && q.field == "angular_velocity") put({s.speed});
+    }
+    out.resize(before + q.width, std::numeric_limits<double>::quiet_NaN());
+}
+
 Result<Reference> exact_reference(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options,
                                   const std::string& text)
 {
     simulation::Simulation s(types, 1);
     if (auto loaded = s.load(scene); !loaded) return loaded.errors();
     const double until = options.sample_times.empty() ? options.until : options.sample_times.back();
-    auto made = make_exact(text, s, until);
+    auto made = exact::make_solution(text, s, until);
     if (!made) return made.errors();
-    const ExactSolution& solution = **made;
+    const exact::Solution& solution = **made;
     Reference out;
     out.kind = "exact", out.words = solution.words(), out.times = options.sample_times;
     for (const std::string& name : options.quantities)
@@ -178,7 +206,8 @@ Result<Reference> exact_reference(model::TypeSource& types, const model::SceneSp
         out.order.push_back(kNaN);
     }
     out.knows_contacts = solution.knows_contacts();
-    if (out.knows_contacts) out.contacts = solution.contacts(until);
+    if (out.knows_contacts)
+        for (const exact::Touch& c : solution.contacts(until)) out.contacts.push_back({c.kind, c.a, c.b, c.time});
     return out;
 }
 

@@ -28,6 +28,7 @@ inline const std::vector<Layer>& layers()
         {"server/model", {"server/sdk"}, {}},
         {"server/world", {"server/sdk", "server/model"}, {}},
         {"server/blueprint", {"server/sdk", "server/model"}, {"expat.h"}, false},
+        {"server/plugins/manifest_main", {"server/sdk", "server/model", "server/plugins", "server/program"}, {}},
         {"server/plugins", {"server/sdk", "server/model"}, {"dlfcn.h"}, false},
         {"server/completion", {"server/sdk", "server/model", "server/blueprint", "server/plugins", "server/program"}, {"unistd.h"}, false},
         // From below: what a step is made of, a run, snapshots of it and transactions on it, and the simulation that owns them.
@@ -86,7 +87,8 @@ inline const std::vector<Layer>& layers()
         {"server/wire", {"server/sdk", "server/model", "server/simulation", "server/publish", "idl"}, {}},
         {"server/bus/channel", {"server/sdk", "server/model", "server/simulation", "server/publish"}, {"sys/", "unistd.h", "fcntl.h"}},
         {"server/bus/process",
-         {"server/sdk", "server/model", "server/simulation", "server/publish", "server/wire", "server/bus", "server/bus/channel", "idl"},
+         {"server/sdk", "server/model", "server/simulation", "server/publish", "server/wire", "server/bus", "server/bus/channel",
+          "server/program", "idl"},
          {"dds/", "sys/", "unistd.h", "fcntl.h", "poll.h", "pthread.h"}},
         {"server/bus",
          {"server/sdk", "server/model", "server/simulation", "server/publish", "server/bus/channel", "idl"},
@@ -104,12 +106,14 @@ inline const std::vector<Layer>& layers()
          false},
         {"server/study",
          {"server/sdk", "server/model", "server/world", "server/blueprint", "server/plugins", "server/simulation", "server/publish",
-          "server/figures", "server/program", "server/completion"},
+          "server/figures", "server/program", "server/completion", "scenes/exact"},
          {"CLI/", "nlohmann/", "time.h", "unistd.h", "sys/utsname.h"},
          false},
+        {"scenes/exact", {"server/sdk", "server/model", "server/world", "server/simulation"}, {}},
         {"server/program", {}, {"CLI/", "signal.h", "sys/ioctl.h", "time.h", "unistd.h"}, false},
-        {"server/figures", {}, {"cairo/"}, false},
-        {"server/render", {}, {"GL/", "png.h"}},
+        {"server/picture", {}, {"cairo/", "png.h"}},
+        {"server/figures", {"server/picture"}, {"cairo/"}, false},
+        {"server/render", {"server/picture"}, {"GL/", "cairo/"}},
         {"server/objects/cameras", {"server/sdk", "server/render"}, {}},
         {"server/objects/*", {"server/sdk"}, {}},
         {"interactions/detection", {"server/sdk", "server/geometry"}, {"ode/", "Eigen/"}},
@@ -121,7 +125,7 @@ inline const std::vector<Layer>& layers()
         {"clients/link", {"idl"}, {"dds/", "nlohmann/"}},
         {"clients/completion", {"server/program", "clients/link"}, {"unistd.h"}, false},
         {"clients/viewer",
-         {"server/program", "server/render", "idl", "idl/recording", "clients/link", "clients/completion"},
+         {"server/program", "server/picture", "server/render", "idl", "idl/recording", "clients/link", "clients/completion"},
          {"CLI/", "unistd.h", "sys/", "fcntl.h", "signal.h", "spawn.h"}},
         {"clients/recorder", {"idl", "idl/recording", "clients/link"}, {"dds/"}},
         {"clients/playback", {"idl", "idl/recording", "clients/link"}, {"dds/", "poll.h", "sys/", "termios.h", "unistd.h"}},
@@ -141,7 +145,7 @@ inline const std::vector<Layer>& layers()
          false},
         {"tests/bus/foreign", {"server", "clients", "idl", "tests"}, {"doctest/", "fastdds/", "plabPubSubTypes.h"}, false},
         {"tests",
-         {"server", "interactions", "clients", "idl"},
+         {"server", "interactions", "clients", "idl", "scenes"},
          {"doctest/", "nlohmann/", "dds/", "Eigen/", "unsupported/Eigen/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h", "sys/",
           "poll.h", "termios.h", "arpa/", "netinet/"}},
     };
@@ -158,7 +162,7 @@ inline const Words& generated_files()
 /// Folders that includes are relative to, beside the file's own folder and the root of its layer.
 inline const Words& include_roots()
 {
-    static const Words roots{"server/base", "server/sdk", "server", "interactions", "clients", "tests", ""};
+    static const Words roots{"server/base", "server/sdk", "server", "interactions", "clients", "tests", "scenes", ""};
     return roots;
 }
 

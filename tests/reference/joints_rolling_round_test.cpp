@@ -7,6 +7,7 @@
 //                                                        the radius where z = 0
 #include <numbers>
 
+#include "exact/pendulum_motion.h"
 #include "support/joints.h"
 
 using namespace plab;
@@ -77,7 +78,7 @@ TEST_CASE("a cylinder swings in a cylinder with 2/3 g sin theta / (R - r), a bal
     for (const Kind& k : {Kind{0.5, 2. / 3, "parallel='true'"}, {0.4, 5. / 7, ""}})
     {
         CAPTURE(k.factor);
-        const double period = 4 * std::comp_ellint_1(std::sin(start / 2)) * std::sqrt((R - r) / (k.factor * kG));
+        const double period = 2 * exact::PendulumMotion(std::sqrt(k.factor * kG / (R - r)), start, 0).time_of_turn();
         Scene s(solver_is("RungeKutta4") + gravity() + ball((R - r) * Vec3{std::sin(start), 0, -std::cos(start)}, r, {}, {}, k.inertia) +
                     rolling("semi_axes='0.1 0.1 0.1' on='cylinder' radius='0.6' inside='true' axis='0 1 0' point='0 3 0' " +
                             std::string(k.more)),

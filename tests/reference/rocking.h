@@ -3,12 +3,15 @@
 
 #include <numbers>
 
+#include "exact/housner.h"
 #include "impacts.h"
 
 namespace plab::test
 {
 
 inline constexpr double kAlpha = 0.2, kQuarter = .48608973195735393546;
+/// Of its speed at an impact: J/m = 1/3 m^2 by a half-diagonal of 1 m.
+inline const double kKept = exact::kept_by_rocking(1.0 / 3, std::sin(kAlpha), std::cos(kAlpha));
 
 /// A block on two plates, so that each edge touches a body of its own and its impact can be located. The block is rotated about
 /// the edge at the origin by `tilt` from its upright position and rotates towards it with `spin`. The plates extend `under` (m)

@@ -1,6 +1,7 @@
 // Surfaces to collide with: bowls, bores, height fields, meshes (interactions/detection/README.md).
 #include <numbers>
 
+#include "exact/pendulum_motion.h"
 #include "impacts.h"
 
 using namespace plab;
@@ -110,7 +111,7 @@ struct Swing
 Swing swing(const Algorithm& algorithm, bool rolls, int steps, const std::string& wall)
 {
     const double R = 0.6, r = 0.1, start = 0.5;
-    const double period = 4 * std::comp_ellint_1(std::sin(start / 2)) * std::sqrt((rolls ? 7. / 5 : 1.) * (R - r) / kG);
+    const double period = 2 * exact::PendulumMotion(std::sqrt(kG / (R - r) * (rolls ? 5. / 7 : 1.)), start, 0).time_of_turn();
     const Vec3 p = (R - r) * Vec3{std::sin(start), 0, -std::cos(start)};
     Scene s(wall + sphere("a", r, at(p, {})) + gravity("a") + contact("a wall", algorithm, 0, rolls ? 10 : 0), step_of(period / steps));
     REQUIRE_MESSAGE(s.loaded(), s.error());

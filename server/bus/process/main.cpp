@@ -9,6 +9,7 @@
 
 #include "bus/channel/inherited.h"
 #include "bus/process/bus_loop.h"
+#include "program/plain_help.h"
 
 namespace
 {
@@ -35,10 +36,24 @@ int run(const PipeMemory& memory, Bell& bell, const Bell& server)
     return 0;
 }
 
+plab::program::CommandOutline outline()
+{
+    plab::program::CommandOutline out;
+    out.name = "plab-bus", out.help = "plab-bus: carries the topics of one server between it and DDS";
+    out.footer =
+        "plabd starts it when it joins the bus, starts it again if it fails, and ends it.\n"
+        "It cannot be started by hand and has nothing to set: options of the bus are those of plabd.\n"
+        "Exit codes: 0 the server has ended it, 1 it cannot join the bus or go on, 2 it was not started by plabd";
+    return out;
+}
+
 }  // namespace
 
-int main(int argc, char**)
+int main(int argc, char** argv)
 {
+    if (argc > 1)
+        if (const auto answer = plab::program::answer_about(outline(), PLAB_VERSION, argc, argv))
+            return std::fputs(answer->c_str(), stdout) < 0 ? 1 : 0;
     // plabd ends this process: a signal to the whole process group must not close the bus before clients have been told about
     // the end.
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) (void)std::signal(signal, SIG_IGN);

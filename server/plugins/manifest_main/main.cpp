@@ -4,16 +4,30 @@
 
 #include "plugins/manifest.h"
 #include "plugins/plugin_file.h"
+#include "program/plain_help.h"
+
+namespace
+{
+
+plab::program::CommandOutline outline()
+{
+    plab::program::CommandOutline out;
+    out.name = "plab-manifest", out.help = "plab-manifest: writes the manifest of a plugin, without which plabd does not find it";
+    out.places = {plab::program::place_of_file("LIBRARY", "the plugin, a .so"),
+                  plab::program::place_of_file("OUT", "the manifest: which component types LIBRARY has, with their roles and fields")};
+    out.footer =
+        "The CMake function plab_add_plugin runs it after the plugin is linked; without CMake, call it yourself.\n"
+        "Exit codes: 0 written, 1 the plugin cannot be loaded or the manifest not be written, 2 wrong use";
+    return out;
+}
+
+}  // namespace
 
 int main(int argc, char** argv)
 {
-    if (argc != 3)
-    {
-        std::fprintf(
-            stderr,
-            "usage: plab-manifest LIBRARY OUT\nWrites to OUT which component types the plugin LIBRARY has, with their roles and fields.\n");
-        return 2;
-    }
+    if (const auto answer = plab::program::answer_about(outline(), PLAB_VERSION, argc, argv))
+        return std::fputs(answer->c_str(), stdout) < 0 ? 1 : 0;
+    if (argc != 3) return std::fputs(plab::program::help_text(outline()).c_str(), stderr), 2;
     auto plugin = plab::plugins::open_plugin(argv[1]);
     if (!plugin)
     {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "program/plain_help.h"
 #include "subjects.h"
 
 namespace
@@ -13,21 +14,25 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr const char* kUsage = R"(usage: plab-conformance [OPTIONS] LIBRARY
-Checks that the plugin LIBRARY (a .so with its .manifest beside it) keeps what every plugin promises: it describes its types,
-refuses bad values, steps alike from a memento, in any order and with any number of threads, asks for no memory in a warm step,
-and can be exchanged without a trace.
-
-  --scenes DIR   where its types have their scenes (may be repeated), before those of pLab; default: "conformance" beside
-                 LIBRARY. A scene is TYPE.xml, with dots for slashes; $TYPE stands for the type in it, and the component
-                 under test has the id "subject"
-  --extremes     instead: numeric fields at the ends of what numbers hold
-  --list         only say which types and scenes there are
-  --version
-
+plab::program::CommandOutline outline()
+{
+    using namespace plab::program;
+    CommandOutline out;
+    out.name = "plab-conformance", out.help = "plab-conformance: checks that a plugin keeps what every plugin promises";
+    out.places = {place_of_file("LIBRARY", "the plugin: a .so with its .manifest beside it")};
+    out.options = {option_with("--scenes", "DIR",
+                               "where its types have their scenes (may be repeated), before those of pLab; default: \"conformance\" beside "
+                               "LIBRARY"),
+                   flag("--extremes", "instead: numeric fields at the ends of what numbers hold"),
+                   flag("--list", "only say which types and scenes there are")};
+    out.footer =
+        R"(A plugin that conforms describes its types, refuses bad values, steps alike from a memento, in any order and with any number of
+threads, asks for no memory in a warm step, and can be exchanged without a trace.
+Scenes: TYPE.xml, with dots for slashes; $TYPE stands for the type in it, and the component under test has the id "subject".
 Plugins that the scenes need are looked for in the folders of PLAB_PLUGIN_PATH and among those installed with this program.
-Exit codes: 0 it conforms, 1 it does not, 2 wrong use.
-)";
+Exit codes: 0 it conforms, 1 it does not, 2 wrong use)";
+    return out;
+}
 
 struct Options
 {
@@ -80,11 +85,10 @@ int list()
 
 int main(int argc, char** argv)
 {
-    const std::vector<std::string> words(argv + 1, argv + argc);
-    if (words.size() == 1 && words[0] == "--help") return std::fputs(kUsage, stdout), 0;
-    if (words.size() == 1 && words[0] == "--version") return std::puts("plab-conformance " PLAB_VERSION), 0;
-    const auto options = parse(words);
-    if (!options) return std::fputs(kUsage, stderr), 2;
+    if (const auto answer = plab::program::answer_about(outline(), PLAB_VERSION, argc, argv))
+        return std::fputs(answer->c_str(), stdout) < 0 ? 1 : 0;
+    const auto options = parse({argv + 1, argv + argc});
+    if (!options) return std::fputs(plab::program::help_text(outline()).c_str(), stderr), 2;
     if (const auto opened = plab::plugins::open_plugin(options->library); !opened)
         return std::fprintf(stderr, "plab-conformance: %s\n", opened.error().text().c_str()), 1;
     choose(*options);

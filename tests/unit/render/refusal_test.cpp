@@ -88,11 +88,11 @@ TEST_CASE("a picture reads back from its file unchanged")
     Picture picture = drawn(drawing);
     picture.rgba[3] = 17;
     const std::string path = temporary("picture.png");
-    REQUIRE(write_png(path, picture).ok());
+    REQUIRE(picture::write_png(path, picture).ok());
     CHECK(read_back(path) == picture.rgba);
     CHECK_FALSE(std::filesystem::exists(path + ".part"));
     picture.rgba[0] ^= 255;  // an old file is replaced
-    REQUIRE(write_png(path, picture).ok());
+    REQUIRE(picture::write_png(path, picture).ok());
     CHECK(read_back(path) == picture.rgba);
     std::filesystem::remove(path);
 }
@@ -101,13 +101,13 @@ TEST_CASE("a picture that cannot be written leaves nothing behind")
 {
     const Picture small{2, 1, {1, 2, 3, 4, 5, 6, 7, 8}}, torn{2, 2, {1, 2, 3, 4}}, none{};
     const std::string torn_reason = "a picture of 2 x 2 pixels must have 16 bytes and at least one pixel, not 4 bytes";
-    CHECK(write_png(temporary("torn.png"), torn).error().reason == torn_reason);
-    CHECK_FALSE(write_png(temporary("none.png"), none).ok());
-    CHECK_FALSE(write_png(temporary("no/such/folder.png"), small).ok());
+    CHECK(picture::write_png(temporary("torn.png"), torn).error().reason == torn_reason);
+    CHECK_FALSE(picture::write_png(temporary("none.png"), none).ok());
+    CHECK_FALSE(picture::write_png(temporary("no/such/folder.png"), small).ok());
     const std::string folder = temporary("folder");
     std::filesystem::create_directory(folder);
     std::filesystem::create_directory(folder + "/inside");
-    CHECK_FALSE(write_png(folder, small).ok());
+    CHECK_FALSE(picture::write_png(folder, small).ok());
     CHECK_FALSE(std::filesystem::exists(folder + ".part"));
     std::filesystem::remove_all(folder);
 }

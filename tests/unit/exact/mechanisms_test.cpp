@@ -2,11 +2,11 @@
 // formula given with each; never from this code.
 #include <numbers>
 
-#include "study/exact/exact.h"
+#include "exact/closed_form.h"
 #include "support/scene.h"
 
 using namespace plab;
-using namespace plab::study;
+using namespace plab::exact;
 using plab::test::distance;
 using plab::test::near;
 using plab::test::Scene;
@@ -14,29 +14,29 @@ using plab::test::Scene;
 namespace
 {
 
-ExactState exact_at(const Scene& scene, const std::string& name, const std::string& id, double t)
+State exact_at(const Scene& scene, const std::string& name, const std::string& id, double t)
 {
     REQUIRE_MESSAGE(scene.loaded(), scene.error());
-    const auto solution = make_exact(name, scene.simulation(), 10);
+    const auto solution = make_solution(name, scene.simulation(), 10);
     REQUIRE_MESSAGE(solution.ok(), (solution ? "" : solution.error().text()));
-    ExactState out;
+    State out;
     REQUIRE((*solution)->state(id, t, out));
     return out;
 }
 
 std::vector<double> contact_times(const Scene& scene, const std::string& name, double until)
 {
-    const auto solution = make_exact(name, scene.simulation(), until);
+    const auto solution = make_solution(name, scene.simulation(), until);
     REQUIRE(solution.ok());
     std::vector<double> out;
-    for (const RecordedContact& c : (*solution)->contacts(until)) out.push_back(c.time);
+    for (const Touch& c : (*solution)->contacts(until)) out.push_back(c.time);
     return out;
 }
 
 std::string refusal(const Scene& scene, const std::string& name)
 {
     REQUIRE_MESSAGE(scene.loaded(), scene.error());
-    const auto solution = make_exact(name, scene.simulation(), 1);
+    const auto solution = make_solution(name, scene.simulation(), 1);
     return solution ? "none" : solution.error().text();
 }
 
@@ -78,17 +78,17 @@ TEST_CASE("a body on a hinge or a ball joint is the pendulum of its inertia: per
         const Scene s = hung(joint);
         CHECK(distance(exact_at(s, "pendulum", "bob", period).position, {0.5, 0, 0}) < 1e-14);
         CHECK(distance(exact_at(s, "pendulum", "bob", period / 2).position, {-0.5, 0, 0}) < 1e-14);
-        const ExactState low = exact_at(s, "pendulum", "bob", period / 4);
+        const State low = exact_at(s, "pendulum", "bob", period / 4);
         CHECK(distance(low.position, {0, 0, -0.5}) < 1e-14);
         CHECK(near(length(low.velocity), 0.5 * std::sqrt(2 * 9.81), 1e-14));
         // From the vertical: 0.469575371957878769 rad past it.
-        const ExactState past = exact_at(s, "pendulum", "bob", 0.7);
+        const State past = exact_at(s, "pendulum", "bob", 0.7);
         CHECK(near(past.position.x, -0.5 * std::sin(0.469575371957878769), 1e-14));
         CHECK(near(past.position.z, -0.5 * std::cos(0.469575371957878769), 1e-14));
         CHECK(distance(past.velocity, cross(past.angular_velocity, past.position)) < 1e-15);
     }
     const Scene round = hung("Constraint/Hinge' axis='0 1 0", "angular_velocity='0 -9 0' linear_velocity='0 0 4.5'");
-    const ExactState start = exact_at(round, "pendulum", "bob", 0);
+    const State start = exact_at(round, "pendulum", "bob", 0);
     CHECK(distance(start.velocity, {0, 0, 4.5}) < 1e-14);
     CHECK(distance(start.angular_velocity, {0, -9, 0}) < 1e-14);
 }
@@ -156,22 +156,22 @@ TEST_CASE("a box on a slope: sliding down, up and back, at rest, and across")
 {
     const double p = 3.3552176060248105, f = 0.6 * 9.218384609909762;
     CHECK(near(exact_at(slope("2 0 0"), "slide", "box", 0.5).position.x, 1 + 0.125 * (p - f), 1e-15));
-    const ExactState held = exact_at(slope("-2 0 0"), "slide", "box", 5);
+    const State held = exact_at(slope("-2 0 0"), "slide", "box", 5);
     CHECK(near(held.position.x, -2 / (p + f), 1e-15));
     CHECK(length(held.velocity) == 0);
     // mu = 0.2 does not hold: up for 2/(p + f), then down with p - f.
     const double slip = 0.2 * 9.218384609909762, stop = 2 / (p + slip);
-    const ExactState back = exact_at(slope("-2 0 0", "0.2"), "slide", "box", 2);
+    const State back = exact_at(slope("-2 0 0", "0.2"), "slide", "box", 2);
     CHECK(near(back.velocity.x, (p - slip) * (2 - stop), 1e-15));
     CHECK(near(back.position.x, -2 / (p + slip) + 0.5 * (p - slip) * (2 - stop) * (2 - stop), 1e-14));
     CHECK(near(exact_at(slope("0 0 0", "0.2"), "slide", "box", 2).position.x, 2 * (p - slip), 1e-15));
     CHECK(exact_at(slope("0 0 0"), "slide", "box", 2).position.x == 0);
     // Across: Taylor series of the equations of motion, 18 digits.
-    const ExactState across = exact_at(slope("0.5 1.5 0"), "slide", "box", 0.3);
+    const State across = exact_at(slope("0.5 1.5 0"), "slide", "box", 0.3);
     CHECK(distance(across.position, {0.171996423236580551, 0.241732556382433475, 0.05}) < 1e-12);
     CHECK(distance(across.velocity, {0.482780191945166828, 0.248267313542715482, 0}) < 1e-12);
     CHECK(length(exact_at(slope("0.5 1.5 0"), "slide", "box", 5).velocity) == 0);
-    const ExactState begin = exact_at(slope("0.5 -1.5 0"), "slide", "box", 0);
+    const State begin = exact_at(slope("0.5 -1.5 0"), "slide", "box", 0);
     CHECK(distance(begin.velocity, {0.5, -1.5, 0}) < 1e-12);
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("a rocking block: times of impact by quadrature, Housner's factor, and
     CHECK(near(tilt(0.655863215804936542), -2 * std::sin(0.5 * 0.0843380236142950377), 1e-13));
     CHECK(near(tilt(1.23129222934816207), 2 * std::sin(0.5 * 0.0720548723145059452), 1e-13));
     // No jump of the position at an impact; the angular speed is multiplied by 0.9423...
-    const ExactState before = exact_at(s, "rocking", "block", times[0] - 1e-9), after = exact_at(s, "rocking", "block", times[0] + 1e-9);
+    const State before = exact_at(s, "rocking", "block", times[0] - 1e-9), after = exact_at(s, "rocking", "block", times[0] + 1e-9);
     CHECK(distance(before.position, after.position) < 1e-8);
     CHECK(near(after.angular_velocity.y / before.angular_velocity.y, 0.942307692307692308, 1e-7));
     const Scene squat(

@@ -1,13 +1,13 @@
 // Closed forms against independently computed digits (113-bit arithmetic, or 30-digit formulas).
 #include <numbers>
 
-#include "study/exact/elliptic.h"
-#include "study/exact/exact.h"
+#include "exact/closed_form.h"
+#include "exact/elliptic.h"
 #include "support/scene.h"
 #include "world/principal_axes.h"
 
 using namespace plab;
-using namespace plab::study;
+using namespace plab::exact;
 using plab::test::attitude_error;
 using plab::test::distance;
 using plab::test::near;
@@ -17,12 +17,12 @@ using plab::world::principal_axes, plab::world::PrincipalAxes;
 namespace
 {
 
-ExactState exact_at(const Scene& scene, const std::string& name, const std::string& id, double t)
+State exact_at(const Scene& scene, const std::string& name, const std::string& id, double t)
 {
     REQUIRE_MESSAGE(scene.loaded(), scene.error());
-    const auto solution = make_exact(name, scene.simulation(), t);
+    const auto solution = make_solution(name, scene.simulation(), t);
     REQUIRE_MESSAGE(solution.ok(), (solution ? "" : solution.error().text()));
-    ExactState out;
+    State out;
     REQUIRE((*solution)->state(id, t, out));
     return out;
 }
@@ -30,7 +30,7 @@ ExactState exact_at(const Scene& scene, const std::string& name, const std::stri
 std::string refusal(const Scene& scene, const std::string& name)
 {
     REQUIRE_MESSAGE(scene.loaded(), scene.error());
-    const auto solution = make_exact(name, scene.simulation(), 1);
+    const auto solution = make_solution(name, scene.simulation(), 1);
     return solution ? "none" : solution.error().text();
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("A2: the torque-free box at t = 5 and t = 100")
           std::tuple(100.0, Vec3{1.3720842116810150604, -1.4711086382031171752, 3.2213164282561760733},
                      Quat{-.25530488095953154536, -.51834919319232768729, -.09806435894574611863, -.81025731294426601932})})
     {
-        const ExactState state = exact_at(s, "torque-free", "box", t);
+        const State state = exact_at(s, "torque-free", "box", t);
         CHECK(attitude_error(q, state.orientation) < 1e-14 * (1 + t));
         CHECK(distance(rotate(conjugate(state.orientation), state.angular_velocity), w_B) < 1e-14 * (1 + t));
     }
@@ -97,14 +97,14 @@ TEST_CASE("A2: the torque-free box at t = 5 and t = 100")
 TEST_CASE("A3: close to the separatrix, and the axes in another order")
 {
     const Scene s("<component id='nut' type='State/RigidBody' mass='1' inertia='3 2 1' angular_velocity='1e-3 10 1e-3'/>");
-    const ExactState state = exact_at(s, "torque-free", "nut", 10);
+    const State state = exact_at(s, "torque-free", "nut", 10);
     const Vec3 w_B = rotate(conjugate(state.orientation), state.angular_velocity);
     CHECK(distance(w_B, {9.1429206965016778e-3, -9.9999876110424964, 1.5772729522424334e-2}) < 1e-9);
     const Scene sphere("<component id='nut' type='State/RigidBody' mass='1' inertia='2 2 2' angular_velocity='1 2 3'/>");
     CHECK(distance(exact_at(sphere, "torque-free", "nut", 3).angular_velocity, {1, 2, 3}) < 1e-15);
     const Scene top("<component id='nut' type='State/RigidBody' mass='1' inertia='1 1 2' angular_velocity='1 0 3'/>");
     // Precession rate of a symmetric top in the body: (I3 - I1) w3 / I1.
-    const ExactState turned = exact_at(top, "torque-free", "nut", 0.4);
+    const State turned = exact_at(top, "torque-free", "nut", 0.4);
     const Vec3 w = rotate(conjugate(turned.orientation), turned.angular_velocity);
     CHECK(near(w.x, std::cos(1.2), 1e-14));
     CHECK(near(w.y, std::sin(1.2), 1e-14));
@@ -115,7 +115,7 @@ TEST_CASE("A3: close to the separatrix, and the axes in another order")
 TEST_CASE("A6: Kepler's ellipse of eccentricity 0.9")
 {
     const Scene s(kOrbit + lua("driven='planet'", "<entry name='mu'>1</entry>", ""));
-    const ExactState state = exact_at(s, "kepler", "planet", 10);
+    const State state = exact_at(s, "kepler", "planet", 10);
     CHECK(distance(state.position, {-1.8538537094055792, -.130885404839925551, 0}) < 1e-13);
     CHECK(distance(exact_at(s, "kepler", "planet", 2 * std::numbers::pi).position, {0.1, 0, 0}) < 1e-12);
 }
@@ -127,7 +127,7 @@ TEST_CASE("B1: the damped oscillator, weak, critical and over-damped")
     CHECK(near(exact_at(s, "oscillator", "m", 0.3).position.x, -.84539188273933843, 1e-14));
     CHECK(near(exact_at(s, "oscillator:damping=20", "m", 0.3).position.x, std::exp(-3.0) * 4, 1e-15));
     // r1, r2 = -2, -50: x = (50 e^-2t - 2 e^-50t)/48.
-    const ExactState over = exact_at(s, "oscillator:damping=52", "m", 0.3);
+    const State over = exact_at(s, "oscillator:damping=52", "m", 0.3);
     CHECK(near(over.position.x, (50 * std::exp(-0.6) - 2 * std::exp(-15.0)) / 48, 1e-15));
     CHECK(near(over.velocity.x, 100 * (std::exp(-15.0) - std::exp(-0.6)) / 48, 1e-14));
 }
@@ -145,7 +145,7 @@ TEST_CASE("a pendulum conserves its energy, is periodic, and rotates if it is fa
         const double start = 0.5 * 2 * s->spin("a") * s->spin("a") - 8 * std::cos(2.5);
         for (const double t : {0.1, 1.0, 7.0})
         {
-            const ExactState x = exact_at(*s, "pendulum", "a", t), y = exact_at(*s, "pendulum", "a", t + 1e-6);
+            const State x = exact_at(*s, "pendulum", "a", t), y = exact_at(*s, "pendulum", "a", t + 1e-6);
             CHECK(near(x.speed * x.speed - 8 * std::cos(x.angle), start, 1e-13));
             CHECK(std::fabs((y.angle - x.angle) / 1e-6 - 0.5 * (x.speed + y.speed)) < 1e-8);
         }
@@ -164,7 +164,7 @@ TEST_CASE("a bouncing ball comes to rest at the sum of its flight times")
     CHECK(near(exact_at(s, "bounce", "ball", first + 0.1).position.z, 0.1 + up * 0.1 - 0.5 * 9.81 * 0.01, 1e-15));
     // t1 (1 + 2e/(1 - e)) = 9 t1.
     CHECK(exact_at(s, "bounce", "ball", 9.001 * first).velocity.z == 0);
-    const auto solution = make_exact("bounce", s.simulation(), 10);
+    const auto solution = make_solution("bounce", s.simulation(), 10);
     REQUIRE(solution.ok());
     REQUIRE((*solution)->contacts(1).size() == 1);
     CHECK(near((*solution)->contacts(1)[0].time, first, 1e-15));

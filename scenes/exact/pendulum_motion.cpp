@@ -1,13 +1,13 @@
-#include "study/exact/pendulum_law.h"
+#include "exact/pendulum_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "study/exact/elliptic.h"
+#include "exact/elliptic.h"
 
-namespace plab::study
+namespace plab::exact
 {
 
 PendulumMotion::PendulumMotion(double w0, double theta, double speed) : w0_(w0)
@@ -47,4 +47,4 @@ double PendulumMotion::time_of_turn() const
 
 double PendulumMotion::fastest() const { return 2 * w0_ * std::sqrt(std::max(1.0, k2_)); }
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -1,12 +1,12 @@
 // Pendulums: a shaft with the moment of its weight, and a body that hangs on a hinge or a ball.
 #include <cmath>
 
+#include "exact/facts.h"
+#include "exact/pendulum_motion.h"
 #include "model/numbers.h"
 #include "plab/rotation.h"
-#include "study/exact/facts.h"
-#include "study/exact/pendulum_law.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
@@ -17,11 +17,11 @@ std::string words_of(const PendulumMotion& motion)
            " rad/s, k^2 = " + model::format_real(motion.k2());
 }
 
-class ShaftPendulum final : public ExactSolution
+class ShaftPendulum final : public Solution
 {
 public:
     ShaftPendulum(std::string id, const PendulumMotion& motion) : id_(std::move(id)), motion_(motion) {}
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         if (id != id_) return false;
         motion_.at(t, out.angle, out.speed);
@@ -36,14 +36,14 @@ private:
 };
 
 /// A body that turns about the axis n through a fixed point.
-class Hung final : public ExactSolution
+class Hung final : public Solution
 {
 public:
-    Hung(std::string id, const ExactState& start, const Vec3& pivot, const Vec3& n, double theta, const PendulumMotion& motion)
+    Hung(std::string id, const State& start, const Vec3& pivot, const Vec3& n, double theta, const PendulumMotion& motion)
         : id_(std::move(id)), start_(start), pivot_(pivot), n_(n), theta_(theta), motion_(motion)
     {
     }
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         if (id != id_) return false;
         double theta = 0, speed = 0;
@@ -60,7 +60,7 @@ public:
 
 private:
     std::string id_;
-    ExactState start_;
+    State start_;
     Vec3 pivot_, n_;
     double theta_;
     PendulumMotion motion_;
@@ -74,7 +74,7 @@ Vec3 across(const Vec3& a, const Vec3& b)
     return n / length(n);
 }
 
-Result<std::unique_ptr<ExactSolution>> make_hung(const SceneFacts& facts, std::uint32_t object)
+Result<std::unique_ptr<Solution>> make_hung(const SceneFacts& facts, std::uint32_t object)
 {
     const std::string id = facts.world().id_of(object);
     const std::vector<std::uint32_t> hinges = facts.of_type("Constraint/Hinge"), balls = facts.of_type("Constraint/Ball");
@@ -86,7 +86,7 @@ Result<std::unique_ptr<ExactSolution>> make_hung(const SceneFacts& facts, std::u
         return reason(other + " acts too; only Field/Gravity and the joint may");
     const std::uint32_t row = facts.world().component(object).host_index;
     const Bodies& bodies = facts.bodies();
-    const ExactState start = present(facts, object);
+    const State start = present(facts, object);
     const Vec3 pivot = start.position + rotate(start.orientation, vector_of(facts, joint, "point_b") - bodies.center_B[row]);
     const Vec3 lever = start.position - pivot, g = facts.gravity(), w = start.angular_velocity;
     const Value frame = facts.world().get(joint, "frame_b");
@@ -103,13 +103,13 @@ Result<std::unique_ptr<ExactSolution>> make_hung(const SceneFacts& facts, std::u
         return reason("its velocity is not a rotation about the joint");
     const double J = dot(n, Ln) + bodies.mass[row] * length_squared(r), moment = bodies.mass[row] * length(r) * length(down);
     const double theta = std::atan2(dot(n, cross(down, r)), dot(down, r));
-    return std::unique_ptr<ExactSolution>(
+    return std::unique_ptr<Solution>(
         std::make_unique<Hung>(id, start, pivot, n, theta, PendulumMotion(std::sqrt(moment / J), theta, dot(n, w))));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_pendulum(const SceneFacts& facts, double)
+Result<std::unique_ptr<Solution>> make_pendulum(const SceneFacts& facts, double)
 {
     const auto object = only_object(facts);
     if (!object) return object.errors();
@@ -118,8 +118,8 @@ Result<std::unique_ptr<ExactSolution>> make_pendulum(const SceneFacts& facts, do
     const auto w = facts.number("weight_moment");
     if (!w || !(*w > 0)) return missing_number("weight_moment", "m g l, N m, positive");
     const double inertia = facts.shafts().inertia[c.host_index];
-    return std::unique_ptr<ExactSolution>(std::make_unique<ShaftPendulum>(
+    return std::unique_ptr<Solution>(std::make_unique<ShaftPendulum>(
         c.id, PendulumMotion(std::sqrt(*w / inertia), facts.shafts().angle[c.host_index], facts.shafts().speed[c.host_index])));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "exact/facts.h"
 #include "model/numbers.h"
-#include "study/exact/facts.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
@@ -14,18 +14,18 @@ namespace
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Along a line: a first phase in which friction and slope decelerate the box, then rest, or sliding back down.
-class Straight final : public ExactSolution
+class Straight final : public Solution
 {
 public:
     /// `speed` along `along`; `pull`: the slope's share of gravity along it; `grip`: mu times gravity across the plane.
-    Straight(std::string id, const ExactState& start, const Vec3& along, double speed, double pull, double grip)
+    Straight(std::string id, const State& start, const Vec3& along, double speed, double pull, double grip)
         : id_(std::move(id)), start_(start), along_(along), speed_(speed), brake_(grip - pull)
     {
         stop_ = speed == 0 ? 0 : brake_ > 0 ? speed / brake_ : kNever;
         // Afterwards friction acts against the pull of the slope.
         back_ = grip >= std::fabs(pull) ? 0 : pull > 0 ? pull - grip : pull + grip;
     }
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         if (id != id_) return false;
         const double first = std::min(t, stop_), then = t - first;
@@ -43,25 +43,25 @@ public:
 
 private:
     std::string id_;
-    ExactState start_;
+    State start_;
     Vec3 along_;
     double speed_, brake_, stop_ = kNever, back_ = 0;
 };
 
 /// Across a slope. With phi from the slope's pull p to the velocity, f = mu N/m, k = f/p and w = tan(phi/2):
 ///   v' = p cos phi - f, v phi' = -p sin phi, so v = C (1 + w^2) w^(k-1) / 2, and time and place are powers of w.
-class Curved final : public ExactSolution
+class Curved final : public Solution
 {
 public:
     /// down: along the pull; aside: the side to which it moves at first; units m and s.
-    Curved(std::string id, const ExactState& start, const Vec3& down, const Vec3& aside, double pull, double grip)
+    Curved(std::string id, const State& start, const Vec3& down, const Vec3& aside, double pull, double grip)
         : id_(std::move(id)), start_(start), down_(down), aside_(aside), p_(pull), k_(grip / pull)
     {
         const double along = dot(start.velocity, down), across = dot(start.velocity, aside), v = length(start.velocity);
         w0_ = across / (v + along);  // tan(phi/2)
         c_ = 2 * v / ((1 + w0_ * w0_) * std::pow(w0_, k_ - 1));
     }
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         if (id != id_) return false;
         out = start_;
@@ -102,20 +102,20 @@ private:
     }
 
     std::string id_;
-    ExactState start_;
+    State start_;
     Vec3 down_, aside_;
     double p_, k_, w0_ = 0, c_ = 0;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_slide(const SceneFacts& facts, double)
+Result<std::unique_ptr<Solution>> make_slide(const SceneFacts& facts, double)
 {
     const auto place = body_and_plane(facts);
     if (!place) return place.errors();
     const auto box = only_shape(facts, place->body, GeometryKind::Box, "box");
     if (!box) return box.errors();
-    const ExactState start = present(facts, place->body);
+    const State start = present(facts, place->body);
     const Vec3 n = place->normal, g = facts.gravity();
     const double gap = dot(start.position - place->point, n) - box->size.z;
     const Vec3 up = rotate(start.orientation * box->pose.q, Vec3{0, 0, 1});
@@ -131,8 +131,8 @@ Result<std::unique_ptr<ExactSolution>> make_slide(const SceneFacts& facts, doubl
     const Vec3 along = speed > 0 ? start.velocity / speed : level ? Vec3{} : pull / p;
     const Vec3 side = level ? Vec3{} : along - pull * (dot(along, pull) / (p * p));
     if (level || speed == 0 || length(side) < 1e-9)
-        return std::unique_ptr<ExactSolution>(std::make_unique<Straight>(id, start, along, speed, level ? 0.0 : dot(along, pull), grip));
-    return std::unique_ptr<ExactSolution>(std::make_unique<Curved>(id, start, pull / p, side / length(side), p, grip));
+        return std::unique_ptr<Solution>(std::make_unique<Straight>(id, start, along, speed, level ? 0.0 : dot(along, pull), grip));
+    return std::unique_ptr<Solution>(std::make_unique<Curved>(id, start, pull / p, side / length(side), p, grip));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -1,22 +1,16 @@
 // Renders the same list of shapes with cairo.
-#include <cairo/cairo.h>
-
 #include <cmath>
-#include <memory>
+#include <cstring>
 #include <numbers>
 
 #include "figures/drawing.h"
+#include "picture/lettering.h"
+#include "picture/picture.h"
 
 namespace plab::figures
 {
 namespace
 {
-
-struct Destroy
-{
-    void operator()(cairo_surface_t* s) const { cairo_surface_destroy(s); }
-    void operator()(cairo_t* c) const { cairo_destroy(c); }
-};
 
 void use(cairo_t* c, const Ink& ink)
 {
@@ -42,8 +36,7 @@ void stroke(cairo_t* c, const Pen& pen)
 
 void write_words(cairo_t* c, const Spot& at, const std::string& text, const Words& how)
 {
-    cairo_select_font_face(c, "sans-serif", CAIRO_FONT_SLANT_NORMAL, how.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(c, how.size);
+    picture::select_letters(c, how.size, how.bold);
     cairo_text_extents_t extents;
     cairo_text_extents(c, text.c_str(), &extents);
     const double shift = how.anchor == Anchor::Start ? 0 : how.anchor == Anchor::Middle ? -0.5 * extents.x_advance : -extents.x_advance;
@@ -56,14 +49,34 @@ void write_words(cairo_t* c, const Spot& at, const std::string& text, const Word
     cairo_restore(c);
 }
 
+/// Cairo keeps a pixel as one number of 32 bits, 0xXXRRGGBB, in the machine's byte order.
+picture::Picture pixels_of(cairo_surface_t* surface)
+{
+    cairo_surface_flush(surface);
+    picture::Picture out;
+    out.width = static_cast<std::uint32_t>(cairo_image_surface_get_width(surface));
+    out.height = static_cast<std::uint32_t>(cairo_image_surface_get_height(surface));
+    out.rgba.reserve(std::size_t{4} * out.width * out.height);
+    const unsigned char* row = cairo_image_surface_get_data(surface);
+    for (std::uint32_t y = 0; y < out.height; ++y, row += cairo_image_surface_get_stride(surface))
+        for (std::uint32_t x = 0; x < out.width; ++x)
+        {
+            std::uint32_t rgb = 0;
+            std::memcpy(&rgb, row + std::size_t{4} * x, 4);
+            for (const int shift : {16, 8, 0}) out.rgba.push_back(static_cast<std::uint8_t>(rgb >> shift));
+            out.rgba.push_back(255);
+        }
+    return out;
+}
+
 }  // namespace
 
 Result<void> Drawing::write_png(const std::string& path, double scale) const
 {
-    const std::unique_ptr<cairo_surface_t, Destroy> surface(cairo_image_surface_create(
-        CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(width_ * scale)), static_cast<int>(std::lround(height_ * scale))));
-    const std::unique_ptr<cairo_t, Destroy> context(cairo_create(surface.get()));
-    cairo_t* c = context.get();
+    const picture::Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(width_ * scale)),
+                                                              static_cast<int>(std::lround(height_ * scale))));
+    const picture::Canvas canvas(cairo_create(surface.get()));
+    cairo_t* c = canvas.get();
     cairo_set_source_rgb(c, 1, 1, 1);
     cairo_paint(c);
     cairo_scale(c, scale, scale);
@@ -91,8 +104,9 @@ Result<void> Drawing::write_png(const std::string& path, double scale) const
         else
             cairo_new_path(c);
     }
-    if (cairo_surface_write_to_png(surface.get(), path.c_str()) != CAIRO_STATUS_SUCCESS) return reason("cannot write " + path);
-    return {};
+    if (const cairo_status_t status = cairo_status(c); status != CAIRO_STATUS_SUCCESS)
+        return reason("cannot draw " + path + ": " + cairo_status_to_string(status));
+    return picture::write_png(path, pixels_of(surface.get()));
 }
 
 }  // namespace plab::figures

@@ -4,7 +4,7 @@
 /// k^2 = sin^2(theta/2) + (theta'/2 w0)^2 (Abramowitz and Stegun, 16 and 17).
 #pragma once
 
-namespace plab::study
+namespace plab::exact
 {
 
 class PendulumMotion
@@ -26,4 +26,4 @@ private:
     bool swings_ = true;
 };
 
-}  // namespace plab::study
+}  // namespace plab::exact

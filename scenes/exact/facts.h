@@ -1,17 +1,17 @@
 /// Properties of a scene that several closed forms need.
 #pragma once
 
+#include "exact/closed_form.h"
 #include "model/numbers.h"
-#include "study/exact/exact.h"
 
-namespace plab::study
+namespace plab::exact
 {
 
 /// A number as shown in names and messages of references.
 inline std::string real(double v) { return model::format_real(v); }
 
 /// The current state of a body or a shaft.
-ExactState present(const SceneFacts& facts, std::uint32_t component);
+State present(const SceneFacts& facts, std::uint32_t component);
 /// The only moving object, a body or a shaft; directory index.
 Result<std::uint32_t> only_object(const SceneFacts& facts);
 /// The participants in a role of a component; directory indices.
@@ -33,4 +33,4 @@ Result<Geometry> only_shape(const SceneFacts& facts, std::uint32_t body, Geometr
 /// Friction or restitution of the only response; materials are not considered.
 Result<double> law_of(const SceneFacts& facts, const std::string& name);
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -1,11 +1,11 @@
-#include "study/exact/facts.h"
+#include "exact/facts.h"
 
-namespace plab::study
+namespace plab::exact
 {
 
-ExactState present(const SceneFacts& facts, std::uint32_t i)
+State present(const SceneFacts& facts, std::uint32_t i)
 {
-    ExactState out;
+    State out;
     const world::Component& c = facts.world().component(i);
     if (c.facet == Facet::Shaft)
     {
@@ -100,4 +100,4 @@ Result<double> law_of(const SceneFacts& facts, const std::string& name)
     return *value;
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

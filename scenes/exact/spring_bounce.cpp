@@ -3,20 +3,20 @@
 #include <cmath>
 #include <numbers>
 
+#include "exact/damped.h"
+#include "exact/facts.h"
 #include "model/numbers.h"
-#include "study/exact/damped.h"
-#include "study/exact/facts.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
 
-class SpringBounce final : public ExactSolution
+class SpringBounce final : public Solution
 {
 public:
     /// `ground`: height of the centre at which the ball touches, m; g > 0, m/s^2.
-    SpringBounce(std::string ball, std::string plane, const ExactState& start, double ground, double g, const Damped& law, double until)
+    SpringBounce(std::string ball, std::string plane, const State& start, double ground, double g, const Damped& law, double until)
         : ball_(std::move(ball)), plane_(std::move(plane)), start_(start), ground_(ground), g_(g), law_(law)
     {
         double t = 0, z = start.position.z - ground, v = start.velocity.z;
@@ -34,7 +34,7 @@ public:
             t += parting, z = 0;
         }
     }
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         if (id != ball_) return false;
         out = start_;
@@ -49,9 +49,9 @@ public:
     }
     double precision(double until) const override { return precision_after(std::sqrt(law_.w2) * until); }
     bool knows_contacts() const override { return true; }
-    std::vector<RecordedContact> contacts(double until) const override
+    std::vector<Touch> contacts(double until) const override
     {
-        std::vector<RecordedContact> out;
+        std::vector<Touch> out;
         const auto& [a, b] = std::minmax(ball_, plane_);
         for (const Piece& p : pieces_)
             if (p.touches && p.begin <= until) out.push_back({"contact.impact", a, b, p.begin});
@@ -100,7 +100,7 @@ private:
     }
 
     std::string ball_, plane_;
-    ExactState start_;
+    State start_;
     double ground_, g_;
     Damped law_;
     std::vector<Piece> pieces_;
@@ -108,7 +108,7 @@ private:
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_spring_bounce(const SceneFacts& facts, double until)
+Result<std::unique_ptr<Solution>> make_spring_bounce(const SceneFacts& facts, double until)
 {
     const auto place = body_and_plane(facts);
     if (!place) return place.errors();
@@ -116,7 +116,7 @@ Result<std::unique_ptr<ExactSolution>> make_spring_bounce(const SceneFacts& fact
     if (!ball) return ball.errors();
     const auto springs = facts.of_type("Response/Penalty");
     if (springs.size() != 1) return reason("it has no Response/Penalty");
-    const ExactState start = present(facts, place->body);
+    const State start = present(facts, place->body);
     const Vec3 g = facts.gravity();
     if (!(place->normal == Vec3{0, 0, 1}) || !(g.x == 0 && g.y == 0 && g.z < 0))
         return reason("the plane is not level, or gravity is not along -z");
@@ -134,8 +134,8 @@ Result<std::unique_ptr<ExactSolution>> make_spring_bounce(const SceneFacts& fact
     const double damping = real_of(facts, springs.front(), "damping") + 2 * ratio * std::sqrt(k * m);
     const double ground = place->point.z + ball->size.x;
     if (!(start.position.z > ground)) return reason("the ball does not start above the plane");
-    return std::unique_ptr<ExactSolution>(std::make_unique<SpringBounce>(
-        facts.world().id_of(place->body), facts.world().id_of(place->plane), start, ground, -g.z, Damped{k / m, 0.5 * damping / m}, until));
+    return std::unique_ptr<Solution>(std::make_unique<SpringBounce>(facts.world().id_of(place->body), facts.world().id_of(place->plane),
+                                                                    start, ground, -g.z, Damped{k / m, 0.5 * damping / m}, until));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

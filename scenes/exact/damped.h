@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace plab::study
+namespace plab::exact
 {
 
 struct Damped
@@ -32,4 +32,4 @@ private:
     }
 };
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <map>
 
+#include "exact/facts.h"
 #include "model/numbers.h"
-#include "study/exact/facts.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
@@ -19,7 +19,7 @@ struct Train
     double acceleration = 0;  ///< rad/s^2
 };
 
-class Gears final : public ExactSolution
+class Gears final : public Solution
 {
 public:
     struct Wheel
@@ -27,7 +27,7 @@ public:
         double ratio, angle, speed, acceleration;
     };
     explicit Gears(std::map<std::string, Wheel> wheels, std::string words) : wheels_(std::move(wheels)), words_(std::move(words)) {}
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         const auto found = wheels_.find(id);
         if (found == wheels_.end()) return false;
@@ -116,7 +116,7 @@ double torque_on(const SceneFacts& facts, std::uint32_t shaft)
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_gears(const SceneFacts& facts, double)
+Result<std::unique_ptr<Solution>> make_gears(const SceneFacts& facts, double)
 {
     const auto meshes = meshes_of(facts);
     if (!meshes) return meshes.errors();
@@ -146,7 +146,7 @@ Result<std::unique_ptr<ExactSolution>> make_gears(const SceneFacts& facts, doubl
                  model::format_real(train->inertia) + " kg m^2, from " + model::format_real(train->speed) + " rad/s with " +
                  model::format_real(train->acceleration) + " rad/s^2";
     }
-    return std::unique_ptr<ExactSolution>(std::make_unique<Gears>(std::move(wheels), std::move(words)));
+    return std::unique_ptr<Solution>(std::make_unique<Gears>(std::move(wheels), std::move(words)));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -10,13 +10,13 @@
 #include <array>
 #include <cmath>
 
+#include "exact/closed_form.h"
+#include "exact/elliptic.h"
 #include "model/values.h"
 #include "plab/rotation.h"
-#include "study/exact/elliptic.h"
-#include "study/exact/exact.h"
 #include "world/principal_axes.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
@@ -124,7 +124,7 @@ Quat FreeSpin::attitude(double t) const
     return normalized(to_W_ * euler(phi, spin_P(t)) * conjugate(principal_.q_BP));
 }
 
-class Flight final : public ExactSolution
+class Flight final : public Solution
 {
 public:
     Flight(const SceneFacts& facts, double until) : g_(facts.gravity())
@@ -138,7 +138,7 @@ public:
                                  FreeSpin(bodies.inertia_B[b], bodies.orientation[b], bodies.angular_velocity[b], until)});
         }
     }
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         const auto found = bodies_.find(id);
         if (found == bodies_.end()) return false;
@@ -171,13 +171,13 @@ private:
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_flight(const SceneFacts& facts, double until)
+Result<std::unique_ptr<Solution>> make_flight(const SceneFacts& facts, double until)
 {
     if (facts.dynamic(Facet::Body).empty()) return reason("it has no moving body");
     if (const std::string other = facts.foreign_force({"Field/Gravity"}); !other.empty())
         return reason(other + " acts too; only Field/Gravity may");
     if (facts.collides()) return reason("bodies may collide (CDetection/...); take the detection out");
-    return std::unique_ptr<ExactSolution>(std::make_unique<Flight>(facts, until));
+    return std::unique_ptr<Solution>(std::make_unique<Flight>(facts, until));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

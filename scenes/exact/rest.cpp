@@ -2,18 +2,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/exact/facts.h"
+#include "exact/facts.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
 
-class Rest final : public ExactSolution
+class Rest final : public Solution
 {
 public:
-    explicit Rest(std::map<std::string, ExactState> places) : places_(std::move(places)) {}
-    bool state(const std::string& id, double, ExactState& out) const override
+    explicit Rest(std::map<std::string, State> places) : places_(std::move(places)) {}
+    bool state(const std::string& id, double, State& out) const override
     {
         const auto found = places_.find(id);
         if (found == places_.end()) return false;
@@ -26,7 +26,7 @@ public:
     }
 
 private:
-    std::map<std::string, ExactState> places_;
+    std::map<std::string, State> places_;
 };
 
 /// A box with faces along the world's axes.
@@ -116,7 +116,7 @@ Result<void> check_stands(const SceneFacts& facts, const Block& block, const std
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_rest(const SceneFacts& facts, double)
+Result<std::unique_ptr<Solution>> make_rest(const SceneFacts& facts, double)
 {
     if (!facts.collides()) return reason("nothing collides: it has no CDetection/...");
     if (const std::string other = facts.foreign_force({"Field/Gravity"}); !other.empty())
@@ -133,13 +133,13 @@ Result<std::unique_ptr<ExactSolution>> make_rest(const SceneFacts& facts, double
     if (blocks.empty()) return reason("it has no moving body");
     const auto grounds = grounds_of(facts);
     if (!grounds) return grounds.errors();
-    std::map<std::string, ExactState> places;
+    std::map<std::string, State> places;
     for (const Block& block : blocks)
     {
         if (auto stands = check_stands(facts, block, blocks, *grounds); !stands) return stands.errors();
         places[facts.world().id_of(block.id)] = present(facts, block.id);
     }
-    return std::unique_ptr<ExactSolution>(std::make_unique<Rest>(std::move(places)));
+    return std::unique_ptr<Solution>(std::make_unique<Rest>(std::move(places)));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

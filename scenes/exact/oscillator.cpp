@@ -1,24 +1,24 @@
 // One object on one linear spring: written in a script, declared between two points, along a slider or about an axle.
 #include <cmath>
 
+#include "exact/damped.h"
+#include "exact/facts.h"
 #include "model/numbers.h"
-#include "study/exact/damped.h"
-#include "study/exact/facts.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
 
 /// The law holds for each coordinate of the place about `center`, and for the angle about `center_angle`.
-class Oscillator final : public ExactSolution
+class Oscillator final : public Solution
 {
 public:
-    Oscillator(std::string id, const Damped& law, const Vec3& center, double center_angle, const ExactState& start)
+    Oscillator(std::string id, const Damped& law, const Vec3& center, double center_angle, const State& start)
         : id_(std::move(id)), law_(law), center_(center), center_angle_(center_angle), start_(start)
     {
     }
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         if (id != id_) return false;
         out = start_;
@@ -40,7 +40,7 @@ private:
     Damped law_;
     Vec3 center_;
     double center_angle_;
-    ExactState start_;
+    State start_;
 };
 
 /// The line along which a declared spring acts, and the rest position of the body on it.
@@ -50,7 +50,7 @@ struct Line
     double stretch = 0;  ///< m, at the start, along u
 };
 
-Result<Line> line_of(const SceneFacts& facts, std::uint32_t spring, std::uint32_t object, const ExactState& start)
+Result<Line> line_of(const SceneFacts& facts, std::uint32_t spring, std::uint32_t object, const State& start)
 {
     const world::World& world = facts.world();
     const std::uint32_t row = world.component(object).host_index;
@@ -74,7 +74,7 @@ Result<Line> line_of(const SceneFacts& facts, std::uint32_t spring, std::uint32_
 }
 
 /// A declared spring: forces across its line must not move the body, unless a slider holds it.
-Result<std::unique_ptr<ExactSolution>> make_on_spring(const SceneFacts& facts, std::uint32_t spring, std::uint32_t object)
+Result<std::unique_ptr<Solution>> make_on_spring(const SceneFacts& facts, std::uint32_t spring, std::uint32_t object)
 {
     const world::World& world = facts.world();
     const std::string id = world.id_of(object);
@@ -84,11 +84,11 @@ Result<std::unique_ptr<ExactSolution>> make_on_spring(const SceneFacts& facts, s
         return reason(other + " acts too; only Field/Gravity, the spring and a slider may");
     const double k = real_of(facts, spring, "stiffness"), c = real_of(facts, spring, "damping");
     if (!(k > 0)) return reason("the spring has no stiffness");
-    ExactState start = present(facts, object);
+    State start = present(facts, object);
     if (world.component(object).facet == Facet::Shaft)
     {
         const double J = facts.shafts().inertia[world.component(object).host_index];
-        return std::unique_ptr<ExactSolution>(
+        return std::unique_ptr<Solution>(
             std::make_unique<Oscillator>(id, Damped{k / J, 0.5 * c / J}, Vec3{}, real_of(facts, spring, "rest"), start));
     }
     const auto line = line_of(facts, spring, object, start);
@@ -107,12 +107,12 @@ Result<std::unique_ptr<ExactSolution>> make_on_spring(const SceneFacts& facts, s
         return reason(id + " does more than move along the spring");
     const double m = facts.bodies().mass[world.component(object).host_index];
     const Vec3 center = start.position - u * (line->stretch - dot(u, g) * m / k);
-    return std::unique_ptr<ExactSolution>(std::make_unique<Oscillator>(id, Damped{k / m, 0.5 * c / m}, center, 0.0, start));
+    return std::unique_ptr<Solution>(std::make_unique<Oscillator>(id, Damped{k / m, 0.5 * c / m}, center, 0.0, start));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_oscillator(const SceneFacts& facts, double)
+Result<std::unique_ptr<Solution>> make_oscillator(const SceneFacts& facts, double)
 {
     const auto object = only_object(facts);
     if (!object) return object.errors();
@@ -125,13 +125,13 @@ Result<std::unique_ptr<ExactSolution>> make_oscillator(const SceneFacts& facts, 
     const world::Component& c = facts.world().component(*object);
     const bool body = c.facet == Facet::Body;
     const double m = body ? facts.bodies().mass[c.host_index] : facts.shafts().inertia[c.host_index];
-    const ExactState start = present(facts, *object);
+    const State start = present(facts, *object);
     if (body && length(start.angular_velocity) > 0)
         return reason(facts.world().id_of(*object) + " turns; this form is about its place only");
     const Vec3 center{facts.number("center_x").value_or(0), facts.number("center_y").value_or(0), facts.number("center_z").value_or(0)};
-    return std::unique_ptr<ExactSolution>(std::make_unique<Oscillator>(facts.world().id_of(*object),
-                                                                       Damped{*k / m, 0.5 * facts.number("damping").value_or(0) / m},
-                                                                       center + facts.gravity() * (m / *k), 0.0, start));
+    return std::unique_ptr<Solution>(std::make_unique<Oscillator>(facts.world().id_of(*object),
+                                                                  Damped{*k / m, 0.5 * facts.number("damping").value_or(0) / m},
+                                                                  center + facts.gravity() * (m / *k), 0.0, start));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

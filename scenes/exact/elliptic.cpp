@@ -1,10 +1,10 @@
-#include "study/exact/elliptic.h"
+#include "exact/elliptic.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace plab::study
+namespace plab::exact
 {
 
 double carlson_rf(double x, double y, double z)
@@ -67,4 +67,4 @@ double amplitude(double u, double mc)
     return std::atan2(j.sn, j.cn) + 2 * std::numbers::pi * turns;
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

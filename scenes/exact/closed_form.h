@@ -5,16 +5,20 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "study/run.h"
+#include "plab/result.h"
+#include "simulation/simulation.h"
 
-namespace plab::study
+namespace plab::exact
 {
 
 /// Pose and speeds of a body (p_WC, q_WB, v_WC, w_WB in W) or angle and speed of a shaft; SI.
-struct ExactState
+struct State
 {
     Vec3 position;
     Quat orientation;
@@ -23,23 +27,31 @@ struct ExactState
     double angle = 0, speed = 0;
 };
 
-inline constexpr double kExactPrecision = 1e-14;
-/// With a phase that has advanced by this many rad.
-inline double precision_after(double radians) { return kExactPrecision + 1e-15 * radians; }
+/// A contact that begins.
+struct Touch
+{
+    std::string kind;  ///< of the event: "contact.impact"
+    std::string a, b;
+    double time = 0;  ///< s
+};
 
-class ExactSolution
+inline constexpr double kPrecision = 1e-14;
+/// With a phase that has advanced by this many rad.
+inline double precision_after(double radians) { return kPrecision + 1e-15 * radians; }
+
+class Solution
 {
 public:
-    virtual ~ExactSolution() = default;
+    virtual ~Solution() = default;
     /// False if the closed form does not cover that object.
-    virtual bool state(const std::string& id, double t, ExactState& out) const = 0;
+    virtual bool state(const std::string& id, double t, State& out) const = 0;
     /// In words: the formula, and the parameters that were read.
     virtual std::string words() const = 0;
     /// Relative accuracy of the evaluation in double precision: phases lose digits with their number of turns.
-    virtual double precision(double until) const { return (void)until, kExactPrecision; }
+    virtual double precision(double until) const { return (void)until, kPrecision; }
     /// Whether the moments of contact are part of the solution; those up to `until`.
     virtual bool knows_contacts() const { return false; }
-    virtual std::vector<RecordedContact> contacts(double until) const { return (void)until, std::vector<RecordedContact>(); }
+    virtual std::vector<Touch> contacts(double until) const { return (void)until, std::vector<Touch>(); }
 };
 
 /// The data available to a closed form: the scene before its first step.
@@ -68,34 +80,31 @@ private:
     std::map<std::string, double> given_;
 };
 
-using ExactMaker = Result<std::unique_ptr<ExactSolution>> (*)(const SceneFacts& facts, double until);
+using Maker = Result<std::unique_ptr<Solution>> (*)(const SceneFacts& facts, double until);
 
-struct ExactEntry
+struct Entry
 {
     std::string_view name;
     std::string_view what;   ///< formula
     std::string_view needs;  ///< requirements on the scene
-    ExactMaker make;
+    Maker make;
 };
 /// All closed forms, in the order of the manual.
-std::span<const ExactEntry> exact_registry();
+std::span<const Entry> closed_forms();
 
 /// `text`: NAME or NAME:key=value,key=value. `until`: the last required time, s.
-Result<std::unique_ptr<ExactSolution>> make_exact(const std::string& text, const simulation::Simulation& simulation, double until);
-
-/// The numbers of a quantity at t; NaN where the closed form does not cover it.
-void read_exact(const ExactSolution& solution, const world::World& world, const Quantity& quantity, double t, std::vector<double>& out);
+Result<std::unique_ptr<Solution>> make_solution(const std::string& text, const simulation::Simulation& simulation, double until);
 
 // Factories, by file.
-Result<std::unique_ptr<ExactSolution>> make_flight(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_oscillator(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_pendulum(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_kepler(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_bounce(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_slide(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_gears(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_rest(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_rocking(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_spring_bounce(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_flight(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_oscillator(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_pendulum(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_kepler(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_bounce(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_slide(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_gears(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_rest(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_rocking(const SceneFacts& facts, double until);
+Result<std::unique_ptr<Solution>> make_spring_bounce(const SceneFacts& facts, double until);
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -2,18 +2,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "exact/facts.h"
 #include "model/numbers.h"
-#include "study/exact/facts.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
 
-class Kepler final : public ExactSolution
+class Kepler final : public Solution
 {
 public:
-    Kepler(std::string id, double mu, const ExactState& start) : id_(std::move(id)), mu_(mu), start_(start)
+    Kepler(std::string id, double mu, const State& start) : id_(std::move(id)), mu_(mu), start_(start)
     {
         const Vec3 r = start.position, v = start.velocity;
         a_ = 1 / (2 / length(r) - length_squared(v) / mu);
@@ -21,7 +21,7 @@ public:
         // e cos E0 and e sin E0: no eccentricity vector, so that circles are not a special case.
         ec_ = 1 - length(r) / a_, es_ = dot(r, v) / std::sqrt(mu * a_);
     }
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         if (id != id_) return false;
         out = start_;
@@ -60,22 +60,22 @@ public:
 private:
     std::string id_;
     double mu_, a_ = 0, n_ = 0, ec_ = 0, es_ = 0;
-    ExactState start_;
+    State start_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_kepler(const SceneFacts& facts, double)
+Result<std::unique_ptr<Solution>> make_kepler(const SceneFacts& facts, double)
 {
     const auto object = only_object(facts);
     if (!object) return object.errors();
     if (facts.world().component(*object).facet != Facet::Body) return reason("its moving object is not a body");
     const auto mu = facts.number("mu");
     if (!mu || !(*mu > 0)) return missing_number("mu", "m^3/s^2, positive");
-    const ExactState start = present(facts, *object);
+    const State start = present(facts, *object);
     if (!(length_squared(start.velocity) < 2 * *mu / length(start.position)))
         return reason("the body is not bound: its path is not an ellipse");
-    return std::unique_ptr<ExactSolution>(std::make_unique<Kepler>(facts.world().id_of(*object), *mu, start));
+    return std::unique_ptr<Solution>(std::make_unique<Kepler>(facts.world().id_of(*object), *mu, start));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "render/render.h"
+#include "picture/picture.h"
 
-namespace plab::render
+namespace plab::picture
 {
 namespace
 {
@@ -77,4 +77,4 @@ Result<void> write_png(const std::string& path, const Picture& picture)
     return reason("cannot write " + path + ": " + failed.message());
 }
 
-}  // namespace plab::render
+}  // namespace plab::picture

@@ -2,19 +2,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exact/facts.h"
 #include "model/numbers.h"
-#include "study/exact/facts.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
 
 /// Flights between impacts at t_k; after the last one it rests on the plane.
-class Bounce final : public ExactSolution
+class Bounce final : public Solution
 {
 public:
-    Bounce(std::string ball, std::string plane, const ExactState& start, double ground, double g, double e, double until)
+    Bounce(std::string ball, std::string plane, const State& start, double ground, double g, double e, double until)
         : ball_(std::move(ball)), plane_(std::move(plane)), start_(start), ground_(ground), g_(g), e_(e)
     {
         const double h = start.position.z - ground, v = start.velocity.z;
@@ -30,7 +30,7 @@ public:
         }
         if (flights_.empty() && e == 0) rest_ = t;
     }
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         if (id != ball_) return false;
         out = start_;
@@ -46,9 +46,9 @@ public:
         return true;
     }
     bool knows_contacts() const override { return true; }
-    std::vector<RecordedContact> contacts(double until) const override
+    std::vector<Touch> contacts(double until) const override
     {
-        std::vector<RecordedContact> out;
+        std::vector<Touch> out;
         const auto& [a, b] = std::minmax(ball_, plane_);
         for (const Flight& f : flights_)
             if (f.begin <= until) out.push_back({"contact.impact", a, b, f.begin});
@@ -66,20 +66,20 @@ private:
         double begin, up;
     };
     std::string ball_, plane_;
-    ExactState start_;
+    State start_;
     double ground_, g_, e_, rest_ = 0;
     std::vector<Flight> flights_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_bounce(const SceneFacts& facts, double until)
+Result<std::unique_ptr<Solution>> make_bounce(const SceneFacts& facts, double until)
 {
     const auto place = body_and_plane(facts);
     if (!place) return place.errors();
     const auto ball = only_shape(facts, place->body, GeometryKind::Sphere, "ball");
     if (!ball) return ball.errors();
-    const ExactState start = present(facts, place->body);
+    const State start = present(facts, place->body);
     const Vec3 g = facts.gravity();
     if (!(place->normal == Vec3{0, 0, 1}) || !(g.x == 0 && g.y == 0 && g.z < 0))
         return reason("the plane is not level, or gravity is not along -z");
@@ -90,8 +90,8 @@ Result<std::unique_ptr<ExactSolution>> make_bounce(const SceneFacts& facts, doub
     if (slides && facts.number("friction").value_or(1) != 0) return reason("the ball moves sideways, and there is friction");
     const double ground = place->point.z + ball->size.x;
     if (!(start.position.z > ground)) return reason("the ball does not start above the plane");
-    return std::unique_ptr<ExactSolution>(
+    return std::unique_ptr<Solution>(
         std::make_unique<Bounce>(facts.world().id_of(place->body), facts.world().id_of(place->plane), start, ground, -g.z, *e, until));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -4,7 +4,7 @@
 /// separatrix m has no digits left.
 #pragma once
 
-namespace plab::study
+namespace plab::exact
 {
 
 struct Jacobi
@@ -23,4 +23,4 @@ double amplitude(double u, double mc);
 /// Carlson's R_F.
 double carlson_rf(double x, double y, double z);
 
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -1,18 +1,15 @@
-#include "study/exact/exact.h"
-
-#include <cmath>
-#include <limits>
+#include "exact/closed_form.h"
 
 #include "model/names.h"
 #include "model/numbers.h"
 #include "model/text.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
 
-constexpr ExactEntry kRegistry[] = {
+constexpr Entry kRegistry[] = {
     {"parabola", "x = x0 + v0 t + g t^2/2; attitude by Jacobi's elliptic functions", "bodies under uniform gravity alone, no collision",
      &make_flight},
     {"torque-free", "Euler's equations by Jacobi's elliptic functions, precession by quadrature", "the same scene as parabola",
@@ -57,7 +54,7 @@ Result<std::map<std::string, double>> parse_given(std::string_view text)
 
 }  // namespace
 
-std::span<const ExactEntry> exact_registry() { return kRegistry; }
+std::span<const Entry> closed_forms() { return kRegistry; }
 
 std::vector<std::uint32_t> SceneFacts::dynamic(Facet facet) const
 {
@@ -116,13 +113,13 @@ std::string SceneFacts::foreign_force(const std::vector<std::string>& known) con
     return {};
 }
 
-Result<std::unique_ptr<ExactSolution>> make_exact(const std::string& text, const simulation::Simulation& s, double until)
+Result<std::unique_ptr<Solution>> make_solution(const std::string& text, const simulation::Simulation& s, double until)
 {
     const std::string name = text.substr(0, text.find(':'));
     auto given = parse_given(name.size() < text.size() ? std::string_view(text).substr(name.size() + 1) : std::string_view());
     if (!given) return reason("--reference exact:" + text + ": " + given.error().reason);
     std::vector<std::string> names;
-    for (const ExactEntry& e : kRegistry)
+    for (const Entry& e : kRegistry)
     {
         names.emplace_back(e.name);
         if (e.name != name) continue;
@@ -133,31 +130,4 @@ Result<std::unique_ptr<ExactSolution>> make_exact(const std::string& text, const
     return reason("there is no closed form '" + name + "'" + model::did_you_mean(name, names) + "; there are " + model::quoted_list(names));
 }
 
-void read_exact(const ExactSolution& solution, const world::World& world, const Quantity& q, double t, std::vector<double>& out)
-{
-    const std::size_t before = out.size();
-    const auto put = [&](std::initializer_list<double> v)
-    {
-        if (q.part)
-            out.push_back(v.begin()[*q.part]);
-        else
-            out.insert(out.end(), v);
-    };
-    const auto put_vector = [&](const Vec3& v) { put({v.x, v.y, v.z}); };
-    ExactState s;
-    const std::uint32_t i = world.find(q.id);
-    if (i != kNoIndex && solution.state(q.id, t, s))
-    {
-        const bool body = world.component(i).facet == Facet::Body;
-        const Vec3 offset = body ? -1.0 * rotate(s.orientation, world.host().bodies.center_B[world.component(i).host_index]) : Vec3{};
-        if (body && q.field == "position") put_vector(s.position + offset);
-        if (body && q.field == "linear_velocity") put_vector(s.velocity + cross(s.angular_velocity, offset));
-        if (q.field == "orientation") put({s.orientation.w, s.orientation.x, s.orientation.y, s.orientation.z});
-        if (body && q.field == "angular_velocity") put_vector(s.angular_velocity);
-        if (!body && q.field == "angle") put({s.angle});
-        if (!body && q.field == "angular_velocity") put({s.speed});
-    }
-    out.resize(before + q.width, std::numeric_limits<double>::quiet_NaN());
-}
-
-}  // namespace plab::study
+}  // namespace plab::exact

@@ -2,12 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exact/facts.h"
+#include "exact/housner.h"
+#include "exact/pendulum_motion.h"
 #include "model/numbers.h"
 #include "plab/rotation.h"
-#include "study/exact/facts.h"
-#include "study/exact/pendulum_law.h"
 
-namespace plab::study
+namespace plab::exact
 {
 namespace
 {
@@ -19,13 +20,7 @@ struct Shape2
     double half_width = 0, half_height = 0;  ///< m
     double mass = 0, inertia = 0;            ///< about the centre along n
     double w0 = 0;                           ///< sqrt(m g R / J about an edge), rad/s
-    /// The ratio of angular velocities after and before the other edge strikes without rebound (Housner 1963): the angular
-    /// momentum about that edge is conserved.
-    double kept() const
-    {
-        const double b2 = half_width * half_width, h2 = half_height * half_height;
-        return (inertia + mass * (h2 - b2)) / (inertia + mass * (h2 + b2));
-    }
+    double kept() const { return kept_by_rocking(inertia / mass, half_width, half_height); }
     /// Angle from hanging straight down to the flat block, turning about n, on the edge at `side` * half_width aside.
     double flat_angle(double side) const
     {
@@ -34,11 +29,11 @@ struct Shape2
     }
 };
 
-class Rocking final : public ExactSolution
+class Rocking final : public Solution
 {
 public:
     /// `tilt`: rad about n at the start, at rest on the edge that is low. `flat`: the pose when it lies.
-    Rocking(std::string id, std::string ground, const Shape2& block, const ExactState& flat, double tilt, double until)
+    Rocking(std::string id, std::string ground, const Shape2& block, const State& flat, double tilt, double until)
         : id_(std::move(id)), ground_(std::move(ground)), block_(block), flat_(flat)
     {
         const double side = tilt > 0 ? 1 : -1;  // aside = n x up: a turn about +n leans towards it
@@ -61,7 +56,7 @@ public:
         }
         end_ = t;
     }
-    bool state(const std::string& id, double t, ExactState& out) const override
+    bool state(const std::string& id, double t, State& out) const override
     {
         if (id != id_) return false;
         out = flat_;
@@ -81,9 +76,9 @@ public:
     }
     double precision(double until) const override { return precision_after(20 * block_.w0 * until); }
     bool knows_contacts() const override { return true; }
-    std::vector<RecordedContact> contacts(double until) const override
+    std::vector<Touch> contacts(double until) const override
     {
-        std::vector<RecordedContact> out;
+        std::vector<Touch> out;
         const auto& [a, b] = std::minmax(id_, ground_);
         for (const double t : impacts_)
             if (t <= until) out.push_back({"contact.impact", a, b, t});
@@ -102,7 +97,7 @@ private:
     };
     std::string id_, ground_;
     Shape2 block_;
-    ExactState flat_;
+    State flat_;
     std::vector<Piece> pieces_;
     std::vector<double> impacts_;
     double end_ = 0;
@@ -131,13 +126,13 @@ Result<Shape2> shape_of(const Geometry& box, const Quat& q, const Vec3& up, doub
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_rocking(const SceneFacts& facts, double until)
+Result<std::unique_ptr<Solution>> make_rocking(const SceneFacts& facts, double until)
 {
     const auto place = body_and_plane(facts);
     if (!place) return place.errors();
     const auto box = only_shape(facts, place->body, GeometryKind::Box, "box");
     if (!box) return box.errors();
-    const ExactState start = present(facts, place->body);
+    const State start = present(facts, place->body);
     const std::uint32_t row = facts.world().component(place->body).host_index;
     const Vec3 up = place->normal, g = facts.gravity();
     if (length(cross(g, up)) > 1e-12 * length(g) || !(dot(g, up) < 0)) return reason("the plane is not level against gravity");
@@ -161,12 +156,12 @@ Result<std::unique_ptr<ExactSolution>> make_rocking(const SceneFacts& facts, dou
     const Quat back = exp_rotation(block->n * -tilt);
     const Vec3 edge = start.position + rotate(conjugate(back), block->aside * (side * b) - block->up * h);
     if (std::fabs(dot(edge - place->point, up)) > 1e-9 * std::sqrt(R2)) return reason("no edge of the box is on the plane");
-    ExactState flat = start;
+    State flat = start;
     flat.position = edge - block->aside * (side * b) + block->up * h, flat.orientation = back * start.orientation;
     const double r = block->kept();
     if (r > 0 && *mu < h * (1 - r) / (b * (1 + r))) return reason("friction is too small to keep its edges from slipping at an impact");
-    return std::unique_ptr<ExactSolution>(
+    return std::unique_ptr<Solution>(
         std::make_unique<Rocking>(facts.world().id_of(place->body), facts.world().id_of(place->plane), *block, flat, tilt, until));
 }
 
-}  // namespace plab::study
+}  // namespace plab::exact
