@@ -34,6 +34,16 @@ TEST_CASE("JSON text is valid whatever came over the bus")
     CHECK(nlohmann::json::accept(json_text(all)));
 }
 
+TEST_CASE("JSON of another writer commands no terminal either, and means the same")
+{
+    const nlohmann::json value{{"text",
+                                "\x7F\xC2\x9B"
+                                "31m \xC3\xBC\n"}};
+    const std::string safe = safe_json(value.dump());
+    CHECK(safe == "{\"text\":\"\\u007f\\u009b31m \xC3\xBC\\n\"}");
+    CHECK(nlohmann::json::parse(safe) == value);
+}
+
 TEST_CASE("no text of others commands the terminal")
 {
     CHECK(terminal_text("\x1b]0;title\x07") == "\\x1b]0;title\\x07");

@@ -68,7 +68,7 @@ TEST_CASE("events and collisions are lines, in the order in which they happened"
     CHECK(lines_with(text, "collision.impact") == 2);
 }
 
-TEST_CASE("lines of JSON have the fields of the wire, and numbers without a gap")
+TEST_CASE("lines of JSON have the fields of the wire or of plabctl, and numbers without a gap")
 {
     PlayedServer server(test_domain(), unique_name("log"), 1);
     Process log = start(server, {"--json", "--metrics", "--status", "-n", "5"});
@@ -91,9 +91,10 @@ TEST_CASE("lines of JSON have the fields of the wire, and numbers without a gap"
     CHECK(event["sequence_number"] == 1);
     CHECK(event["step"] == 1);
     CHECK(numbers == std::vector<std::uint64_t>{1, 2});
-    CHECK(metrics["ledger"]["kinetic"] == 2.5);
-    CHECK(metrics["interactions"][0]["resolved"] == "B");
+    CHECK(metrics["energy"]["kinetic"] == 2.5);
+    CHECK(metrics["interactions"]["gears"]["resolved"] == "B");
     CHECK(status["name"] == server.name());
+    CHECK(status.contains("requests_done"));
 }
 
 TEST_CASE("what was missed has a line of its own, and a new run has one")
