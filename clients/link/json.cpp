@@ -57,6 +57,15 @@ Json recording(const ServerInfo::Recording& r)
     return {{"file", r.file}, {"trouble", r.trouble}, {"bytes", r.bytes}, {"messages", r.messages}, {"dropped", r.dropped}};
 }
 
+Json triple(const plab_v2_Vector& v) { return Json::array({v.x, v.y, v.z}); }
+
+/// What the entries of events and of collisions begin with.
+template <class Sample>
+Json place(const Sample& sample, std::uint32_t entry)
+{
+    return {{"run", sample.run}, {"sequence_number", sample.sequence_number + entry}, {"step", sample.step}};
+}
+
 }  // namespace
 
 Json json_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
@@ -219,6 +228,37 @@ Json json_of(const Reply& r)
             {"waited_ns", r.waited_ns},
             {"trial", r.trial},
             {"swaps", array(r.swaps, [](const SwapReport& s) { return json_of(s); })}};
+}
+
+Json json_of(const plab_v2_Events& sample, std::uint32_t entry)
+{
+    const plab_v2_EventInfo& e = sample.entries._buffer[entry];
+    Json out = place(sample, entry);
+    out.update({{"time", e.time},
+                {"kind", e.kind},
+                {"severity", e.severity},
+                {"component", e.component_id},
+                {"a", e.a},
+                {"b", e.b},
+                {"message", e.message},
+                {"values", std::vector<double>(e.values._buffer, e.values._buffer + e.values._length)}});
+    return out;
+}
+
+Json json_of(const plab_v2_Collisions& sample, std::uint32_t entry)
+{
+    const plab_v2_CollisionInfo& c = sample.entries._buffer[entry];
+    Json out = place(sample, entry);
+    out.update({{"time", c.time},
+                {"kind", c.kind},
+                {"detector", c.detector},
+                {"a", c.a},
+                {"b", c.b},
+                {"position", triple(c.position)},
+                {"normal", triple(c.normal)},
+                {"impulse", triple(c.impulse)},
+                {"depth", c.depth}});
+    return out;
 }
 
 std::string line_of(const Json& json) { return safe_json(json.dump(-1, ' ', false, Json::error_handler_t::replace)); }

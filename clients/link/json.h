@@ -24,6 +24,9 @@ Json json_of(const Metrics& m);
 Json json_of(const Type& t);
 Json json_of(const SwapReport& s);
 Json json_of(const Reply& r);
+/// One of the sample's entries.
+Json json_of(const plab_v2_Events& sample, std::uint32_t entry);
+Json json_of(const plab_v2_Collisions& sample, std::uint32_t entry);
 
 /// One line; text that is not UTF-8 is repaired, and no control character in it reaches a terminal.
 std::string line_of(const Json& json);

@@ -1,5 +1,5 @@
 // Each line is an object whose "type" is one of event, collision, metrics, status, gap, run, server. The other keys are those
-// that plabctl writes with --json, or else the names of idl/plab.idl.
+// that plabctl writes with --json.
 #include "link/json.h"
 #include "logger/lines.h"
 
@@ -10,8 +10,6 @@ namespace
 
 using link::Json;
 
-Json triple(const plab_v2_Vector& v) { return link::json_of(Vec3{v.x, v.y, v.z}); }
-
 /// One line with what all lines begin with, and then the members of `rest`.
 std::string line(const char* type, const Json& rest)
 {
@@ -20,44 +18,17 @@ std::string line(const char* type, const Json& rest)
     return link::line_of(out);
 }
 
-template <class Sample>
-Json place(const Sample& sample, std::uint32_t index)
-{
-    return {{"run", sample.run}, {"sequence_number", sample.sequence_number + index}, {"step", sample.step}};
-}
-
 class JsonLines final : public Lines
 {
 public:
     std::string event(const plab_v2_Events& sample, std::uint32_t index) const override
     {
-        const plab_v2_EventInfo& e = sample.entries._buffer[index];
-        Json json = place(sample, index);
-        json.update({{"time", e.time},
-                     {"kind", e.kind},
-                     {"severity", e.severity},
-                     {"component", e.component_id},
-                     {"a", e.a},
-                     {"b", e.b},
-                     {"message", e.message},
-                     {"values", std::vector<double>(e.values._buffer, e.values._buffer + e.values._length)}});
-        return line("event", json);
+        return line("event", link::json_of(sample, index));
     }
 
     std::string collision(const plab_v2_Collisions& sample, std::uint32_t index) const override
     {
-        const plab_v2_CollisionInfo& c = sample.entries._buffer[index];
-        Json json = place(sample, index);
-        json.update({{"time", c.time},
-                     {"kind", c.kind},
-                     {"detector", c.detector},
-                     {"a", c.a},
-                     {"b", c.b},
-                     {"position", triple(c.position)},
-                     {"normal", triple(c.normal)},
-                     {"impulse", triple(c.impulse)},
-                     {"depth", c.depth}});
-        return line("collision", json);
+        return line("collision", link::json_of(sample, index));
     }
 
     std::string metrics(const plab_v2_Metrics& sample) const override { return line("metrics", link::json_of(link::metrics_of(sample))); }
