@@ -1,7 +1,7 @@
 #include "control/topics.h"
 
+#include "control/json.h"
 #include "control/table.h"
-#include "link/json_text.h"
 
 namespace plab::cli
 {
@@ -40,27 +40,17 @@ const char* word_for(link::Origin origin)
 
 std::string json_line(const std::vector<link::TopicInfo>& topics)
 {
-    link::JsonWriter json;
-    json.open('{').key("topics").open('[');
-    const auto list = [&](const char* key, const std::set<std::string>& words)
-    {
-        json.key(key).open('[');
-        for (const std::string& word : words) json.value(word);
-        json.close(']');
-    };
+    Json list = Json::array();
     for (const link::TopicInfo& t : topics)
-    {
-        json.open('{').key("topic").value(t.name).key("type").value(t.type);
-        list("partitions", t.partitions);
-        json.key("writers").value(t.writers).key("readers").value(t.readers);
-        list("qos", t.qos);
-        json.key("plab")
-            .value(t.origin == link::Origin::Plab)
-            .key("other_version")
-            .value(t.origin == link::Origin::OtherVersion)
-            .close('}');
-    }
-    return json.close(']').close('}').take() + "\n";
+        list.push_back({{"topic", t.name},
+                        {"type", t.type},
+                        {"partitions", t.partitions},
+                        {"writers", t.writers},
+                        {"readers", t.readers},
+                        {"qos", t.qos},
+                        {"plab", t.origin == link::Origin::Plab},
+                        {"other_version", t.origin == link::Origin::OtherVersion}});
+    return line_of({{"topics", std::move(list)}}) + "\n";
 }
 
 Exit run_topics(Context& context, const TopicsArguments& arguments)

@@ -3,6 +3,7 @@
 #include <ctime>
 #include <map>
 
+#include "control/json.h"
 #include "control/spread.h"
 #include "control/topics.h"
 #include "link/json_text.h"
@@ -114,23 +115,24 @@ Exit measure(Context& context, const TopicsArguments& arguments, const Report& r
     return context.fail(Exit::NoServer, "no sample of '" + arguments.topic + "' came");
 }
 
-void put_spread(link::JsonWriter& json, const Spread& s)
+/// Null if nothing was counted.
+Json spread_json(const Spread& s)
 {
-    json.open('{').key("mean").value(s.mean()).key("min").value(s.least()).key("max").value(s.most());
-    json.key("stddev").value(s.deviation()).close('}');
+    if (s.count() == 0) return {};
+    return {{"mean", s.mean()}, {"min", s.least()}, {"max", s.most()}, {"stddev", s.deviation()}};
+}
+
+/// `what` per second, and the spread of `each`.
+std::string interval_json(const Interval& i, const std::string& topic, const char* what, double per_second, const char* each,
+                          const Spread& spread)
+{
+    return line_of(
+        {{"topic", topic}, {"samples", i.sizes.count()}, {"seconds", i.length}, {what, per_second}, {each, spread_json(spread)}});
 }
 
 std::string rate_line(const Interval& i, const std::string& topic, bool is_json)
 {
-    if (is_json)
-    {
-        link::JsonWriter json;
-        json.open('{').key("topic").value(topic).key("samples").value(i.sizes.count()).key("seconds").value(i.length);
-        json.key("rate").value(i.per_second()).key("period");
-        if (i.periods.count() == 0) return json.json("null").close('}').take();
-        put_spread(json, i.periods);
-        return json.close('}').take();
-    }
+    if (is_json) return interval_json(i, topic, "rate", i.per_second(), "period", i.periods);
     std::string line = number(i.per_second()) + " /s   " + std::to_string(i.sizes.count()) + " samples";
     if (i.periods.count() == 0) return line;
     const auto ms = [](double s) { return duration_text(s * 1e9); };
@@ -141,15 +143,7 @@ std::string rate_line(const Interval& i, const std::string& topic, bool is_json)
 std::string bandwidth_line(const Interval& i, const std::string& topic, bool is_json)
 {
     const double per_second = i.length > 0 ? i.bytes() / i.length : 0;
-    if (is_json)
-    {
-        link::JsonWriter json;
-        json.open('{').key("topic").value(topic).key("samples").value(i.sizes.count()).key("seconds").value(i.length);
-        json.key("bytes_per_second").value(per_second).key("size");
-        if (i.sizes.count() == 0) return json.json("null").close('}').take();
-        put_spread(json, i.sizes);
-        return json.close('}').take();
-    }
+    if (is_json) return interval_json(i, topic, "bytes_per_second", per_second, "size", i.sizes);
     std::string line = bytes_text(per_second) + "/s   " + std::to_string(i.sizes.count()) + " samples";
     if (i.sizes.count() == 0) return line;
     return line + "   size " + bytes_text(i.sizes.mean()) + ", min " + bytes_text(i.sizes.least()) + ", max " + bytes_text(i.sizes.most());

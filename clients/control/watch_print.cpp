@@ -32,8 +32,9 @@ Json frame_json(const Frame& f, const std::map<std::string, const Motion*>& moti
 {
     Json bodies = Json::object(), shafts = Json::object();
     for (const auto& [id, motion] : motions) (motion->is_shaft ? shafts : bodies)[id] = json_of(*motion);
-    return {{"run", f.run},   {"revision", f.revision}, {"number", f.number}, {"step", f.step},
-            {"time", f.time}, {"stamp_ns", f.stamp_ns}, {"bodies", bodies},   {"shafts", shafts}};
+    return {{"run", f.run},     {"revision", f.revision}, {"sequence_number", f.number},
+            {"step", f.step},   {"time", f.time},         {"stamp_ns", f.stamp_ns},
+            {"bodies", bodies}, {"shafts", shafts}};
 }
 
 Table motion_table(const std::map<std::string, const Motion*>& motions)
@@ -114,18 +115,7 @@ bool WatchPrinter::collision(const plab_v2_Collisions& sample, std::uint32_t ent
     const Vec3 position = vector(c.position), impulse = vector(c.impulse);
     if (json_)
     {
-        print(console_, {{"run", sample.run},
-                         {"step", sample.step},
-                         {"number", sample.sequence_number + entry},
-                         {"kind", c.kind},
-                         {"time", c.time},
-                         {"detector", c.detector},
-                         {"a", c.a},
-                         {"b", c.b},
-                         {"position", json_of(position)},
-                         {"normal", json_of(vector(c.normal))},
-                         {"impulse", json_of(impulse)},
-                         {"depth", c.depth}});
+        print(console_, json_of(sample, entry));
         return true;
     }
     std::string text = when(sample.step, c.time) + "  " + console_.styled(Style::Cyan, padded(printable(c.kind), 6)) + "  " +
@@ -142,27 +132,16 @@ bool WatchPrinter::event(const plab_v2_Events& sample, std::uint32_t entry)
 {
     const plab_v2_EventInfo& e = sample.entries._buffer[entry];
     if (!selection_.takes(e.component_id) && !selection_.takes(e.a) && !selection_.takes(e.b)) return false;
-    const std::vector<double> values(e.values._buffer, e.values._buffer + e.values._length);
     if (json_)
     {
-        print(console_, {{"run", sample.run},
-                         {"step", sample.step},
-                         {"number", sample.sequence_number + entry},
-                         {"kind", e.kind},
-                         {"severity", e.severity},
-                         {"time", e.time},
-                         {"component", e.component_id},
-                         {"a", e.a},
-                         {"b", e.b},
-                         {"message", e.message},
-                         {"values", values}});
+        print(console_, json_of(sample, entry));
         return true;
     }
     std::string text = when(sample.step, e.time) + "  " + padded(printable(e.severity), 7) + "  " + printable(e.kind);
     for (const char* id : {e.component_id, e.a, e.b})
         if (*id != 0) text += "  " + printable(id);
     if (*e.message != 0) text += ": " + printable(e.message);
-    for (const double value : values) text += " " + number(value);
+    for (std::uint32_t i = 0; i < e.values._length; ++i) text += " " + number(e.values._buffer[i]);
     console_.out(console_.styled(style_of(e.severity), text) + "\n");
     return true;
 }

@@ -127,4 +127,16 @@ std::string json_text(std::string_view text)
     return out + "\"";
 }
 
+std::string safe_json(std::string_view json)
+{
+    std::string out;
+    each_character(json,
+                   [&](std::string_view c)
+                   {
+                       unsigned code = 0;
+                       out += is_control(c, code) ? hex("\\u", code, 4) : std::string(c);
+                   });
+    return out;
+}
+
 }  // namespace plab::link

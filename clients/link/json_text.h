@@ -20,6 +20,8 @@ std::string terminal_text(std::string_view text);
 
 /// Quoted and escaped; always valid UTF-8.
 std::string json_text(std::string_view text);
+/// JSON that another writer made, whose text is valid UTF-8: control characters that it left as they are become "\\u009b".
+std::string safe_json(std::string_view json);
 /// JSON has no infinities or NaN: they become null.
 std::string json_number(double value);
 std::string json_number(float value);

@@ -35,7 +35,7 @@ install(DIRECTORY server/docs/ DESTINATION share/doc/plab COMPONENT doc FILES_MA
 # The SDK: headers, the libraries of clients, the wire's IDL, and what CMake and pkg-config ask for.
 set(PLAB_PACKAGE_DIR lib/cmake/plab)
 install(DIRECTORY server/base/plab server/sdk/plab DESTINATION include COMPONENT sdk FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY clients/link DESTINATION include/plab-link COMPONENT sdk FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY clients/link DESTINATION include/plab-link COMPONENT sdk FILES_MATCHING PATTERN "*.h" PATTERN "json.h" EXCLUDE)
 file(GLOB wire_headers CONFIGURE_DEPENDS idl/*.h)
 install(FILES ${wire_headers} DESTINATION include/plab-link/idl COMPONENT sdk)
 # idlc writes the folders of this build into its header, and makes the guard out of them.

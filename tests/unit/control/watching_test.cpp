@@ -11,7 +11,7 @@ TEST_CASE("the command watch prints one JSON object on each line and ends by cou
     REQUIRE(events.lines().size() == 3);
     const Json first = Json::parse(events.lines()[0]), second = Json::parse(events.lines()[1]);
     CHECK(first["kind"] == "script.print");
-    CHECK(second["number"] == first["number"].get<std::uint64_t>() + 1);
+    CHECK(second["sequence_number"] == first["sequence_number"].get<std::uint64_t>() + 1);
     const Outcome collisions = lab("watch collisions -n 1 --json");
     CHECK(collisions.json()["impulse"] == Json({0.0, 0.0, 0.002}));
     const Outcome states = lab("watch states -n 2 --json");

@@ -34,6 +34,16 @@ TEST_CASE("JSON text is valid whatever was received from the bus")
     CHECK(nlohmann::json::accept(json_text(all)));
 }
 
+TEST_CASE("the JSON of any writer is made safe for terminals and keeps its meaning")
+{
+    const nlohmann::json value{{"text",
+                                "\x7F\xC2\x9B"
+                                "31m \xC3\xBC\n"}};
+    const std::string safe = safe_json(value.dump());
+    CHECK(safe == "{\"text\":\"\\u007f\\u009b31m \xC3\xBC\\n\"}");
+    CHECK(nlohmann::json::parse(safe) == value);
+}
+
 TEST_CASE("no received text controls the terminal")
 {
     CHECK(terminal_text("\x1b]0;title\x07") == "\\x1b]0;title\\x07");

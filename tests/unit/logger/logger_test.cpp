@@ -68,7 +68,7 @@ TEST_CASE("events and collisions are lines, in the order in which they happened"
     CHECK(lines_with(text, "collision.impact") == 2);
 }
 
-TEST_CASE("lines of JSON have the fields of the wire format, and numbers without a gap")
+TEST_CASE("lines of JSON have the fields of the wire format or of plabctl, and numbers without a gap")
 {
     PlayedServer server(test_domain(), unique_name("log"), 1);
     Process log = start(server, {"--json", "--metrics", "--status", "-n", "5"});
@@ -91,9 +91,10 @@ TEST_CASE("lines of JSON have the fields of the wire format, and numbers without
     CHECK(event["sequence_number"] == 1);
     CHECK(event["step"] == 1);
     CHECK(numbers == std::vector<std::uint64_t>{1, 2});
-    CHECK(metrics["ledger"]["kinetic"] == 2.5);
-    CHECK(metrics["interactions"][0]["resolved"] == "B");
+    CHECK(metrics["energy"]["kinetic"] == 2.5);
+    CHECK(metrics["interactions"]["gears"]["resolved"] == "B");
     CHECK(status["name"] == server.name());
+    CHECK(status.contains("requests_done"));
 }
 
 TEST_CASE("missed entries have a line of their own, and so does a new run")

@@ -1,23 +1,25 @@
-#include "control/json.h"
+#include "link/json.h"
 
-namespace plab::cli
+#include "link/json_text.h"
+
+namespace plab::link
 {
 namespace
 {
 
-Json outcome(const link::StepOutcome& o)
+Json outcome(const StepOutcome& o)
 {
     return {{"energy", o.energy}, {"momentum", {o.momentum[0], o.momentum[1], o.momentum[2]}}, {"error", o.error}, {"cost_ns", o.cost_ns}};
 }
 
-Json roles(const std::vector<link::Participants>& participants)
+Json roles(const std::vector<Participants>& participants)
 {
     Json out = Json::object();
-    for (const link::Participants& p : participants) out[p.role] = p.members;
+    for (const Participants& p : participants) out[p.role] = p.members;
     return out;
 }
 
-Json field(const link::FieldInfo& f)
+Json field(const FieldInfo& f)
 {
     return {{"name", f.name},
             {"kind", f.kind},
@@ -29,9 +31,9 @@ Json field(const link::FieldInfo& f)
             {"doc", f.doc}};
 }
 
-Json role(const link::RoleInfo& r)
+Json role(const RoleInfo& r)
 {
-    const Json most = r.most == link::kAnyNumber ? Json() : Json(r.most);
+    const Json most = r.most == kAnyNumber ? Json() : Json(r.most);
     return {{"name", r.name}, {"accepts", r.accepts}, {"least", r.least}, {"most", most}, {"doc", r.doc}};
 }
 
@@ -43,16 +45,25 @@ Json array(const std::vector<T>& items, Convert convert)
     return out;
 }
 
-Json kept(const link::ServerInfo::KeptSnapshot& s)
+Json kept(const ServerInfo::KeptSnapshot& s)
 {
     return {{"name", s.name}, {"run", s.run}, {"step", s.step}, {"time", s.time}, {"bytes", s.bytes}};
 }
 
 /// Null where nothing is recorded.
-Json recording(const link::ServerInfo::Recording& r)
+Json recording(const ServerInfo::Recording& r)
 {
     if (r.file.empty()) return {};
     return {{"file", r.file}, {"trouble", r.trouble}, {"bytes", r.bytes}, {"messages", r.messages}, {"dropped", r.dropped}};
+}
+
+Json triple(const plab_v2_Vector& v) { return Json::array({v.x, v.y, v.z}); }
+
+/// What the entries of events and of collisions begin with.
+template <class Sample>
+Json place(const Sample& sample, std::uint32_t entry)
+{
+    return {{"run", sample.run}, {"sequence_number", sample.sequence_number + entry}, {"step", sample.step}};
 }
 
 }  // namespace
@@ -60,7 +71,7 @@ Json recording(const link::ServerInfo::Recording& r)
 Json json_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 Json json_of(const Quat& q) { return Json::array({q.w, q.x, q.y, q.z}); }
 
-Json json_of(const link::ServerInfo& s)
+Json json_of(const ServerInfo& s)
 {
     Json dropped = Json::object();
     for (const auto& [topic, samples] : s.dropped) dropped[topic] = samples;
@@ -93,14 +104,14 @@ Json json_of(const link::ServerInfo& s)
             {"recording", recording(s.recording)}};
 }
 
-Json json_of(const std::vector<link::Parameter>& parameters)
+Json json_of(const std::vector<Parameter>& parameters)
 {
     Json out = Json::object();
-    for (const link::Parameter& p : parameters) out[p.name] = {{"text", p.text}, {"unit", p.unit}, {"kind", p.kind}};
+    for (const Parameter& p : parameters) out[p.name] = {{"text", p.text}, {"unit", p.unit}, {"kind", p.kind}};
     return out;
 }
 
-Json json_of(const link::Object& o)
+Json json_of(const Object& o)
 {
     return {{"id", o.id},
             {"name", o.name},
@@ -118,7 +129,7 @@ Json json_of(const link::Object& o)
             {"parameters", json_of(o.parameters)}};
 }
 
-Json json_of(const link::Shape& s)
+Json json_of(const Shape& s)
 {
     return {{"id", s.id},
             {"type", s.type},
@@ -130,7 +141,7 @@ Json json_of(const link::Shape& s)
             {"triangles", s.triangles.size()}};
 }
 
-Json json_of(const link::Interaction& i)
+Json json_of(const Interaction& i)
 {
     return {{"id", i.id},
             {"name", i.name},
@@ -143,16 +154,16 @@ Json json_of(const link::Interaction& i)
             {"parameters", json_of(i.parameters)}};
 }
 
-Json json_of(const link::InteractionMetrics& m)
+Json json_of(const InteractionMetrics& m)
 {
     return {{"requested", m.requested}, {"resolved", m.resolved}, {"cost_ns", m.cost_ns},
             {"error", m.error},         {"work", m.work},         {"outputs", json_of(m.outputs)}};
 }
 
-Json json_of(const link::Metrics& m)
+Json json_of(const Metrics& m)
 {
     Json interactions = Json::object();
-    for (const link::InteractionMetrics& i : m.interactions)
+    for (const InteractionMetrics& i : m.interactions)
     {
         interactions[i.component] = json_of(i);
         interactions[i.component]["quarantined"] = i.quarantined;
@@ -174,7 +185,7 @@ Json json_of(const link::Metrics& m)
         {"interactions", interactions}};
 }
 
-Json json_of(const link::Type& t)
+Json json_of(const Type& t)
 {
     return {{"name", t.name},
             {"family", t.family},
@@ -191,10 +202,10 @@ Json json_of(const link::Type& t)
             {"fields", array(t.fields, field)}};
 }
 
-Json json_of(const link::SwapReport& s)
+Json json_of(const SwapReport& s)
 {
     Json fields = Json::object();
-    for (const link::TransferredField& f : s.fields) fields[f.name] = f.transfer;
+    for (const TransferredField& f : s.fields) fields[f.name] = f.transfer;
     return {{"component", s.component},
             {"from", s.from},
             {"to", s.to},
@@ -204,7 +215,7 @@ Json json_of(const link::SwapReport& s)
             {"with_new", outcome(s.with_new)}};
 }
 
-Json json_of(const link::Reply& r)
+Json json_of(const Reply& r)
 {
     return {{"outcome", r.outcome},
             {"repeated", r.repeated},
@@ -216,11 +227,40 @@ Json json_of(const link::Reply& r)
             {"pause_ns", r.pause_ns},
             {"waited_ns", r.waited_ns},
             {"trial", r.trial},
-            {"swaps", array(r.swaps, [](const link::SwapReport& s) { return json_of(s); })}};
+            {"swaps", array(r.swaps, [](const SwapReport& s) { return json_of(s); })}};
 }
 
-std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+Json json_of(const plab_v2_Events& sample, std::uint32_t entry)
+{
+    const plab_v2_EventInfo& e = sample.entries._buffer[entry];
+    Json out = place(sample, entry);
+    out.update({{"time", e.time},
+                {"kind", e.kind},
+                {"severity", e.severity},
+                {"component", e.component_id},
+                {"a", e.a},
+                {"b", e.b},
+                {"message", e.message},
+                {"values", std::vector<double>(e.values._buffer, e.values._buffer + e.values._length)}});
+    return out;
+}
 
-void print(const Console& console, const Json& json) { console.out(line_of(json) + "\n"); }
+Json json_of(const plab_v2_Collisions& sample, std::uint32_t entry)
+{
+    const plab_v2_CollisionInfo& c = sample.entries._buffer[entry];
+    Json out = place(sample, entry);
+    out.update({{"time", c.time},
+                {"kind", c.kind},
+                {"detector", c.detector},
+                {"a", c.a},
+                {"b", c.b},
+                {"position", triple(c.position)},
+                {"normal", triple(c.normal)},
+                {"impulse", triple(c.impulse)},
+                {"depth", c.depth}});
+    return out;
+}
 
-}  // namespace plab::cli
+std::string line_of(const Json& json) { return safe_json(json.dump(-1, ' ', false, Json::error_handler_t::replace)); }
+
+}  // namespace plab::link
