@@ -52,8 +52,6 @@ Result<Log> Log::open(const std::string& path, const recording::Watch& watch)
     return log;
 }
 
-bool Log::has_topic(const std::string& topic) const { return !reader_->channels_of({topic}).empty(); }
-
 recording::Query Log::query(const std::vector<std::string>& topics, const Span& span)
 {
     recording::Query query;

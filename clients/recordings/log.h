@@ -41,7 +41,6 @@ public:
     /// Damage in the parts that open() has read.
     const Troubles& troubles() const { return troubles_; }
     bool is_interrupted() const { return *interrupted_; }
-    bool has_topic(const std::string& topic) const;
 
     /// Messages of these topics (none: all).
     Stream stream(const std::vector<std::string>& topics = {}, const Span& span = {}) const;

@@ -116,21 +116,4 @@ Result<SceneSpec> compile(const Blueprint& blueprint, TypeSource& types, const S
     return assemble(c);
 }
 
-Result<std::vector<std::string>> resolve_participant(const SceneSpec& scene, TypeSource& types, const std::string& written,
-                                                     const Role& role)
-{
-    using namespace detail;
-    const Blueprint nothing;
-    Compilation c(nothing, types, &scene, {});
-    declare_existing(c);
-    const Participants found = find_participants(c.directory, written, role);
-    if (found.unknown) return reason(found.why + did_you_mean(written, all_ids(c)));
-    if (!found.why.empty()) return reason(found.why);
-    if (found.members.empty()) return reason("role " + role.name + ": " + quoted(written) + " cannot be used: its type is not known");
-    std::vector<std::string> ids;
-    for (const std::size_t i : found.members) ids.push_back(c.draft(i).id);
-    std::sort(ids.begin(), ids.end());
-    return ids;
-}
-
 }  // namespace plab::model

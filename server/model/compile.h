@@ -15,9 +15,4 @@ namespace plab::model
 Result<SceneSpec> compile(const Blueprint& blueprint, TypeSource& types, const SceneSpec* existing = nullptr,
                           const CompileLimits& limits = {});
 
-/// The ids that `written` (an id, an alias, an object) denotes in a role with `facets` and `family`: the component itself, or
-/// the only matching one inside an object. On failure, the reason.
-Result<std::vector<std::string>> resolve_participant(const SceneSpec& scene, TypeSource& types, const std::string& written,
-                                                     const Role& role);
-
 }  // namespace plab::model

@@ -117,8 +117,6 @@ constexpr Mat3 outer(const Vec3& a, const Vec3& b)
 {
     return {{{a.x * b.x, a.x * b.y, a.x * b.z}, {a.y * b.x, a.y * b.y, a.y * b.z}, {a.z * b.x, a.z * b.y, a.z * b.z}}};
 }
-/// The matrix of the cross product: cross_matrix(a) * b == cross(a, b).
-constexpr Mat3 cross_matrix(const Vec3& a) { return {{{0, -a.z, a.y}, {a.z, 0, -a.x}, {-a.y, a.x, 0}}}; }
 constexpr double determinant(const Mat3& a)
 {
     return a.m[0][0] * (a.m[1][1] * a.m[2][2] - a.m[1][2] * a.m[2][1]) - a.m[0][1] * (a.m[1][0] * a.m[2][2] - a.m[1][2] * a.m[2][0]) +

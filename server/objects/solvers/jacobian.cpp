@@ -138,12 +138,6 @@ void rough_jacobian(FlatSystem& system, const JacobianPoint& at, double relative
     }
 }
 
-void fine_jacobian(FlatSystem& system, const JacobianPoint& at, SquareMatrix<double>& out)
-{
-    out.resize(system.size());
-    for (std::size_t j = 0; j < system.size() && !system.interrupted(); ++j) fine_column(system, at, j, out);
-}
-
 void fine_column(FlatSystem& system, const JacobianPoint& at, std::size_t column, SquareMatrix<double>& out)
 {
     FineColumn(system, at, column, out).find();

@@ -23,11 +23,10 @@ struct JacobianPoint
 /// very short increment would drown in: theirs is at least 1e-3 `relative` units. Quantities have none.
 void rough_jacobian(FlatSystem& system, const JacobianPoint& at, double relative, SquareMatrix<double>& out);
 
-/// Differences as good as the equations allow. Where f is linear in a component, a long increment has no truncation error:
-/// two lengths that agree prove it, and the derivative is right to rounding (two evaluations). Otherwise central
-/// differences with Richardson's extrapolation, over the lengths that agree best (at most 34 evaluations).
-void fine_jacobian(FlatSystem& system, const JacobianPoint& at, SquareMatrix<double>& out);
-/// One column of that. `out` has its size; columns of speeds look at those of places.
+/// One column, by differences as good as the equations allow. `out` has its size; columns of speeds look at those of places. Where f is
+/// linear in a component, a long increment has no truncation error: two lengths that agree prove it, and the derivative is right to
+/// rounding (two evaluations). Otherwise central differences with Richardson's extrapolation, over the lengths that agree best (at most 34
+/// evaluations).
 void fine_column(FlatSystem& system, const JacobianPoint& at, std::size_t column, SquareMatrix<double>& out);
 
 }  // namespace plab::solvers

@@ -33,6 +33,5 @@ inline Surface surface_of(const Geometry& geometry)
 
 /// m; of a shape for which surface_of() returns a bowl or a bore.
 inline double surface_radius(const Geometry& geometry) { return geometry.size.x; }
-inline double surface_reach(const Geometry& geometry) { return geometry.size.z; }
 
 }  // namespace plab

@@ -171,11 +171,6 @@ void ShaftCoupling::assign(Ref shaft, double rate)
     change_rate(r, root_rate);
 }
 
-void ShaftCoupling::store_rates(std::span<double> out) const
-{
-    for (const std::uint32_t i : members_) out[i] = shafts_->ratio[i] * roots_[shafts_->root[i]].rate;
-}
-
 void ShaftCoupling::store_speeds(Shafts& shafts) const
 {
     assert(level_ == Level::Speed);

@@ -79,12 +79,9 @@ public:
         return report;
     }
     void start_sweep();
-    double largest_change() const { return largest_change_; }
     /// The largest |rate| of a shaft during this solve.
     double scale(Ref shaft) const;
 
-    /// Rates of all members, by shaft: rad/s^2 or rad/s.
-    void store_rates(std::span<double> out) const;
     /// Writes only the speeds that the sweeps changed. Requires begin_speeds().
     void store_speeds(Shafts& shafts) const;
     /// Adds share * power (W), or share * work (J) after begin_speeds(), by component, for dynamic shafts only. Couplings of the graph

@@ -158,18 +158,11 @@ TEST_CASE("an unknown type is reported once, not where it is referred to")
 TEST_CASE("participants that exist already in the scene")
 {
     const model::SceneSpec s = compiled(scene({group("motor", {shaft("axle")}), shares("same", {"motor"}), shaft("b")}));
-    FixedTypes types;
-    Role role;
-    role.name = "driver";
-    role.facets = {Facet::Shaft};
-    Column<Ref> one;
-    role.one = &one;
-    CHECK(*model::resolve_participant(s, types, "axle", role) == std::vector<std::string>{"axle"});
-    CHECK(*model::resolve_participant(s, types, "same", role) == std::vector<std::string>{"axle"});
-    CHECK(model::resolve_participant(s, types, "axl", role).error().reason ==
-          "role driver: no component has the id 'axl', did you mean 'axle'?");
-    CHECK(model::resolve_participant(s, types, "solver", role).error().reason ==
-          "role driver needs a shaft, but 'solver' is Solver/Automatic");
+    const auto driven_by = [](const std::string& driver) { return scene({shaft("c"), gear({{"driver", driver}, {"driven", "c"}})}); };
+    CHECK(role_of(compiled(driven_by("axle"), &s), "g", "driver") == "axle");
+    CHECK(role_of(compiled(driven_by("same"), &s), "g", "driver") == "axle");
+    CHECK(errors_of(driven_by("axl"), &s).find("role driver: no component has the id 'axl', did you mean 'axle'?") != std::string::npos);
+    CHECK(errors_of(driven_by("solver"), &s).find("role driver needs a shaft, but 'solver' is Solver/Automatic") != std::string::npos);
 }
 
 TEST_CASE("a fragment sees the scene that it joins")

@@ -97,7 +97,7 @@ struct Train
     std::vector<double> rates() const
     {
         std::vector<double> out(shafts.size());
-        coupling.store_rates(out);
+        for (const std::uint32_t i : members) out[i] = coupling.rate(shaft(i));
         return out;
     }
     /// Torques of couplings after the last solve.
