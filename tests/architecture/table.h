@@ -21,7 +21,7 @@ struct Layer
 inline const std::vector<Layer>& layers()
 {
     static const std::vector<Layer> table{
-        {"server/base", {}, {}},  // everybody may include it
+        {"server/base", {}, {}},         // everybody may include it
         {"server/sdk", {}, {"Eigen/"}},  // plab/eigen.h alone, which no other header of it includes
         {"server/linear", {"server/sdk"}, {}},
         {"server/geometry", {}, {}},
@@ -129,9 +129,7 @@ inline const std::vector<Layer>& layers()
          {"CLI/", "unistd.h", "sys/", "fcntl.h", "signal.h", "spawn.h"}},
         {"clients/recorder", {"idl", "idl/recording", "clients/link"}, {"dds/"}},
         {"clients/playback", {"idl", "idl/recording", "clients/link"}, {"dds/", "poll.h", "sys/", "termios.h", "unistd.h"}},
-        {"clients/recordings",
-         {"server/program", "server/figures", "idl", "idl/recording", "clients/link", "clients/logger"},
-         {}},
+        {"clients/recordings", {"server/program", "server/figures", "idl", "idl/recording", "clients/link", "clients/logger"}, {}},
         {"clients/control",
          {"server/program", "server/figures", "idl", "idl/recording", "clients/link", "clients/logger", "clients/recordings",
           "clients/recorder", "clients/playback", "clients/completion"},
