@@ -1,7 +1,6 @@
 #include "recorder/recorder.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -39,36 +38,43 @@ std::int32_t depth_of(wire::Delivery delivery)
     return 4096;
 }
 
-std::string number(double value)
+/// Samples between the bus and the disk; at 1000 samples a second, a disk that stops for 48 s.
+constexpr std::size_t kMostWaiting = 65536;
+
+recording::Origin origin_of(const link::ServerInfo& server, const RecorderOptions& options)
 {
-    std::array<char, 32> text{};
-    (void)std::snprintf(text.data(), text.size(), "%.17g", value);
-    return text.data();
+    return {.recorder = "plabctl",
+            .server = server.name,
+            .version = server.version,
+            .build = "",
+            .host = server.host,
+            .scene_file = server.scene_file,
+            .started_ns = server.started_ns,
+            .dt = server.dt,
+            .threads = server.threads,
+            .state_interval = options.state_rate ? 1 / *options.state_rate : 0,
+            .moved_only = false,
+            .topics = options.topics};
 }
 
-std::string joined(const std::vector<std::string>& words)
+recording::AsyncWriterOptions writer_options(const RecorderOptions& options)
 {
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+    recording::AsyncWriterOptions out = options.writer;
+    out.most_waiting = kMostWaiting;
+    out.too_slow = "the disk was too slow for the data from the bus";
     return out;
 }
 
-recording::Metadata about(const link::ServerInfo& server, const RecorderOptions& options)
+/// On the writer's thread.
+std::uint64_t write_waiting(recording::TopicFile& file, Waiting& waiting)
 {
-    recording::Metadata out{recording::kAbout, {}};
-    out.values = {{"format", std::to_string(recording::kFormat)},
-                  {"recorder", "plabctl"},
-                  {"server", server.name},
-                  {"version", server.version},
-                  {"host", server.host},
-                  {"started_ns", std::to_string(server.started_ns)},
-                  {"scene_file", server.scene_file},
-                  {"dt", number(server.dt)},
-                  {"threads", std::to_string(server.threads)},
-                  {"state_interval", number(options.state_rate ? 1 / *options.state_rate : 0)},
-                  {"states", "all"}};
-    if (!options.topics.empty()) out.values["topics"] = joined(options.topics);
-    return out;
+    if (const auto* message = std::get_if<Message>(&waiting.what))
+        file.write(*message->topic, message->data, {waiting.log_time, message->publish_time, recording::Clock::now()});
+    else if (const auto* gap = std::get_if<Gap>(&waiting.what))
+        file.add_gap(gap->losses, gap->why);
+    else if (auto* blueprint = std::get_if<Blueprint>(&waiting.what))
+        file.attach(waiting.log_time, "blueprint.xml", "text/xml", std::move(blueprint->text));
+    return waiting.log_time;
 }
 
 }  // namespace
@@ -90,8 +96,11 @@ Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::str
     return out;
 }
 
-Recorder::Recorder(const RecorderOptions& options, const link::ServerInfo& server, std::unique_ptr<AsyncWriter> writer)
-    : options_(options), started_ns_(server.started_ns), writer_(std::move(writer)), run_(server.run)
+Recorder::Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::Writer writer)
+    : options_(options),
+      started_ns_(server.started_ns),
+      run_(server.run),
+      writer_(std::move(writer), writer_options(options), write_waiting)
 {
     // The recording begins now, whichever sample comes first.
     (void)timeline_.at(server.run, server.time);
@@ -105,8 +114,9 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const link::Session& session, c
     // Without plab/server, the end of the server would go unnoticed.
     const wire::Topic* const presence = &wire::topic_of<plab_v2_Server>();
     if (std::find(topics->begin(), topics->end(), presence) == topics->end()) topics->insert(topics->begin(), presence);
-    auto writer = AsyncWriter::open(options.writer, about(server, options));
+    auto writer = recording::open_writer(options.writer);
     if (!writer) return writer.errors();
+    if (auto added = writer->add_metadata(recording::about(origin_of(server, options))); !added) return added.errors();
     std::unique_ptr<Recorder> out(new Recorder(options, server, writer.take()));
     if (auto subscribed = out->subscribe(session, *topics); !subscribed) return subscribed.errors();
     return out;
@@ -141,13 +151,13 @@ State Recorder::step(link::Seconds longest)
     return state_;
 }
 
-Result<WriteProgress> Recorder::close()
+Result<void> Recorder::close()
 {
     if (state_ == State::Goes) take_all();
     // The latest disposals count, except those of a server's end.
     if (state_ == State::Goes || state_ == State::Done) write(disposals_.take(Clock::time_point::max()));
     tell_gaps();
-    return writer_->close();
+    return writer_.close();
 }
 
 /// Topics arrive independently; the time stamps of the server's single writing thread give the order in which it wrote. In any
@@ -197,20 +207,26 @@ void Recorder::look_at(Arrived& sample)
     if (header->entries > 0) note_gap(track, *header, sample.writer, log_time);
     track.last_log_time = log_time;
     const auto stamp_ns = static_cast<std::uint64_t>(header->stamp_ns > 0 ? header->stamp_ns : sample.written_ns);
-    if (!is_left_out(track, *header)) keep(track, *header, {track.topic, log_time, stamp_ns, std::move(sample.data)});
+    if (!is_left_out(track, *header)) keep(track, *header, log_time, {track.topic, stamp_ns, std::move(sample.data)});
     const bool tells_time = is_topic<plab_v2_Frame>(*track.topic) || is_topic<plab_v2_Server>(*track.topic);
     if (options_.until && tells_time && *header->time >= *options_.until - kSameTime) state_ = State::Done;
 }
 
-void Recorder::keep(const Track& track, const recording::SampleHeader& header, Message&& message)
+void Recorder::keep(const Track& track, const recording::SampleHeader& header, std::uint64_t log_time, Message&& message)
 {
     if (!header.key.empty()) write(disposals_.take_before_return(track.topic->name, header.key));
     if (!has_blueprint_ && !header.blueprint.empty())
     {
         has_blueprint_ = true;
-        writer_->attach(message.log_time, "blueprint.xml", "text/xml", header.blueprint);
+        (void)writer_.push({log_time, Blueprint{header.blueprint}}, header.blueprint.size(), recording::Weight::Vital);
     }
-    (void)writer_->put(std::move(message));  // messages that find no room are counted there
+    put(log_time, std::move(message));
+}
+
+void Recorder::put(std::uint64_t log_time, Message&& message)
+{
+    const std::size_t bytes = sizeof(Waiting) + message.data.size();
+    (void)writer_.push({log_time, std::move(message)}, bytes, recording::Weight::Essential);  // what finds no room is counted there
 }
 
 void Recorder::look_at_gone(const Arrived& sample)
@@ -264,7 +280,7 @@ void Recorder::write(const std::vector<Disposal>& disposals)
         gone.run = p.run, gone.topic_name = topic.data(), gone.component_id = key.data();
         const auto bytes = encoder_.encode(gone);
         if (!bytes) continue;  // two texts and a number always form a sample
-        (void)writer_->put({&wire::topic_of<plab_v2_Gone>(), p.log_time, p.publish_time, recording::Bytes(bytes->begin(), bytes->end())});
+        put(p.log_time, {&wire::topic_of<plab_v2_Gone>(), p.publish_time, recording::Bytes(bytes->begin(), bytes->end())});
     }
 }
 
@@ -273,7 +289,9 @@ void Recorder::tell_gaps()
     for (Track& track : tracks_)
     {
         if (track.missing.messages == 0) continue;
-        writer_->put_gap(track.missing, std::string(track.topic->name) + ": lost on the bus");
+        missing_ += track.missing.messages;
+        Gap gap{track.missing, std::string(track.topic->name) + ": lost on the bus"};
+        (void)writer_.push({track.last_log_time, std::move(gap)}, sizeof(Waiting), recording::Weight::Vital);
         track.missing = {};
     }
 }

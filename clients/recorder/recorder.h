@@ -2,14 +2,14 @@
 #pragma once
 
 #include <map>
-#include <set>
+#include <variant>
 
+#include "idl/recording/async_writer.h"
 #include "idl/recording/cdr.h"
 #include "idl/recording/sample_header.h"
 #include "idl/recording/timeline.h"
 #include "link/discovery.h"
 #include "link/sequence.h"
-#include "recorder/async_writer.h"
 #include "recorder/pending_disposals.h"
 
 namespace plab::recorder
@@ -17,7 +17,7 @@ namespace plab::recorder
 
 struct RecorderOptions
 {
-    AsyncWriterOptions writer;
+    recording::AsyncWriterOptions writer;
     std::vector<std::string> topics;   ///< none: all but images
     std::optional<double> until;       ///< s, simulated: the recording ends there
     std::optional<double> state_rate;  ///< maximum number of frames per simulated second; empty: all
@@ -29,6 +29,33 @@ enum class State : std::uint8_t
     Done,       ///< `until` is reached
     Gone,       ///< the server has gone
     Restarted,  ///< another server of that name has taken its place
+};
+
+/// What waits to be written: a sample, a gap that the bus left, an attachment.
+struct Message
+{
+    const wire::Topic* topic = nullptr;
+    std::uint64_t publish_time = 0;
+    recording::Bytes data;
+};
+struct Gap
+{
+    recording::Losses losses;
+    std::string why;
+};
+struct Blueprint
+{
+    std::string text;
+};
+struct Waiting
+{
+    std::uint64_t log_time = 0;
+    std::variant<Message, Gap, Blueprint> what;
+};
+
+struct Progress : recording::WriteProgress
+{
+    std::uint64_t missing = 0;  ///< messages that never arrived
 };
 
 /// The topics to record. An error names a topic that does not exist.
@@ -44,9 +71,9 @@ public:
     /// Waits for samples up to `longest`, and takes those that have arrived.
     State step(link::Seconds longest);
     /// Completes the file. An error: not everything could be written.
-    Result<WriteProgress> close();
+    Result<void> close();
 
-    WriteProgress progress() const { return writer_->progress(); }
+    Progress progress() const { return {writer_.progress(), missing_}; }
     /// s, of the recording's time line.
     double length() const { return static_cast<double>(timeline_.now()) * 1e-9; }
     /// Samples that did not match the type of their topic.
@@ -66,7 +93,7 @@ private:
         std::uint64_t last_log_time = 0;
     };
 
-    Recorder(const RecorderOptions& options, const link::ServerInfo& server, std::unique_ptr<AsyncWriter> writer);
+    Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::Writer writer);
     Result<void> subscribe(const link::Session& session, const std::vector<const wire::Topic*>& topics);
     /// A sample that has arrived and is not processed yet.
     struct Arrived
@@ -81,7 +108,8 @@ private:
     void take_all();
     void take(Track& track);
     void look_at(Arrived& sample);
-    void keep(const Track& track, const recording::SampleHeader& header, Message&& message);
+    void keep(const Track& track, const recording::SampleHeader& header, std::uint64_t log_time, Message&& message);
+    void put(std::uint64_t log_time, Message&& message);
     void look_at_gone(const Arrived& sample);
     void note_server(const recording::SampleHeader& header);
     void note_gap(Track& track, const recording::SampleHeader& header, std::uint64_t writer, std::uint64_t log_time);
@@ -91,8 +119,7 @@ private:
 
     RecorderOptions options_;
     std::int64_t started_ns_ = 0;  ///< of the server that is recorded
-    std::unique_ptr<AsyncWriter> writer_;
-    std::vector<Track> tracks_;  ///< all of them, from subscribe() on
+    std::vector<Track> tracks_;    ///< all of them, from subscribe() on
     std::vector<Arrived> arrived_;
     wire::Entity waitset_;
     recording::Timeline timeline_;
@@ -102,8 +129,10 @@ private:
     std::uint64_t run_ = 0;
     std::optional<std::pair<std::uint64_t, double>> next_frame_;  ///< run, s: for state_rate
     bool has_blueprint_ = false;
-    std::uint64_t broken_ = 0;
+    std::uint64_t broken_ = 0, missing_ = 0;
     Clock::time_point reported_at_{};
+
+    recording::AsyncWriter<Waiting> writer_;
 };
 
 }  // namespace plab::recorder

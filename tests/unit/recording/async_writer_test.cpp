@@ -1,5 +1,5 @@
-// Full, broken or slow disks under the recorder's file.
-#include "recorder/async_writer.h"
+// Full, broken or slow disks under a recording that is written by a thread of its own.
+#include "idl/recording/async_writer.h"
 
 #include <doctest/doctest.h>
 
@@ -11,8 +11,6 @@
 using namespace plab;
 using namespace plab::recording;
 using namespace std::chrono_literals;
-using recorder::AsyncWriter;
-using recorder::WriteProgress;
 
 namespace
 {
@@ -69,25 +67,46 @@ private:
     std::shared_ptr<Disk> disk_;
 };
 
+/// A number, as a sample of 256 bytes; or the text of an attachment.
+struct Item
+{
+    std::uint64_t number = 0;
+    std::string blueprint;
+};
+
+std::uint64_t write_item(TopicFile& file, const Item& entry)
+{
+    const std::uint64_t log_time = entry.number * 1'000'000;
+    Bytes data(256, 0);
+    std::memcpy(data.data(), &entry.number, sizeof entry.number);
+    if (entry.blueprint.empty())
+        file.write(wire::topic_of<plab_v2_Frame>(), data, {log_time, 0, Clock::now()});
+    else
+        file.attach(log_time, "blueprint.xml", "text/xml", entry.blueprint);
+    return log_time;
+}
+
 /// A writer that receives numbers, one each millisecond.
 class Fed
 {
 public:
     explicit Fed(std::size_t most_waiting_bytes = 64u << 20)
     {
-        recorder::AsyncWriterOptions options;
-        options.file = "run.mcap", options.compression = Compression::None, options.most_waiting_bytes = most_waiting_bytes;
-        auto opened = AsyncWriter::open(std::make_unique<DiskSink>(disk), options, {"plab", {{"format", "2"}}});
+        AsyncWriterOptions options;
+        options.file = "no such folder/run.mcap", options.compression = Compression::None;
+        options.most_waiting_bytes = most_waiting_bytes;
+        options.notice = [this](Notice notice, const std::string&) { notices.push_back(notice); };
+        auto opened = open_writer(std::make_unique<DiskSink>(disk), options);
         REQUIRE(opened);
-        writer = opened.take();
+        REQUIRE(opened->add_metadata({"plab", {{"format", "2"}}}));
+        writer = std::make_unique<AsyncWriter<Item>>(opened.take(), options, write_item);
     }
+    void put_one(Weight weight = Weight::Essential) { (void)writer->push({offered++, ""}, 256 + sizeof(Item), weight); }
     void put(int count)
     {
-        for (int i = 0; i < count; ++i, ++offered)
+        for (int i = 0; i < count; ++i)
         {
-            Bytes data(256, 0);
-            std::memcpy(data.data(), &offered, sizeof offered);
-            (void)writer->put({&wire::topic_of<plab_v2_Frame>(), offered * 1'000'000, 0, std::move(data)});
+            put_one();
             std::this_thread::sleep_for(1ms);
         }
     }
@@ -100,7 +119,8 @@ public:
     }
 
     std::shared_ptr<Disk> disk = std::make_shared<Disk>();
-    std::unique_ptr<AsyncWriter> writer;
+    std::vector<Notice> notices;  ///< to be read after close()
+    std::unique_ptr<AsyncWriter<Item>> writer;
     std::uint64_t offered = 0;
 };
 
@@ -159,7 +179,7 @@ TEST_CASE("a disk that fills up and stays full: this is soon reported at the end
         fed.disk->capacity = fed.disk->bytes.size() + 100;  // less than a chunk: a short write
     }
     fed.put(200);
-    CHECK(fed.comes_to([](const WriteProgress& p) { return p.trouble && p.dropped.messages > 0; }));
+    CHECK(fed.comes_to([](const WriteProgress& p) { return p.trouble && p.dropped > 0; }));
     CHECK(fed.writer->progress().trouble->text() == "run.mcap: cannot write: No space left on device");
     CHECK(numbers_in(OnDisk(*fed.disk).reader).size() == 100);
 
@@ -170,7 +190,7 @@ TEST_CASE("a disk that fills up and stays full: this is soon reported at the end
     CHECK(closed.error().text() == "run.mcap: cannot write: No space left on device");
     const WriteProgress end = fed.writer->progress();
     CHECK(end.messages == 100);
-    CHECK(end.messages + end.dropped.messages == fed.offered);
+    CHECK(end.messages + end.dropped == fed.offered);
     CHECK(!end.is_ended);
     const OnDisk found(*fed.disk);
     const Reader& reader = found.reader;
@@ -192,7 +212,7 @@ TEST_CASE("a disk that has room for all messages and none for the end of the fil
     CHECK(!fed.writer->close());
     const WriteProgress end = fed.writer->progress();
     CHECK(!end.is_ended);
-    CHECK(end.dropped.messages == 0);
+    CHECK(end.dropped == 0);
     REQUIRE(end.last_trouble);
     CHECK(end.last_trouble->text() == "run.mcap: cannot write: No space left on device");
     const OnDisk found(*fed.disk);
@@ -218,19 +238,21 @@ TEST_CASE("a disk that fails for a while: the file continues and notes its gap, 
     fed.put(50);
     const auto closed = fed.writer->close();
     REQUIRE_MESSAGE(closed.ok(), closed.error().text());
-    CHECK(closed->is_ended);
-    CHECK(closed->dropped.messages > 0);
-    REQUIRE(closed->last_trouble);
-    CHECK(closed->last_trouble->text() == "run.mcap: cannot write: Input/output error");
-    CHECK(closed->messages + closed->dropped.messages == fed.offered);
+    const WriteProgress end = fed.writer->progress();
+    CHECK(end.is_ended);
+    CHECK(end.dropped > 0);
+    REQUIRE(end.last_trouble);
+    CHECK(end.last_trouble->text() == "run.mcap: cannot write: Input/output error");
+    CHECK(end.messages + end.dropped == fed.offered);
+    CHECK(std::count(fed.notices.begin(), fed.notices.end(), Notice::Stalled) == 1);
     const OnDisk found(*fed.disk);
     const Reader& reader = found.reader;
     CHECK(reader.index().is_closed);
     CHECK(reader.index().troubles.empty());
     const auto numbers = numbers_in(reader);
-    CHECK(numbers.size() == closed->messages);
+    CHECK(numbers.size() == end.messages);
     CHECK(ascends(numbers));
-    CHECK(reported_missing(reader) == closed->dropped.messages);
+    CHECK(reported_missing(reader) == end.dropped);
 }
 
 TEST_CASE("messages that wait for a disk that works again only at the end are nevertheless in the file")
@@ -242,7 +264,7 @@ TEST_CASE("messages that wait for a disk that works again only at the end are ne
     }
     fed.put(40);
     REQUIRE(fed.comes_to([](const WriteProgress& p) { return p.trouble.has_value(); }));
-    fed.writer->attach(0, "blueprint.xml", "text/xml", "<plab/>");
+    (void)fed.writer->push({0, "<plab/>"}, 8, Weight::Vital);
     fed.put(1);  // wakes the writer, whose next attempt is some time away
     {
         const std::lock_guard lock(fed.disk->mutex);
@@ -253,8 +275,9 @@ TEST_CASE("messages that wait for a disk that works again only at the end are ne
     const OnDisk found(*fed.disk);
     const Reader& reader = found.reader;
     REQUIRE(reader.index().attachments.size() == 1);
-    CHECK(reported_missing(reader) == closed->dropped.messages);
-    CHECK(closed->dropped.messages + closed->messages == fed.offered);
+    const WriteProgress end = fed.writer->progress();
+    CHECK(reported_missing(reader) == end.dropped);
+    CHECK(end.dropped + end.messages == fed.offered);
 }
 
 TEST_CASE("a disk that does not respond: the recording thread does not wait, and messages without room are counted")
@@ -266,16 +289,38 @@ TEST_CASE("a disk that does not respond: the recording thread does not wait, and
     fed.disk->is_stuck = true;
     fed.put(30);  // the writer is now blocked in a write
     const auto begin = Clock::now();
-    for (int i = 0; i < 200; ++i, ++fed.offered)
-        (void)fed.writer->put({&wire::topic_of<plab_v2_Frame>(), fed.offered * 1'000'000, 0, Bytes(256, 0)});
+    for (int i = 0; i < 200; ++i) fed.put_one();
     CHECK(Clock::now() - begin < 1s);
-    const std::uint64_t lost = fed.writer->progress().dropped.messages;
+    const std::uint64_t lost = fed.writer->progress().dropped;
     CHECK(lost > 200 - kRoom / 256);
     CHECK(lost < 230);
     fed.disk->is_stuck = false;
     const auto closed = fed.writer->close();
     REQUIRE_MESSAGE(closed.ok(), closed.error().text());
-    CHECK(closed->messages + closed->dropped.messages == fed.offered);
-    CHECK(!closed->last_trouble);
-    CHECK(reported_missing(OnDisk(*fed.disk).reader) == closed->dropped.messages);
+    const WriteProgress end = fed.writer->progress();
+    CHECK(end.messages + end.dropped == fed.offered);
+    CHECK(!end.last_trouble);
+    CHECK(reported_missing(OnDisk(*fed.disk).reader) == end.dropped);
+}
+
+TEST_CASE("without room, details are refused before essential entries, and these before vital ones")
+{
+    constexpr std::size_t kItem = 256 + sizeof(Item);
+    Fed fed(4 * kItem);
+    fed.disk->is_stuck = true;
+    fed.put(30);  // the writer is now blocked in a write
+    fed.put(30);  // and nothing is left for essential entries
+    CHECK(!fed.writer->has_room(kItem, Weight::Detail));
+    CHECK(!fed.writer->has_room(kItem, Weight::Essential));
+    CHECK(fed.writer->has_room(kItem, Weight::Vital));
+    const std::uint64_t lost = fed.writer->progress().dropped;
+    fed.put_one(Weight::Vital);
+    CHECK(fed.writer->progress().dropped == lost);
+    fed.disk->is_stuck = false;
+    REQUIRE(fed.writer->close());
+    const OnDisk found(*fed.disk);
+    const auto numbers = numbers_in(found.reader);
+    REQUIRE(!numbers.empty());
+    CHECK(numbers.back() == fed.offered - 1);
+    CHECK(reported_missing(found.reader) == lost);
 }

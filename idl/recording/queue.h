@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace plab::publish
+namespace plab::recording
 {
 
 /// Exactly one thread pushes and exactly one pops; neither ever waits.
@@ -52,4 +52,4 @@ private:
     alignas(64) std::atomic<std::uint64_t> popped_{0};
 };
 
-}  // namespace plab::publish
+}  // namespace plab::recording

@@ -1,4 +1,4 @@
-/// What a thread that serves the step thread sleeps on. Any thread may ring; several rings before it wakes count as one.
+/// What the thread of a recording sleeps on. Any thread may ring; several rings before it wakes count as one.
 #pragma once
 
 #include <semaphore.h>
@@ -7,7 +7,7 @@
 #include <chrono>
 #include <ctime>
 
-namespace plab::publish
+namespace plab::recording
 {
 
 class WakeUp
@@ -21,7 +21,7 @@ public:
     /// Never waits. Costs a system call only for the first ring since the sleeper woke.
     void ring()
     {
-        if (!algorithm_.exchange(true, std::memory_order_acq_rel)) (void)sem_post(&semaphore_);
+        if (!is_rung_.exchange(true, std::memory_order_acq_rel)) (void)sem_post(&semaphore_);
     }
     /// Sleeps until a ring, or for this time. Whatever was written before the ring is visible to what follows the return.
     void sleep(std::chrono::nanoseconds longest)
@@ -32,12 +32,12 @@ public:
         end.tv_sec += static_cast<std::time_t>(ns / 1'000'000'000), end.tv_nsec = static_cast<long>(ns % 1'000'000'000);
         // An interrupted wait only makes one early pass, which is harmless.
         (void)sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &end);
-        (void)algorithm_.exchange(false, std::memory_order_acq_rel);
+        (void)is_rung_.exchange(false, std::memory_order_acq_rel);
     }
 
 private:
     sem_t semaphore_{};
-    std::atomic<bool> algorithm_{false};
+    std::atomic<bool> is_rung_{false};
 };
 
-}  // namespace plab::publish
+}  // namespace plab::recording
