@@ -6,9 +6,9 @@
 
 #include "link/json_text.h"
 #include "link/names.h"
+#include "program/text_out.h"
 #include "recordings/schema.h"
 #include "recordings/tables.h"
-#include "recordings/text_out.h"
 
 namespace plab::recordings
 {
@@ -93,7 +93,7 @@ public:
         for (const std::string& topic : topics)
         {
             const std::string name = is_folder(path) ? (fs::path(path) / (file_stem(topic) + ".csv")).string() : path;
-            auto file = TextOut::open(name);
+            auto file = program::TextOut::open(name);
             if (!file) return file.errors();
             const Table& table = *find_table(topic);
             file->write(head_of(table));
@@ -123,7 +123,7 @@ private:
     struct File
     {
         const Table* table;
-        TextOut out;
+        program::TextOut out;
     };
     std::map<std::string, File> files_;
     std::vector<std::string> names_;
@@ -194,7 +194,7 @@ Result<Exported> export_json(const Log& log, const ExportOptions& options)
     if (!topics) return topics.errors();
     if (is_folder(options.out)) return reason("lines of JSON are written to one file, not to the folder " + options.out);
     if (topics->empty()) *topics = all_but_large(log);
-    auto file = TextOut::open(options.out);
+    auto file = program::TextOut::open(options.out);
     if (!file) return file.errors();
     Exported out;
     ChannelTypes types(log.reader());

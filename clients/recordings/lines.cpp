@@ -17,7 +17,7 @@ constexpr std::uint64_t kOneWriter = 0;
 class LineWriter
 {
 public:
-    LineWriter(const LineOptions& options, TextOut& out)
+    LineWriter(const LineOptions& options, program::TextOut& out)
         : options_(&options), out_(&out), lines_(options.json ? logger::make_json_lines() : logger::make_human_lines())
     {
     }
@@ -60,7 +60,7 @@ private:
     }
 
     const LineOptions* options_;
-    TextOut* out_;
+    program::TextOut* out_;
     std::unique_ptr<logger::Lines> lines_;
     link::Sequence event_numbers_, collision_numbers_;
     std::optional<std::uint64_t> run_;
@@ -137,7 +137,7 @@ Result<void> check_names(const Log& log, const logger::Filter& filter)
     return unknown.errors(log.path());
 }
 
-Result<Troubles> write_lines(const Log& log, const LineOptions& options, TextOut& out)
+Result<Troubles> write_lines(const Log& log, const LineOptions& options, program::TextOut& out)
 {
     std::vector<std::string> topics;
     if (options.filter.events) topics.push_back("plab/events");

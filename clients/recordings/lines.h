@@ -2,8 +2,8 @@
 #pragma once
 
 #include "logger/filter.h"
+#include "program/text_out.h"
 #include "recordings/log.h"
-#include "recordings/text_out.h"
 
 namespace plab::recordings
 {
@@ -20,6 +20,6 @@ struct LineOptions
 Result<void> check_names(const Log& log, const logger::Filter& filter);
 
 /// In order of time, with a line for each new run, and for missing entries.
-Result<Troubles> write_lines(const Log& log, const LineOptions& options, TextOut& out);
+Result<Troubles> write_lines(const Log& log, const LineOptions& options, program::TextOut& out);
 
 }  // namespace plab::recordings

@@ -11,9 +11,14 @@ namespace plab::recordings
 namespace
 {
 
+using figures::no_cell;
+using figures::number_cell;
 using figures::Page;
 using figures::PageCell;
 using figures::short_number;
+using figures::text_cell;
+using figures::text_cells;
+using figures::whole_cell;
 using Row = std::vector<PageCell>;
 
 constexpr std::size_t kMostRows = 300;
@@ -25,19 +30,8 @@ std::string formatted(const char* format, double value)
     return text.data();
 }
 
-PageCell text(std::string value) { return {std::move(value), "", ""}; }
-PageCell number(double value) { return {short_number(value), std::isfinite(value) ? formatted("%.9e", value) : "-", ""}; }
-PageCell whole(std::uint64_t value) { return {std::to_string(value), std::to_string(value), ""}; }
-PageCell whole(std::int64_t value) { return {std::to_string(value), std::to_string(value), ""}; }
 /// A moment on the recording's time line: it needs more digits than other numbers.
 PageCell moment(double value) { return {formatted("%.6g", value), formatted("%.9e", value), ""}; }
-Row head(std::initializer_list<const char*> names)
-{
-    Row out;
-    for (const char* name : names) out.push_back(text(name));
-    return out;
-}
-
 std::string microseconds(double ns) { return short_number(ns * 1e-3) + " µs"; }
 
 /// Shortens a long table, with a note.
@@ -59,7 +53,7 @@ Row row_of(const plab_v2_EventInfo& e, std::int64_t step, double log_time)
 {
     const std::string who =
         std::string(e.component_id) + (*e.a != 0 ? std::string(" ") + e.a : "") + (*e.b != 0 ? std::string(" ") + e.b : "");
-    return {moment(log_time), whole(step), text(e.severity), text(e.kind), text(who), text(e.message)};
+    return {moment(log_time), whole_cell(step), text_cell(e.severity), text_cell(e.kind), text_cell(who), text_cell(e.message)};
 }
 
 std::string with_unit(const Segment& s) { return short_number(s.largest_error) + (s.error_unit.empty() ? "" : " " + s.error_unit); }
@@ -94,18 +88,19 @@ void add_segments(Page& page, const std::vector<Segment>& segments)
     std::vector<Row> rows;
     for (const Segment& s : segments)
         if (rows.size() < kMostRows)
-            rows.push_back({text(s.component),
+            rows.push_back({text_cell(s.component),
                             {s.algorithm, "", s.resolved},
-                            whole(s.run),
+                            whole_cell(s.run),
                             moment(s.begin),
                             moment(s.end),
-                            number(s.mean_cost * 1e-3),
-                            number(s.largest_error),
-                            text(s.error_unit),
-                            number(s.work)});
+                            number_cell(s.mean_cost * 1e-3),
+                            number_cell(s.largest_error),
+                            text_cell(s.error_unit),
+                            number_cell(s.work)});
     if (rows.empty()) return;
     page.paragraph("Each interaction with each algorithm that it used. Click a column header to sort by it.");
-    add_table(page, head({"interaction", "algorithm", "run", "from, s", "to, s", "cost, µs/step", "largest error", "unit", "work, J"}),
+    add_table(page,
+              text_cells({"interaction", "algorithm", "run", "from, s", "to, s", "cost, µs/step", "largest error", "unit", "work, J"}),
               rows, segments.size());
 }
 
@@ -121,14 +116,14 @@ void add_requests(Page& page, const Log& log)
         {
             const plab_v2_Operation& o = journal->operations._buffer[i];
             if (++all <= kMostRows)
-                rows.push_back({moment(seconds(entry->log_time)), whole(journal->step), text(o.verb), text(o.target), text(o.argument),
-                                text(joined(o)), text(journal->origin)});
+                rows.push_back({moment(seconds(entry->log_time)), whole_cell(journal->step), text_cell(o.verb), text_cell(o.target),
+                                text_cell(o.argument), text_cell(joined(o)), text_cell(journal->origin)});
         }
     }
     if (rows.empty()) return;
     page.heading("Requests");
     page.paragraph("The requests that were carried out, in the order in which they took effect.");
-    add_table(page, head({"at, s", "before step", "request", "target", "argument", "values", "from"}), rows, all);
+    add_table(page, text_cells({"at, s", "before step", "request", "target", "argument", "values", "from"}), rows, all);
 }
 
 void add_events(Page& page, const Log& log, const Summary& summary)
@@ -136,9 +131,10 @@ void add_events(Page& page, const Log& log, const Summary& summary)
     if (summary.events.empty() && summary.collisions.empty()) return;
     page.heading("Events");
     std::vector<Row> kinds;
-    for (const KindCount& k : summary.events) kinds.push_back({text(k.kind), text(k.severity), whole(k.count)});
-    for (const KindCount& k : summary.collisions) kinds.push_back({text("collision." + k.kind), text("info"), whole(k.count)});
-    page.table(head({"kind", "severity", "number"}), kinds);
+    for (const KindCount& k : summary.events) kinds.push_back({text_cell(k.kind), text_cell(k.severity), whole_cell(k.count)});
+    for (const KindCount& k : summary.collisions)
+        kinds.push_back({text_cell("collision." + k.kind), text_cell("info"), whole_cell(k.count)});
+    page.table(text_cells({"kind", "severity", "number"}), kinds);
     std::vector<Row> rows;
     std::uint64_t all = 0;
     Stream stream = log.stream({"plab/events"});
@@ -151,7 +147,7 @@ void add_events(Page& page, const Log& log, const Summary& summary)
     }
     if (rows.empty()) return;
     page.heading("Warnings and failures");
-    add_table(page, head({"at, s", "step", "severity", "kind", "who", "what"}), rows, all);
+    add_table(page, text_cells({"at, s", "step", "severity", "kind", "who", "what"}), rows, all);
 }
 
 void add_runs(Page& page, const Summary& summary)
@@ -159,14 +155,14 @@ void add_runs(Page& page, const Summary& summary)
     std::vector<Row> rows;
     for (const Run& r : summary.runs)
         if (rows.size() < kMostRows)
-            rows.push_back({whole(r.number), text(r.cause), moment(seconds(r.begin)), moment(seconds(r.end)), whole(r.first_step),
-                            whole(r.last_step), moment(r.first_time), moment(r.last_time)});
+            rows.push_back({whole_cell(r.number), text_cell(r.cause), moment(seconds(r.begin)), moment(seconds(r.end)),
+                            whole_cell(r.first_step), whole_cell(r.last_step), moment(r.first_time), moment(r.last_time)});
     if (summary.runs.size() < 2) return;
     page.heading("Runs");
     page.paragraph(
         "A load, a reset or a restored snapshot begins a run. The time of the recording continues, while each run has its own simulated "
         "time.");
-    add_table(page, head({"run", "began with", "from, s", "to, s", "first step", "last step", "simulated from, s", "to, s"}), rows,
+    add_table(page, text_cells({"run", "began with", "from, s", "to, s", "first step", "last step", "simulated from, s", "to, s"}), rows,
               summary.runs.size());
 }
 
@@ -175,34 +171,37 @@ void add_losses(Page& page, const Summary& summary)
     std::vector<Row> rows;
     for (const TopicSummary& t : summary.topics)
         if (t.missing > 0)
-            rows.push_back({text(t.name), whole(t.missing), text("in " + std::to_string(t.gaps) + " gaps of its numbers"), text("")});
+            rows.push_back({text_cell(t.name), whole_cell(t.missing), text_cell("in " + std::to_string(t.gaps) + " gaps of its numbers"),
+                            text_cell("")});
     for (const auto& [topic, samples] : summary.dropped)
-        rows.push_back({text(topic), whole(samples), text("dropped by the server"), text("")});
+        rows.push_back({text_cell(topic), whole_cell(samples), text_cell("dropped by the server"), text_cell("")});
     for (const NotedGap& g : summary.gaps)
-        rows.push_back({text("all topics"), whole(g.messages), text(g.reason),
-                        text(formatted("%.6g", seconds(g.from)) + " to " + formatted("%.6g", seconds(g.to)))});
+        rows.push_back({text_cell("all topics"), whole_cell(g.messages), text_cell(g.reason),
+                        text_cell(formatted("%.6g", seconds(g.from)) + " to " + formatted("%.6g", seconds(g.to)))});
     for (const std::string& loss : summary.losses())
-        rows.push_back({text("the file"), {"–", "-", ""}, text("lost, and not recovered: " + loss), text("")});
-    for (const std::string& trouble : summary.troubles.texts) rows.push_back({text("the file"), {"–", "-", ""}, text(trouble), text("")});
+        rows.push_back({text_cell("the file"), no_cell(), text_cell("lost, and not recovered: " + loss), text_cell("")});
+    for (const std::string& trouble : summary.troubles.texts)
+        rows.push_back({text_cell("the file"), no_cell(), text_cell(trouble), text_cell("")});
     if (rows.empty()) return;
     page.heading("What is missing");
-    page.table(head({"of", "messages", "why", "when, s"}), rows);
+    page.table(text_cells({"of", "messages", "why", "when, s"}), rows);
 }
 
 void add_topics(Page& page, const Summary& summary)
 {
     std::vector<Row> rows;
     for (const TopicSummary& t : summary.topics)
-        rows.push_back({text(t.name), text(t.schema), whole(t.messages), number(t.rate()), number(static_cast<double>(t.bytes) * 1e-3)});
-    page.table(head({"topic", "type", "messages", "per second", "kB"}), rows);
+        rows.push_back({text_cell(t.name), text_cell(t.schema), whole_cell(t.messages), number_cell(t.rate()),
+                        number_cell(static_cast<double>(t.bytes) * 1e-3)});
+    page.table(text_cells({"topic", "type", "messages", "per second", "kB"}), rows);
     if (summary.snapshots.empty()) return;
     std::vector<Row> snapshots;
     for (const SnapshotSummary& s : summary.snapshots)
         if (snapshots.size() < kMostRows)
-            snapshots.push_back(
-                {whole(s.run), whole(s.step), moment(s.time), text(s.cause), text(s.name), number(static_cast<double>(s.bytes) * 1e-3)});
+            snapshots.push_back({whole_cell(s.run), whole_cell(s.step), moment(s.time), text_cell(s.cause), text_cell(s.name),
+                                 number_cell(static_cast<double>(s.bytes) * 1e-3)});
     page.paragraph("Snapshots, from which a run can be continued:");
-    add_table(page, head({"run", "step", "time, s", "cause", "name", "kB"}), snapshots, summary.snapshots.size());
+    add_table(page, text_cells({"run", "step", "time, s", "cause", "name", "kB"}), snapshots, summary.snapshots.size());
 }
 
 }  // namespace plab::recordings

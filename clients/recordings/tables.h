@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "recordings/csv.h"
+#include "plab/csv.h"
 #include "recordings/things.h"
 
 namespace plab::recordings

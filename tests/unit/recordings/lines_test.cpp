@@ -21,7 +21,7 @@ std::vector<std::string> lines(const std::string& file, const LineOptions& optio
     auto log = Log::open(file);
     REQUIRE(log.ok());
     const std::string path = fresh_path("lines.txt");
-    auto out = TextOut::open(path);
+    auto out = program::TextOut::open(path);
     REQUIRE(out.ok());
     const auto written = write_lines(*log, options, *out);
     REQUIRE(written.ok());

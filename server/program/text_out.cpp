@@ -1,10 +1,10 @@
-#include "recordings/text_out.h"
+#include "program/text_out.h"
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 
-namespace plab::recordings
+namespace plab::program
 {
 
 namespace fs = std::filesystem;
@@ -66,4 +66,4 @@ Result<void> write_file(const std::string& path, std::string_view text)
     return out->finish();
 }
 
-}  // namespace plab::recordings
+}  // namespace plab::program

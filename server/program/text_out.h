@@ -9,7 +9,7 @@
 
 #include "plab/result.h"
 
-namespace plab::recordings
+namespace plab::program
 {
 
 class TextOut
@@ -45,4 +45,4 @@ private:
 /// Writes one text as one file.
 Result<void> write_file(const std::string& path, std::string_view text);
 
-}  // namespace plab::recordings
+}  // namespace plab::program
