@@ -5,9 +5,9 @@
 
 #include "control/commands.h"
 #include "control/json.h"
+#include "control/recorder/recorder.h"
 #include "link/numbers.h"
 #include "program/progress.h"
-#include "recorder/recorder.h"
 
 namespace plab::cli
 {

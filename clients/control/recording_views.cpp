@@ -4,15 +4,15 @@
 #include "control/commands.h"
 #include "control/recording_options.h"
 #include "control/recording_print.h"
+#include "control/recordings/curves.h"
+#include "control/recordings/diff.h"
+#include "control/recordings/lines.h"
+#include "control/recordings/report.h"
 #include "control/work.h"
 #include "figures/chart.h"
 #include "link/numbers.h"
 #include "logger/follow.h"
 #include "program/text_out.h"
-#include "recordings/curves.h"
-#include "recordings/diff.h"
-#include "recordings/lines.h"
-#include "recordings/report.h"
 
 namespace plab::cli
 {

@@ -4,10 +4,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "control/recordings/lines.h"
+#include "control/recordings/report.h"
+#include "control/recordings/segments.h"
 #include "made_recording.h"
-#include "recordings/lines.h"
-#include "recordings/report.h"
-#include "recordings/segments.h"
 
 using namespace plab;
 using namespace plab::recordings;
