@@ -4,8 +4,8 @@
 
 #include "completion/server_values.h"
 #include "control/commands.h"
+#include "control/recordings/quantity.h"
 #include "idl/topics.h"
-#include "recordings/quantity.h"
 
 namespace plab::cli
 {

@@ -2,10 +2,10 @@
 
 #include "control/commands.h"
 #include "control/json.h"
+#include "control/playback/keys.h"
+#include "control/playback/player.h"
+#include "control/playback/terminal.h"
 #include "link/numbers.h"
-#include "playback/keys.h"
-#include "playback/player.h"
-#include "playback/terminal.h"
 #include "program/progress.h"
 
 namespace plab::cli

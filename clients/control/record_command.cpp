@@ -5,9 +5,9 @@
 
 #include "control/commands.h"
 #include "control/json.h"
+#include "control/recorder/recorder.h"
 #include "link/numbers.h"
 #include "program/progress.h"
-#include "recorder/recorder.h"
 
 namespace plab::cli
 {
@@ -47,11 +47,11 @@ std::string seconds_text(double seconds)
     return text.data();
 }
 
-std::string counts_text(const recorder::WriteProgress& p)
+std::string counts_text(const recorder::Progress& p)
 {
     std::string out = std::to_string(p.messages) + " messages, " + bytes_text(p.bytes);
     if (p.missing > 0) out += ", " + std::to_string(p.missing) + " did not arrive";
-    if (p.dropped.messages > 0) out += ", " + std::to_string(p.dropped.messages) + " dropped";
+    if (p.dropped > 0) out += ", " + std::to_string(p.dropped) + " dropped";
     return out;
 }
 
@@ -85,14 +85,14 @@ recorder::State follow(const Context& c, recorder::Recorder& recorder, const std
     while (state == recorder::State::Goes && !c.stopped() && !is_over())
     {
         state = recorder.step(kSlice);
-        const recorder::WriteProgress progress = recorder.progress();
+        const recorder::Progress progress = recorder.progress();
         watch.look(c, line, progress.trouble);
         if (line.is_due()) line.show(file + ": " + seconds_text(recorder.length()) + ", " + counts_text(progress) + "  (Ctrl-C ends)");
     }
     return state;
 }
 
-void print_end(const Context& c, const std::string& file, const recorder::Recorder& recorder, const recorder::WriteProgress& p)
+void print_end(const Context& c, const std::string& file, const recorder::Recorder& recorder, const recorder::Progress& p)
 {
     if (c.settings.json)
         print(c.console, {{"file", file},
@@ -101,7 +101,7 @@ void print_end(const Context& c, const std::string& file, const recorder::Record
                           {"messages", p.messages},
                           {"bytes", p.bytes},
                           {"missing", p.missing},
-                          {"dropped", p.dropped.messages},
+                          {"dropped", p.dropped},
                           {"trouble", p.last_trouble ? Json(p.last_trouble->text()) : Json()},
                           {"broken", recorder.broken()}});
     else
@@ -112,10 +112,10 @@ void print_end(const Context& c, const std::string& file, const recorder::Record
 }
 
 /// About a completed file that has gaps.
-Exit report_losses(const Context& c, const recorder::WriteProgress& p)
+Exit report_losses(const Context& c, const recorder::Progress& p)
 {
-    if (p.dropped.messages == 0) return Exit::Done;
-    c.console.say("plabctl: " + std::to_string(p.dropped.messages) + " messages are not in the file: " +
+    if (p.dropped == 0) return Exit::Done;
+    c.console.say("plabctl: " + std::to_string(p.dropped) + " messages are not in the file: " +
                   (p.last_trouble ? printable(p.last_trouble->text()) : std::string("the disk was too slow for the incoming data")));
     return Exit::Lost;
 }
@@ -140,7 +140,7 @@ Exit run_record(Context& c, RecordOptions o)
     if (servers.empty()) return c.fail(Exit::NoServer, "server '" + c.session().server() + "' has gone");
     std::string& file = o.recorder.writer.file;
     if (file.empty()) file = name_with_time(c.session().server());
-    o.recorder.writer.compression = recording::compression_of(o.compression == "none" ? "" : o.compression).value();
+    o.recorder.writer.compression = *recording::parse_compression(o.compression);
     auto recorder = recorder::Recorder::open(c.session(), servers.front(), o.recorder);
     if (!recorder) return c.fail(Exit::Failed, recorder.errors());
     const recorder::State state = follow(c, **recorder, file);
@@ -149,7 +149,7 @@ Exit run_record(Context& c, RecordOptions o)
     if (state == recorder::State::Restarted)
         c.console.say("plabctl: server '" + c.session().server() + "' was restarted: a recording covers a single server process");
     // After Ctrl-C as well: the user wants to know the state of the file.
-    const recorder::WriteProgress progress = (*recorder)->progress();
+    const recorder::Progress progress = (*recorder)->progress();
     print_end(c, file, **recorder, progress);
     if (closed)
     {

@@ -5,11 +5,11 @@
 #include "control/commands.h"
 #include "control/recording_options.h"
 #include "control/recording_print.h"
+#include "control/recordings/export.h"
+#include "control/recordings/summary.h"
 #include "control/work.h"
 #include "idl/recording/recovery.h"
 #include "link/numbers.h"
-#include "recordings/export.h"
-#include "recordings/summary.h"
 
 namespace plab::cli
 {

@@ -1,6 +1,6 @@
 // Recordings as JSON: times in s on the recording's own time line, unless the name says ns.
 #include "control/recording_print.h"
-#include "recordings/log.h"
+#include "control/recordings/log.h"
 
 namespace plab::cli
 {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "control/context.h"
-#include "recordings/log.h"
+#include "control/recordings/log.h"
 
 namespace plab::cli
 {

@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
+#include "control/recordings/log.h"
+#include "control/recordings/words.h"
 #include "control/table.h"
-#include "recordings/log.h"
-#include "recordings/words.h"
 
 namespace plab::cli
 {

@@ -3,9 +3,9 @@
 
 #include "control/console.h"
 #include "control/json.h"
+#include "control/recordings/diff.h"
+#include "control/recordings/summary.h"
 #include "idl/recording/recovery.h"
-#include "recordings/diff.h"
-#include "recordings/summary.h"
 
 namespace plab::cli
 {

@@ -4,15 +4,15 @@
 #include "control/commands.h"
 #include "control/recording_options.h"
 #include "control/recording_print.h"
+#include "control/recordings/curves.h"
+#include "control/recordings/diff.h"
+#include "control/recordings/lines.h"
+#include "control/recordings/report.h"
 #include "control/work.h"
 #include "figures/chart.h"
 #include "link/numbers.h"
 #include "logger/follow.h"
-#include "recordings/curves.h"
-#include "recordings/diff.h"
-#include "recordings/lines.h"
-#include "recordings/report.h"
-#include "recordings/text_out.h"
+#include "program/text_out.h"
 
 namespace plab::cli
 {
@@ -128,7 +128,7 @@ Exit run_report(Context& c, const ReportArguments& o)
     const std::string page = c.stopped() ? "" : recordings::report_html(*log, *summary);
     if (c.stopped()) return work.interrupted(o.out + " is not written");
     work.end();
-    if (auto written = recordings::write_file(o.out, page); !written) return c.fail(Exit::Failed, written.errors());
+    if (auto written = program::write_file(o.out, page); !written) return c.fail(Exit::Failed, written.errors());
     return Exit::Done;
 }
 
@@ -166,7 +166,7 @@ Exit run_log(const Context& c, LogArguments o)
     if (!log) return c.fail(Exit::Failed, log.errors());
     if (auto known = recordings::check_names(*log, filter); !known) return c.fail(Exit::Failed, known.errors());
     o.lines.json = c.settings.json, o.lines.count = c.settings.count;
-    auto out = recordings::TextOut::open("");
+    auto out = program::TextOut::open("");
     if (!out) return c.fail(Exit::Failed, out.errors());
     work.end();
     auto written = recordings::write_lines(*log, o.lines, *out);

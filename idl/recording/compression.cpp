@@ -55,6 +55,13 @@ std::optional<Compression> compression_of(std::string_view name)
     return std::nullopt;
 }
 
+Result<Compression> parse_compression(std::string_view word)
+{
+    if (word == "none") return Compression::None;
+    if (const auto found = compression_of(word); found && *found != Compression::None) return *found;
+    return reason("'" + std::string(word) + "' is not a compression: use none, lz4 or zstd");
+}
+
 void Compressor::FreeZstd::operator()(ZSTD_CCtx_s* context) const { ZSTD_freeCCtx(context); }
 void Compressor::FreeLz4::operator()(LZ4F_cctx_s* context) const { (void)LZ4F_freeCompressionContext(context); }
 void Decompressor::FreeZstd::operator()(ZSTD_DCtx_s* context) const { ZSTD_freeDCtx(context); }

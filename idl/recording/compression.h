@@ -27,6 +27,8 @@ enum class Compression : std::uint8_t
 std::string_view name_of(Compression compression);
 /// Empty for any other name.
 std::optional<Compression> compression_of(std::string_view name);
+/// As users name it: "none", "lz4", "zstd".
+Result<Compression> parse_compression(std::string_view word);
 
 class Compressor
 {

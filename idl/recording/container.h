@@ -42,6 +42,7 @@ public:
     std::uint64_t size() const { return size_; }
     /// Statistics of the data that are certainly in the file.
     Statistics statistics() const { return summary_.statistics(); }
+    std::uint64_t messages() const { return summary_.messages(); }
 
 private:
     Container(std::unique_ptr<Sink> sink, std::size_t most_index_memory) : sink_(std::move(sink)), summary_(most_index_memory) {}

@@ -1,6 +1,8 @@
 #include "idl/recording/format.h"
 
+#include <array>
 #include <charconv>
+#include <cstdio>
 
 namespace plab::recording
 {
@@ -11,6 +13,20 @@ std::string value_in(const Pairs& values, const char* key)
 {
     const auto found = values.find(key);
     return found == values.end() ? std::string() : found->second;
+}
+
+std::string number(double value)
+{
+    std::array<char, 32> text{};
+    (void)std::snprintf(text.data(), text.size(), "%.17g", value);
+    return text.data();
+}
+
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string out;
+    for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+    return out;
 }
 
 /// The reason why this build cannot understand the file; "" if it can.
@@ -28,6 +44,25 @@ std::string why_not(const Pairs& about)
 }
 
 }  // namespace
+
+Metadata about(const Origin& o)
+{
+    Metadata out{kAbout, {}};
+    out.values = {{"format", std::to_string(kFormat)},
+                  {"recorder", o.recorder},
+                  {"server", o.server},
+                  {"version", o.version},
+                  {"host", o.host},
+                  {"started_ns", std::to_string(o.started_ns)},
+                  {"scene_file", o.scene_file},
+                  {"dt", number(o.dt)},
+                  {"threads", std::to_string(o.threads)},
+                  {"state_interval", number(o.state_interval)},
+                  {"states", o.moved_only ? "moved" : "all"}};
+    if (!o.build.empty()) out.values["build"] = o.build;
+    if (!o.topics.empty()) out.values["topics"] = joined(o.topics);
+    return out;
+}
 
 Result<Reader> open_recording(const std::string& path, const Watch& watch)
 {

@@ -14,6 +14,20 @@ inline constexpr int kOldestFormat = 2;
 /// The metadata record that contains it, under the key "format", together with the file's origin.
 inline constexpr const char* kAbout = "plab";
 
+/// What a file states about its origin.
+struct Origin
+{
+    std::string recorder;  ///< the program
+    std::string server, version, build, host, scene_file;
+    std::int64_t started_ns = 0;  ///< since 1970: when the server began
+    double dt = 0;                ///< s
+    std::uint32_t threads = 1;
+    double state_interval = 0;        ///< s, simulated, between frames; 0: each step
+    bool moved_only = false;          ///< frames contain only what moved since the last one
+    std::vector<std::string> topics;  ///< none: all but images
+};
+Metadata about(const Origin& origin);
+
 /// Like Reader::open(), but refuses files of a newer, an outdated or an unknown format. A file without our metadata (made by
 /// another tool, or its beginning was lost) is accepted.
 Result<Reader> open_recording(const std::string& path, const Watch& watch = {});

@@ -54,6 +54,7 @@ public:
 
     bool has_index() const { return has_index_; }
     Statistics statistics() const;
+    std::uint64_t messages() const { return statistics_.messages; }
     /// Writes summary, summary offsets, footer and closing magic; `begin`: where they start in the file.
     Result<void> write(Sink& sink, std::uint64_t begin) const;
 

@@ -181,9 +181,10 @@ Result<void> Writer::add_metadata(Metadata metadata)
 
 Result<void> Writer::add_gap(const Losses& losses, const std::string& why)
 {
-    if (!trouble_) return note(container_.put(gap_record(losses, why)));
-    gap_.add(losses);  // noted when the disk works again
-    return {};
+    Result<void> done;
+    if (!trouble_) done = note(container_.put(gap_record(losses, why)));
+    if (trouble_) gap_.add(losses);  // noted when the disk works again
+    return done;
 }
 
 void Writer::tick(Clock::time_point now)

@@ -92,6 +92,7 @@ public:
     const Losses& dropped() const { return dropped_; }
     /// Of what is in the file.
     Statistics statistics() const { return container_.statistics(); }
+    std::uint64_t messages() const { return container_.messages(); }
     std::uint64_t file_size() const { return container_.size(); }
 
 private:

@@ -1,11 +1,10 @@
 #include "daemon/trace.h"
 
 #include <cerrno>
-#include <cinttypes>
 #include <cstring>
 
 #include "daemon/figures_text.h"
-#include "model/exact_text.h"
+#include "model/value_numbers.h"
 #include "world/host_tables.h"
 
 namespace plab::daemon
@@ -15,38 +14,6 @@ namespace
 
 /// Denotes the work that a component has done, which is not one of its fields.
 constexpr const char* kWork = "work";
-
-/// The numbers of a value; empty for texts and opaque values of a plugin.
-std::vector<double> numbers_of(const Value& value)
-{
-    if (const auto* v = std::get_if<double>(&value)) return {*v};
-    if (const auto* v = std::get_if<std::int64_t>(&value)) return {static_cast<double>(*v)};
-    if (const auto* v = std::get_if<bool>(&value)) return {*v ? 1.0 : 0.0};
-    if (const auto* v = std::get_if<Vec3>(&value)) return {v->x, v->y, v->z};
-    if (const auto* v = std::get_if<Quat>(&value)) return {v->w, v->x, v->y, v->z};
-    if (const auto* v = std::get_if<Reals>(&value)) return *v;
-    return {};
-}
-
-/// Suffixes of a value's columns after "ID.field".
-std::vector<std::string> suffixes_of(const Value& value)
-{
-    if (std::holds_alternative<Vec3>(value)) return {".x", ".y", ".z"};
-    if (std::holds_alternative<Quat>(value)) return {".w", ".x", ".y", ".z"};
-    std::vector<std::string> out(numbers_of(value).size());
-    if (!std::holds_alternative<Reals>(value)) return out;
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = "." + std::to_string(k + 1);
-    return out;
-}
-
-/// Escapes an id or a name for a line of CSV.
-std::string cell(const std::string& text)
-{
-    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + "\"";
-}
 
 std::vector<std::string> fields_of_object(const world::Component& c)
 {
@@ -67,12 +34,12 @@ Value value_of(const simulation::Simulation& s, std::uint32_t i, const std::stri
 
 }  // namespace
 
-void Trace::add(const simulation::Simulation& s, std::uint32_t i, const std::string& field, bool output, std::string& header)
+void Trace::add(const simulation::Simulation& s, std::uint32_t i, const std::string& field, bool output, CsvRow& header)
 {
-    const std::vector<std::string> suffixes = suffixes_of(value_of(s, i, field));
+    const std::vector<std::string> suffixes = model::number_suffixes(value_of(s, i, field));
     if (suffixes.empty()) return;
     columns_.push_back({s.world().id_of(i), field, suffixes.size(), output});
-    for (const std::string& suffix : suffixes) header += "," + cell(s.world().id_of(i) + "." + field + suffix);
+    for (const std::string& suffix : suffixes) header.text(s.world().id_of(i) + "." + field + suffix);
 }
 
 Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simulation::Simulation& s, double every)
@@ -81,7 +48,8 @@ Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simula
     trace->file_.reset(std::fopen(file.c_str(), "w"));
     if (!trace->file_) return reason("cannot write " + file + ": " + std::strerror(errno));
     trace->every_ = every;
-    std::string header = "time,step,hash,energy,kinetic,momentum_x,momentum_y,momentum_z";
+    CsvRow header;
+    header.put("time,step,hash,energy,kinetic,momentum_x,momentum_y,momentum_z");
     const world::World& world = s.world();
     for (const std::uint32_t i : world.in_id_order())
         if (is_shown(world.component(i)))
@@ -93,7 +61,7 @@ Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simula
         for (const Field& field : world.table_of(i).schema().fields())
             if (field.kind == FieldKind::Output) trace->add(s, i, field.name, true, header);
     }
-    std::fprintf(trace->file_.get(), "%s\n", header.c_str());
+    trace->write(header);
     return trace;
 }
 
@@ -103,18 +71,28 @@ void Trace::sample(const simulation::Simulation& s, bool last)
     last_ = s.tick();
     while (every_ > 0 && next_ <= s.time() * (1 + 1e-12)) next_ += every_;
     const simulation::Totals t = s.totals();
-    std::string row = number(s.time()) + "," + std::to_string(s.tick()) + "," + model::hash_text(s.state_hash());
-    for (const double v : {t.kinetic + t.stored, t.kinetic, t.momentum.x, t.momentum.y, t.momentum.z}) row += "," + number(v);
+    CsvRow row;
+    row.put(number(s.time())).whole(s.tick()).hexadecimal(s.state_hash());
+    for (const double v : {t.kinetic + t.stored, t.kinetic, t.momentum.x, t.momentum.y, t.momentum.z}) row.put(number(v));
+    std::vector<double> values;
     for (const Columns& c : columns_)
     {
         // A component that was removed, or exchanged for a type without that output, leaves its columns empty.
         const std::uint32_t i = s.world().find(c.component);
         const bool there = i != kNoIndex && (c.output ? is_listed(s.world(), i) : is_shown(s.world().component(i)));
         const bool known = there && (!c.output || c.field == kWork || s.world().table_of(i).schema().find_field(c.field));
-        const std::vector<double> values = known ? numbers_of(value_of(s, i, c.field)) : std::vector<double>{};
-        for (std::size_t k = 0; k < c.count; ++k) row += "," + (k < values.size() ? number(values[k]) : std::string());
+        values.clear();
+        if (known) model::append_numbers(value_of(s, i, c.field), values);
+        for (std::size_t k = 0; k < c.count; ++k) row.put(k < values.size() ? number(values[k]) : std::string());
     }
-    std::fprintf(file_.get(), "%s\n", row.c_str());
+    write(row);
+}
+
+void Trace::write(CsvRow& row)
+{
+    row.end();
+    const std::string line = row.take();
+    (void)std::fwrite(line.data(), 1, line.size(), file_.get());
 }
 
 }  // namespace plab::daemon

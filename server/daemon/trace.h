@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "plab/csv.h"
 #include "simulation/simulation.h"
 
 namespace plab::daemon
@@ -32,7 +33,8 @@ private:
         std::size_t count = 1;
         bool output = false;  ///< of an interaction: a component that replaces it may not have this output
     };
-    void add(const simulation::Simulation& simulation, std::uint32_t component, const std::string& field, bool output, std::string& header);
+    void add(const simulation::Simulation& simulation, std::uint32_t component, const std::string& field, bool output, CsvRow& header);
+    void write(CsvRow& row);
 
     std::unique_ptr<std::FILE, Closer> file_;
     std::vector<Columns> columns_;

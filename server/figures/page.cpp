@@ -1,5 +1,11 @@
 #include "figures/page.h"
 
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "figures/axes.h"
+
 namespace plab::figures
 {
 namespace
@@ -75,6 +81,24 @@ std::string cell(const char* tag, const PageCell& c, const PageCell& column)
 }
 
 }  // namespace
+
+PageCell text_cell(std::string text, std::string hint) { return {std::move(text), "", std::move(hint)}; }
+
+PageCell number_cell(double value, std::string hint)
+{
+    std::array<char, 40> key{"-"};
+    if (std::isfinite(value)) (void)std::snprintf(key.data(), key.size(), "%.9e", value);
+    return {short_number(value), key.data(), std::move(hint)};
+}
+
+PageCell no_cell(std::string hint) { return {"–", "-", std::move(hint)}; }
+
+std::vector<PageCell> text_cells(std::initializer_list<const char*> texts)
+{
+    std::vector<PageCell> out;
+    for (const char* text : texts) out.push_back(text_cell(text));
+    return out;
+}
 
 void Page::heading(const std::string& text) { body_ += "<h2>" + escape_markup(text) + "</h2>\n"; }
 void Page::paragraph(const std::string& text) { body_ += "<p>" + escape_markup(text) + "</p>\n"; }

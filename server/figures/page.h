@@ -1,7 +1,10 @@
 /// The frame of a report: one self-contained HTML page. Light and dark, printable.
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "figures/drawing.h"
@@ -14,6 +17,20 @@ struct PageCell
 {
     std::string text, key, hint;
 };
+
+PageCell text_cell(std::string text, std::string hint = {});
+/// A measured number, in short form; sorted by all of its digits.
+PageCell number_cell(double value, std::string hint = {});
+template <class T>
+requires std::is_integral_v<T> PageCell whole_cell(T value, std::string hint = {})
+{
+    const std::string text = std::to_string(value);
+    return {text, text, std::move(hint)};
+}
+/// A value that does not exist: "–", sorted last.
+PageCell no_cell(std::string hint = {});
+/// The first line of a table without hints.
+std::vector<PageCell> text_cells(std::initializer_list<const char*> texts);
 
 class Page
 {

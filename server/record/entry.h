@@ -5,7 +5,6 @@
 #include <memory>
 #include <variant>
 
-#include "idl/recording/writer.h"
 #include "publish/records.h"
 
 namespace plab::record
@@ -20,8 +19,6 @@ struct Entry
     std::uint64_t run = 0;
     double time = 0;            ///< s, simulated, in that run
     std::int64_t stamp_ns = 0;  ///< since 1970
-    std::size_t bytes = 0;      ///< approximate memory that it uses
-    recording::Losses lost;     ///< what was dropped before it for lack of room; without times
     Body body;
 };
 

@@ -1,10 +1,7 @@
 #include "record/recorder.h"
 
-#include <pthread.h>
-
-#include <array>
-#include <csignal>
-#include <filesystem>
+#include <algorithm>
+#include <cstdio>
 
 #include "idl/identity.h"
 #include "idl/recording/format.h"
@@ -14,53 +11,44 @@ namespace plab::record
 namespace
 {
 
-constexpr std::size_t kQueue = 16384;
 /// Besides the frames in flight, this many are kept for reuse.
 constexpr std::size_t kSpareFrames = 64;
 
-Result<recording::Compression> compression_of(const std::string& name)
-{
-    if (name == "none") return recording::Compression::None;
-    if (name == "lz4") return recording::Compression::Lz4;
-    if (name == "zstd") return recording::Compression::Zstd;
-    return reason("'" + name + "' is not a compression: use none, lz4 or zstd");
-}
-
-std::string number(double value)
-{
-    std::array<char, 32> text{};
-    (void)std::snprintf(text.data(), text.size(), "%.17g", value);
-    return text.data();
-}
-
-std::string joined(const std::vector<std::string>& words)
-{
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
-    return out;
-}
-
-/// The metadata that the file starts with.
+/// The metadata and the attachment that the file starts with.
 Result<void> introduce(recording::Writer& writer, const RecordOptions& o, const wire::Identity& self)
 {
-    recording::Metadata about{recording::kAbout, {}};
-    about.values = {{"format", std::to_string(recording::kFormat)},
-                    {"recorder", "plabd"},
-                    {"server", o.server},
-                    {"version", o.version},
-                    {"build", o.build},
-                    {"host", self.host},
-                    {"started_ns", std::to_string(self.started_ns)},
-                    {"scene_file", o.scene_file},
-                    {"dt", number(o.dt)},
-                    {"threads", std::to_string(o.threads)},
-                    {"state_interval", number(o.state_interval)},
-                    {"states", o.moved_only ? "moved" : "all"}};
-    if (!o.topics.empty()) about.values["topics"] = joined(o.topics);
-    if (auto done = writer.add_metadata(std::move(about)); !done) return done;
+    const recording::Origin origin{.recorder = "plabd",
+                                   .server = o.server,
+                                   .version = o.version,
+                                   .build = o.build,
+                                   .host = self.host,
+                                   .scene_file = o.scene_file,
+                                   .started_ns = self.started_ns,
+                                   .dt = o.dt,
+                                   .threads = o.threads,
+                                   .state_interval = o.state_interval,
+                                   .moved_only = o.moved_only,
+                                   .topics = o.topics};
+    if (auto done = writer.add_metadata(recording::about(origin)); !done) return done;
     const auto* text = reinterpret_cast<const std::uint8_t*>(o.blueprint.data());
     return writer.attach(
         {0, static_cast<std::uint64_t>(self.started_ns), "blueprint.xml", "text/xml", recording::ByteView(text, o.blueprint.size())});
+}
+
+/// Logs what concerns the disk and the file.
+std::function<void(recording::Notice, const std::string&)> log_of(const RecordOptions& o)
+{
+    return [log = o.log, argument = o.log_argument, file = o.file](recording::Notice notice, const std::string& why)
+    {
+        using recording::Notice;
+        const std::string line = notice == Notice::Stalled     ? "recording is stalled, the simulation continues: " + why
+                                 : notice == Notice::Continues ? "recording " + file + " continues: the disk accepts writes again"
+                                                               : "recording " + file + ": " + why;
+        if (log != nullptr)
+            log(argument, line.c_str());
+        else
+            (void)std::fprintf(stderr, "%s\n", line.c_str());
+    };
 }
 
 Result<void> check_topics(const std::vector<std::string>& topics)
@@ -82,55 +70,44 @@ std::size_t size_of(const publish::Batch<T>& batch)
 Result<std::unique_ptr<Recorder>> Recorder::open(const RecordOptions& options)
 {
     if (auto checked = check_topics(options.topics); !checked) return checked.errors();
-    const auto compression = compression_of(options.compression);
+    const auto compression = recording::parse_compression(options.compression);
     if (!compression) return compression.errors();
-    recording::WriterOptions file;
-    file.compression = *compression;
-    // Of the 20 ms that a kill may cost, a chunk takes 12, the gathering of hashes 3, and the sleep of the writer 2.
-    file.chunk_time = std::chrono::milliseconds(12);
-    auto writer = recording::Writer::create(options.file, file, options.overwrite ? recording::Overwrite::Yes : recording::Overwrite::No);
+    recording::AsyncWriterOptions file;
+    file.file = options.file, file.overwrite = options.overwrite, file.compression = *compression;
+    file.most_waiting_bytes = options.most_waiting_bytes;
+    file.too_slow = "the writer did not keep up with the simulation";
+    file.notice = log_of(options);
+    auto writer = recording::open_writer(file);
     if (!writer) return writer.errors();
     if (auto done = introduce(*writer, options, wire::identify(options.server, options.version)); !done) return done.errors();
-    return std::unique_ptr<Recorder>(new Recorder(options, writer.take()));
+    return std::unique_ptr<Recorder>(new Recorder(options, file, writer.take()));
 }
 
-Recorder::Recorder(const RecordOptions& options, recording::Writer writer)
+Recorder::Recorder(const RecordOptions& options, const recording::AsyncWriterOptions& file, recording::Writer writer)
     : options_(options),
-      writer_(std::move(writer)),
-      topics_(writer_, wire::identify(options.server, options.version), options.topics, options.moved_only),
-      queue_(kQueue),
-      spare_(kSpareFrames)
+      topics_(wire::identify(options.server, options.version), options.topics, options.moved_only),
+      spare_(kSpareFrames),
+      writer_(std::move(writer), file, [this](recording::TopicFile& to, Entry& entry) { return write(to, entry); })
 {
-    progress_.file = options.file;
-    sigset_t all, before;
-    (void)sigfillset(&all);
-    (void)pthread_sigmask(SIG_SETMASK, &all, &before);
-    thread_ = std::thread([this] { run(); });
-    (void)pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    (void)pthread_setname_np(thread_.native_handle(), "plab-record");
-    // Batch: waking this thread does not preempt the step thread on the same core.
-    const sched_param priority{};
-    (void)pthread_setschedparam(thread_.native_handle(), SCHED_BATCH, &priority);
 }
 
 Recorder::~Recorder() { (void)close(); }
 
 Result<void> Recorder::close()
 {
-    if (!closed_)
-    {
-        closed_ = true;
-        push(hash_batch_.flush());
-        stop_.store(true, std::memory_order_release);
-        wake_up_.ring();
-        thread_.join();
-        if (const auto done = writer_.close(); !done) close_error_ = done.error();
-        tell_progress();
-        std::error_code no_size;
-        if (const auto size = std::filesystem::file_size(options_.file, no_size); !no_size) progress_.bytes = size;
-    }
-    if (close_error_) return *close_error_;
-    return {};
+    push(hash_batch_.flush());
+    return writer_.close();
+}
+
+std::uint64_t Recorder::write(recording::TopicFile& file, Entry& entry)
+{
+    // Snapshots are serialized in parallel with the run and arrive late: they are placed at the time when they were taken, a
+    // run's first one before the run.
+    const auto* snapshot = std::get_if<publish::SnapshotRecord>(&entry.body);
+    const std::uint64_t log_time = snapshot ? timeline_.at(snapshot->run, snapshot->time) : timeline_.at(entry.run, entry.time);
+    topics_.put(file, entry, {log_time, static_cast<std::uint64_t>(entry.stamp_ns), recording::Clock::now()});
+    if (auto* frame = std::get_if<std::unique_ptr<publish::Frame>>(&entry.body)) (void)spare_.push(*frame);
+    return log_time;
 }
 
 bool Recorder::wants(publish::Stream stream) const
@@ -165,34 +142,10 @@ std::optional<double> Recorder::interval(publish::Stream stream) const
     return {};
 }
 
-bool Recorder::has_room(std::size_t bytes, Weight weight) const
-{
-    if (weight == Weight::Vital) return queue_.size() < kQueue;
-    const std::size_t part = weight == Weight::Detail ? 2 : 1;
-    return queue_.size() < kQueue - kQueue / 4 * part &&
-           waiting_bytes_.load(std::memory_order_relaxed) + bytes <= options_.most_waiting_bytes / part;
-}
-
 bool Recorder::push(Entry::Body&& body, std::size_t bytes, Weight weight)
 {
-    Entry entry;
-    entry.run = run_, entry.time = time_, entry.bytes = bytes, entry.lost = lost_;
     const auto now = std::chrono::system_clock::now().time_since_epoch();
-    entry.stamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
-    entry.body = std::move(body);
-    // A single entry larger than the room is accepted when nothing else waits: a snapshot of a huge scene.
-    const bool fits = has_room(bytes, weight) || (weight == Weight::Essential && queue_.size() == 0);
-    waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed);
-    if (fits && queue_.push(entry))
-    {
-        lost_ = {};
-        wake_up_.ring();
-        return true;
-    }
-    waiting_bytes_.fetch_sub(bytes, std::memory_order_relaxed);
-    ++lost_.messages, lost_.bytes += bytes;
-    dropped_here_.fetch_add(1, std::memory_order_relaxed);
-    return false;
+    return writer_.push({run_, time_, std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), std::move(body)}, bytes, weight);
 }
 
 publish::Frame& Recorder::begin_frame()
@@ -207,13 +160,7 @@ void Recorder::end_frame()
 {
     const std::size_t bytes = sizeof(publish::Frame) + filling_->bodies.size() * sizeof(publish::BodyState) +
                               filling_->shafts.size() * sizeof(publish::ShaftState);
-    if (!has_room(bytes, Weight::Detail))
-    {
-        // The frame stays here and is refilled.
-        ++lost_.messages, lost_.bytes += bytes;
-        dropped_here_.fetch_add(1, std::memory_order_relaxed);
-        return;
-    }
+    if (!writer_.has_room(bytes, Weight::Detail)) return writer_.drop(bytes);  // the frame stays here and is refilled
     (void)push(std::move(filling_), bytes, Weight::Detail);
 }
 
@@ -280,9 +227,10 @@ bool Recorder::catalogue(publish::CatalogueChange&& change)
 
 publish::RecordingStatus Recorder::progress() const
 {
-    const std::lock_guard lock(mutex_);
-    publish::RecordingStatus out = progress_;
-    out.dropped += dropped_here_.load(std::memory_order_relaxed);
+    const recording::WriteProgress p = writer_.progress();
+    publish::RecordingStatus out;
+    out.file = options_.file, out.bytes = p.bytes, out.messages = p.messages, out.dropped = p.dropped;
+    if (p.trouble) out.trouble = p.trouble->reason;
     return out;
 }
 

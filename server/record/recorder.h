@@ -1,13 +1,9 @@
-/// A recording in progress: a queue that the step thread fills, and one thread that empties it into the file.
+/// A recording in progress: the step thread fills the queue of an asynchronous writer, whose thread makes samples of it.
 #pragma once
 
-#include <atomic>
-#include <mutex>
-#include <thread>
-
+#include "idl/recording/async_writer.h"
 #include "publish/hash_batch.h"
-#include "publish/queue.h"
-#include "publish/wake_up.h"
+#include "record/entry.h"
 #include "record/record.h"
 #include "record/topic_writer.h"
 
@@ -41,55 +37,27 @@ public:
     Result<void> close() override;
 
 private:
-    /// What is dropped first when the writer does not keep up.
-    enum class Weight
-    {
-        Detail,     ///< may use up to half of the room
-        Essential,  ///< may use all of it
-        Vital,      ///< small entries without which no replay is possible: accepted as long as the queue has a slot
-    };
-    Recorder(const RecordOptions& options, recording::Writer writer);
+    /// Vital: what no replay is possible without.
+    using Weight = recording::Weight;
+    Recorder(const RecordOptions& options, const recording::AsyncWriterOptions& file, recording::Writer writer);
     bool push(Entry::Body&& body, std::size_t bytes, Weight weight);
     void push(std::optional<publish::HashRecord> record);
-    bool has_room(std::size_t bytes, Weight weight) const;
 
     // Writer's thread --------------------------------------------------------------------------------------------------
-    void run();
-    bool pass();
-    void write(Entry& entry);
-    void give_back(Entry& entry);
-    void look_after_disk(recording::Clock::time_point now);
-    void tell_progress();
-    void say(const std::string& line);
+    std::uint64_t write(recording::TopicFile& file, Entry& entry);
 
     RecordOptions options_;
-    recording::Writer writer_;
     TopicWriter topics_;
     recording::Timeline timeline_;
-
-    publish::Queue<Entry> queue_;
-    publish::Queue<std::unique_ptr<publish::Frame>> spare_;
-    std::atomic<std::size_t> waiting_bytes_{0};
-    publish::WakeUp wake_up_;
-    std::atomic<bool> stop_{false};
+    recording::Queue<std::unique_ptr<publish::Frame>> spare_;
 
     // Used by the step thread only.
     std::uint64_t run_ = 0;
     double time_ = 0;
     std::unique_ptr<publish::Frame> filling_;
     publish::HashBatch hash_batch_;
-    recording::Losses lost_;
 
-    // Used by the writer's thread only.
-    recording::Clock::time_point tried_{}, warned_at_{};
-    bool in_trouble_ = false;
-    bool closed_ = false;
-    std::optional<Error> close_error_;
-
-    mutable std::mutex mutex_;  ///< protects only progress_, held for a copy
-    publish::RecordingStatus progress_;
-    std::atomic<std::uint64_t> dropped_here_{0};
-    std::thread thread_;
+    recording::AsyncWriter<Entry> writer_;  ///< last: its thread uses the above
 };
 
 }  // namespace plab::record

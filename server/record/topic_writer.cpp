@@ -14,8 +14,8 @@ constexpr double kFullFrameEvery = 1;  ///< s, simulated
 
 }  // namespace
 
-TopicWriter::TopicWriter(recording::Writer& writer, wire::Identity identity, std::vector<std::string> topics, bool moved_only)
-    : writer_(&writer), identity_(std::move(identity)), topics_(std::move(topics))
+TopicWriter::TopicWriter(wire::Identity identity, std::vector<std::string> topics, bool moved_only)
+    : identity_(std::move(identity)), topics_(std::move(topics))
 {
     if (moved_only) moved_.emplace(kFullFrameEvery);
 }
@@ -27,40 +27,19 @@ bool TopicWriter::has(const char* topic) const
 }
 
 template <class T>
-recording::ChannelId TopicWriter::channel()
-{
-    const wire::Topic& topic = wire::topic_of<T>();
-    if (const auto known = channels_.find(topic.name); known != channels_.end()) return known->second;
-    recording::ChannelId id = 0;
-    const auto schema = recording::schema_of<T>();
-    const auto schema_id = schema ? writer_->add_schema(*schema) : Result<std::uint16_t>(schema.error());
-    const auto channel_id =
-        schema_id ? writer_->add_channel(recording::channel_of<T>(*schema_id)) : Result<recording::ChannelId>(schema_id.error());
-    if (channel_id)
-        id = *channel_id;
-    else
-        error_ = channel_id.error();
-    channels_.emplace(topic.name, id);
-    return id;
-}
-
-template <class T>
 void TopicWriter::write(const T& sample, const Stamp& stamp)
 {
-    if (!has(wire::topic_of<T>().name)) return;
-    const recording::ChannelId id = channel<T>();
-    if (id == 0) return;  // the error was reported when the channel could not be made
-    const auto bytes = encoder_.encode(sample);
-    if (!bytes)
-    {
-        error_ = bytes.error();
-        return;
-    }
-    (void)writer_->write({id, 0, stamp.log_time, stamp.publish_time, *bytes}, stamp.now);
+    const wire::Topic& topic = wire::topic_of<T>();
+    if (!has(topic.name)) return;
+    if (const auto bytes = encoder_.encode(sample))
+        file_->write(topic, *bytes, stamp);
+    else
+        file_->refuse(bytes.error());
 }
 
-void TopicWriter::put(Entry& entry, const Stamp& stamp)
+void TopicWriter::put(recording::TopicFile& file, Entry& entry, const Stamp& stamp)
 {
+    file_ = &file;
     struct Visitor
     {
         TopicWriter* self;

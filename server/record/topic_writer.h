@@ -9,8 +9,7 @@
 
 #include "idl/recording/cdr.h"
 #include "idl/recording/timeline.h"
-#include "idl/recording/topic_schema.h"
-#include "idl/recording/writer.h"
+#include "idl/recording/topic_file.h"
 #include "record/entry.h"
 #include "record/moved.h"
 #include "wire/samples.h"
@@ -18,46 +17,34 @@
 namespace plab::record
 {
 
-/// Position of a message on the recording's time line.
-struct Stamp
-{
-    std::uint64_t log_time = 0;
-    std::uint64_t publish_time = 0;
-    recording::Clock::time_point now{};
-};
+using recording::Stamp;
 
 class TopicWriter
 {
 public:
-    TopicWriter(recording::Writer& writer, wire::Identity identity, std::vector<std::string> topics, bool moved_only);
+    TopicWriter(wire::Identity identity, std::vector<std::string> topics, bool moved_only);
 
     /// Whether the file is to have this topic.
     bool has(const char* topic) const;
-    void put(Entry& entry, const Stamp& stamp);
-    /// Encoding errors since the last call; disk errors are not included.
-    std::optional<Error> take_error() { return std::exchange(error_, std::nullopt); }
+    void put(recording::TopicFile& file, Entry& entry, const Stamp& stamp);
 
 private:
     void put_body(const publish::Frame& frame, const Stamp& stamp);
     void put_body(const publish::CatalogueChange& change, const Stamp& stamp, std::uint64_t run);
     template <class T>
     void write(const T& sample, const Stamp& stamp);
-    template <class T>
-    recording::ChannelId channel();
 
     template <class T, class Sample, class Item, class Key>
     void put_entries(Sample& sample, const std::vector<Item>& entries, Key key, const Stamp& stamp);
     void put_gone(const publish::CatalogueChange& change, const Stamp& stamp, std::uint64_t run);
     void say_gone(const std::string& topic, const std::string& key, const Stamp& stamp, std::uint64_t run);
 
-    recording::Writer* writer_;
+    recording::TopicFile* file_ = nullptr;  ///< during put()
     wire::Identity identity_;
     std::vector<std::string> topics_;  ///< none: all but images
     recording::Encoder encoder_;
-    std::map<std::string, recording::ChannelId> channels_;
     std::map<std::string, std::set<std::string>> known_;  ///< catalogue: keys by topic
     std::optional<MovedFilter> moved_;
-    std::optional<Error> error_;
 
     wire::ServerSample server_;
     wire::SceneSample scene_;

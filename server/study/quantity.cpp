@@ -1,62 +1,25 @@
 #include "study/quantity.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <limits>
 
 #include "model/names.h"
 #include "model/type_summary.h"
-#include "model/units.h"
+#include "model/value_numbers.h"
 
 namespace plab::study
 {
 namespace
 {
 
-/// Numbers of a value; none for texts.
-std::size_t width_of(const Value& v)
-{
-    switch (type_of(v))
-    {
-        case FieldType::Boolean:
-        case FieldType::Integer:
-        case FieldType::Real:
-            return 1;
-        case FieldType::Vector:
-            return 3;
-        case FieldType::Rotation:
-            return 4;
-        case FieldType::RealList:
-            return std::get<Reals>(v).size();
-        default:
-            return 0;
-    }
-}
-
-void append(const Value& v, std::vector<double>& out)
-{
-    if (const auto* b = std::get_if<bool>(&v)) out.push_back(*b ? 1 : 0);
-    if (const auto* n = std::get_if<std::int64_t>(&v)) out.push_back(static_cast<double>(*n));
-    if (const auto* d = std::get_if<double>(&v)) out.push_back(*d);
-    if (const auto* x = std::get_if<Vec3>(&v)) out.insert(out.end(), {x->x, x->y, x->z});
-    if (const auto* q = std::get_if<Quat>(&v)) out.insert(out.end(), {q->w, q->x, q->y, q->z});
-    if (const auto* list = std::get_if<Reals>(&v)) out.insert(out.end(), list->begin(), list->end());
-}
-
-/// Suffixes of the numbers of a vector or an orientation; empty for others.
-std::string letters_of(FieldType type) { return type == FieldType::Vector ? "xyz" : type == FieldType::Rotation ? "wxyz" : ""; }
+using model::number_count;
 
 /// "z" of "position.z", "2" of "values.2": its place among the numbers of a vector, an attitude or a list.
 std::optional<std::size_t> part_of(const std::string& name, const Value& whole)
 {
-    const std::string letters = letters_of(type_of(whole));
-    if (const std::size_t at = name.size() == 1 ? letters.find(name) : std::string::npos; at != std::string::npos) return at;
-    if (type_of(whole) != FieldType::RealList) return {};
-    std::size_t n = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), n);
-    if (error != std::errc() || end != name.data() + name.size() || n < 1 || n > width_of(whole)) return {};
-    return n - 1;
+    const std::vector<std::string> suffixes = model::number_suffixes(whole);
+    const auto found = std::find(suffixes.begin(), suffixes.end(), "." + name);
+    return found == suffixes.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - suffixes.begin()));
 }
 
 /// The longest beginning of `text` that is a component's id.
@@ -76,7 +39,7 @@ std::vector<std::string> numbers_of(const world::World& world, std::uint32_t own
     std::vector<std::string> names;
     if (const model::ComponentType* type = world.type_of(owner))
         for (const Field& f : type->schema.fields())
-            if (width_of(world.get(owner, f.name)) > 0) names.push_back(f.name);
+            if (number_count(world.get(owner, f.name)) > 0) names.push_back(f.name);
     return names;
 }
 
@@ -129,7 +92,7 @@ Result<Quantity> resolve_quantity(const world::World& world, const std::string& 
     if (owner == kNoIndex) return unknown_owner(world, text);
     q.id = world.id_of(owner);
     Value value = world.get(owner, q.field);
-    if (width_of(value) == 0)
+    if (number_count(value) == 0)
     {
         const std::size_t dot = q.field.rfind('.');
         const Value whole = dot == std::string::npos ? Value() : world.get(owner, q.field.substr(0, dot));
@@ -137,8 +100,8 @@ Result<Quantity> resolve_quantity(const world::World& world, const std::string& 
         if (!q.part) return unknown_field(world, owner, text, q.field);
         q.field.resize(dot), value = whole;
     }
-    q.width = q.part ? 1 : width_of(value);
-    q.is_list = type_of(value) == FieldType::RealList;
+    q.width = q.part ? 1 : number_count(value);
+    q.suffixes = model::number_suffixes(value);
     q.measure = !q.part && type_of(value) == FieldType::Rotation ? Measure::Geodesic : Measure::Mixed;
     const model::ComponentType* type = world.type_of(owner);
     const Field* field = type ? type->schema.find_field(q.field) : nullptr;
@@ -146,12 +109,7 @@ Result<Quantity> resolve_quantity(const world::World& world, const std::string& 
     return q;
 }
 
-std::string Quantity::column(std::size_t i) const
-{
-    if (width == 1) return name;
-    const std::string letters = measure == Measure::Geodesic ? "wxyz" : "xyz";
-    return name + "." + (is_list ? std::to_string(i + 1) : letters.substr(i, 1));
-}
+std::string Quantity::column(std::size_t i) const { return width == 1 ? name : name + suffixes[i]; }
 
 std::vector<std::string> default_quantities(const world::World& world, std::size_t most)
 {
@@ -173,7 +131,7 @@ void read(const world::World& world, const Quantity& quantity, std::vector<doubl
     const std::uint32_t i = world.find(quantity.id);
     if (i != kNoIndex)
     {
-        append(world.get(i, quantity.field), out);
+        model::append_numbers(world.get(i, quantity.field), out);
         if (quantity.part && before + *quantity.part < out.size()) out[before] = out[before + *quantity.part];
     }
     out.resize(before + quantity.width, kNaN);

@@ -30,11 +30,11 @@ struct Quantity
     std::string id, field;            ///< component and its field
     std::optional<std::size_t> part;  ///< one number of a vector
     std::size_t width = 1;            ///< numbers per sample
-    bool is_list = false;             ///< of numbers without letters
     Measure measure = Measure::Mixed;
-    std::string unit;  ///< "m"; of the numbers themselves
+    std::string unit;                   ///< "m"; of the numbers themselves
+    std::vector<std::string> suffixes;  ///< of the numbers' names: ".x"
 
-    /// The name of the i-th number in tables: "ball.position.x"; the quantity's name if it has only one number.
+    /// The name of the i-th number in tables: "ball.position.x"; the quantity's name if it is a single number.
     std::string column(std::size_t i) const;
 };
 

@@ -14,24 +14,16 @@ namespace plab::study
 namespace
 {
 
+using figures::no_cell;
+using figures::number_cell;
 using figures::Page;
 using figures::PageCell;
 using figures::short_number;
+using figures::text_cell;
+using figures::text_cells;
+using figures::whole_cell;
 
-std::string key_of(double v)
-{
-    if (!std::isfinite(v)) return "-";
-    char text[40];
-    std::snprintf(text, sizeof text, "%.9e", v);
-    return text;
-}
-
-PageCell cell(double v, const std::string& hint = {}) { return {short_number(v), key_of(v), hint}; }
-
-PageCell count(const std::optional<std::uint64_t>& n)
-{
-    return n ? PageCell{std::to_string(*n), std::to_string(*n), ""} : PageCell{"–", "-", ""};
-}
+PageCell count(const std::optional<std::uint64_t>& n) { return n ? whole_cell(*n) : no_cell(); }
 
 std::string lead_of(const StudyResult& r)
 {
@@ -79,21 +71,20 @@ void add_table(Page& page, const StudyResult& r)
         std::snprintf(d, sizeof d, "%.1f", digits(p.error()));
         row.push_back({p.combination.label(), "", "state hash " + model::hash_text(x.hash)});
         if (x.ok() && std::isfinite(p.error()))
-            row.push_back({(p.is_resolved() || p.error() == 0 ? "" : "≥ ") + std::string(d), key_of(digits(p.error())), ""});
+            row.push_back({(p.is_resolved() || p.error() == 0 ? "" : "≥ ") + std::string(d), number_cell(digits(p.error())).key, ""});
         else
             row.push_back({x.ok() ? "–" : std::string(name_of(x.outcome)), "-", x.why});
-        row.push_back(cell(p.error())), row.push_back(cell(p.final_error()));
-        for (const Distance& e : p.errors) row.push_back(cell(e.series_absolute, "mixed: " + short_number(e.series)));
-        row.push_back(cell(1e3 * p.cpu_per_second())), row.push_back(cell(1e3 * p.cpu_median / x.reached)),
-            row.push_back(cell(1e6 * p.cpu_per_step()));
-        row.push_back(cell(p.energy_drift)), row.push_back(cell(x.violation)), row.push_back(cell(x.penetration));
+        row.push_back(number_cell(p.error())), row.push_back(number_cell(p.final_error()));
+        for (const Distance& e : p.errors) row.push_back(number_cell(e.series_absolute, "mixed: " + short_number(e.series)));
+        row.push_back(number_cell(1e3 * p.cpu_per_second())), row.push_back(number_cell(1e3 * p.cpu_median / x.reached)),
+            row.push_back(number_cell(1e6 * p.cpu_per_step()));
+        row.push_back(number_cell(p.energy_drift)), row.push_back(number_cell(x.violation)), row.push_back(number_cell(x.penetration));
         const ContactFigures& c = p.contacts;
         row.push_back(c.known ? PageCell{std::to_string(c.missed) + (c.extra > 0 ? " (+" + std::to_string(c.extra) + ")" : ""),
                                          std::to_string(c.missed), "of " + std::to_string(c.expected)}
-                              : PageCell{"–", "-", ""});
-        row.push_back(c.known && c.expected > 0 ? cell(c.worst_time_error) : PageCell{"–", "-", ""});
-        row.push_back(count(std::optional(x.evaluations))), row.push_back({std::to_string(x.trials), std::to_string(x.trials), ""}),
-            row.push_back(count(x.allocations));
+                              : no_cell());
+        row.push_back(c.known && c.expected > 0 ? number_cell(c.worst_time_error) : no_cell());
+        row.push_back(count(std::optional(x.evaluations))), row.push_back(whole_cell(x.trials)), row.push_back(count(x.allocations));
     }
     page.table(head, rows);
 }
@@ -110,14 +101,14 @@ void add_resolved(Page& page, const StudyResult& r)
             for (const auto& [name, v] : part.largest) figures += (figures.empty() ? "" : ", ") + name + " up to " + short_number(v);
             if ((part.resolved.empty() || part.resolved == part.requested) && figures.empty()) continue;
             if (!listed.insert(p.combination.algorithm + part.id + part.resolved + figures).second) continue;
-            rows.push_back(
-                {{p.combination.label(), "", ""}, {part.id, "", ""}, {part.requested, "", ""}, {part.resolved, "", ""}, {figures, "", ""}});
+            rows.push_back({text_cell(p.combination.label()), text_cell(part.id), text_cell(part.requested), text_cell(part.resolved),
+                            text_cell(figures)});
         }
     if (rows.empty()) return;
     page.heading("What did the work");
     page.paragraph(
         "Requested and resolved algorithm of each solver, coupling, detection and response, where it is more than the type's name.");
-    page.table({{"run", "", ""}, {"component", "", ""}, {"requested", "", ""}, {"resolved", "", ""}, {"largest outputs", "", ""}}, rows);
+    page.table(text_cells({"run", "component", "requested", "resolved", "largest outputs"}), rows);
 }
 
 void add_failures(Page& page, const StudyResult& r)
@@ -128,15 +119,12 @@ void add_failures(Page& page, const StudyResult& r)
         std::string warnings;
         for (const auto& [kind, n] : p.record.warnings) warnings += (warnings.empty() ? "" : ", ") + kind + " × " + std::to_string(n);
         if (p.record.ok() && warnings.empty()) continue;
-        rows.push_back({{p.combination.label(), "", ""},
-                        {std::string(name_of(p.record.outcome)), "", ""},
-                        cell(p.record.reached),
-                        {p.record.ok() ? p.record.first_warning : p.record.why, "", ""},
-                        {warnings, "", ""}});
+        rows.push_back({text_cell(p.combination.label()), text_cell(std::string(name_of(p.record.outcome))), number_cell(p.record.reached),
+                        text_cell(p.record.ok() ? p.record.first_warning : p.record.why), text_cell(warnings)});
     }
     if (rows.empty()) return;
     page.heading("Failures and warnings");
-    page.table({{"run", "", ""}, {"outcome", "", ""}, {"reached, s", "", ""}, {"why", "", ""}, {"events", "", ""}}, rows);
+    page.table(text_cells({"run", "outcome", "reached, s", "why", "events"}), rows);
 }
 
 void add_swaps(Page& page, const StudyResult& r)
@@ -146,21 +134,13 @@ void add_swaps(Page& page, const StudyResult& r)
         for (const simulation::Reply& reply : p.record.swaps)
         {
             for (const simulation::SwapReport& s : reply.swaps)
-                rows.push_back({{p.combination.label(), "", ""},
-                                {std::to_string(reply.step), std::to_string(reply.step), ""},
-                                {s.id + ": " + s.from + " → " + s.to, "", ""},
-                                cell(s.with_new.energy - s.energy_before),
-                                cell(s.with_old.energy - s.energy_before),
-                                cell(length(s.with_new.momentum - s.with_old.momentum)),
-                                cell(1e-3 * reply.pause_ns)});
+                rows.push_back({text_cell(p.combination.label()), whole_cell(reply.step), text_cell(s.id + ": " + s.from + " → " + s.to),
+                                number_cell(s.with_new.energy - s.energy_before), number_cell(s.with_old.energy - s.energy_before),
+                                number_cell(length(s.with_new.momentum - s.with_old.momentum)), number_cell(1e-3 * reply.pause_ns)});
             if (!reply.done)
-                rows.push_back({{p.combination.label(), "", ""},
-                                {std::to_string(reply.step), "", ""},
-                                {"refused: " + (reply.errors.empty() ? "" : reply.errors.front().text()), "", ""},
-                                cell(NAN),
-                                cell(NAN),
-                                cell(NAN),
-                                cell(NAN)});
+                rows.push_back({text_cell(p.combination.label()), text_cell(std::to_string(reply.step)),
+                                text_cell("refused: " + (reply.errors.empty() ? "" : reply.errors.front().text())), number_cell(NAN),
+                                number_cell(NAN), number_cell(NAN), number_cell(NAN)});
         }
     if (rows.empty()) return;
     page.heading("Swaps inside the runs");
@@ -168,14 +148,7 @@ void add_swaps(Page& page, const StudyResult& r)
         "Over the first step after each swap: change of energy with the new component, what the old one would have given, the difference "
         "of "
         "momentum between the two, and the pause.");
-    page.table({{"run", "", ""},
-                {"step", "", ""},
-                {"swap", "", ""},
-                {"energy, J", "", ""},
-                {"with the old, J", "", ""},
-                {"momentum, N s", "", ""},
-                {"pause, µs", "", ""}},
-               rows);
+    page.table(text_cells({"run", "step", "swap", "energy, J", "with the old, J", "momentum, N s", "pause, µs"}), rows);
 }
 
 void add_method(Page& page, const StudyResult& r)
@@ -183,11 +156,10 @@ void add_method(Page& page, const StudyResult& r)
     page.heading("How it was measured");
     std::vector<std::vector<PageCell>> rows;
     for (std::size_t k = 0; k < r.quantities.size(); ++k)
-        rows.push_back({{r.quantities[k].name, "", ""},
-                        {r.quantities[k].measure == Measure::Geodesic ? "geodesic angle, rad" : "|y − r| / (a + |r|)", "", ""},
-                        r.quantities[k].measure == Measure::Geodesic ? PageCell{"–", "-", ""} : cell(r.reference.scale[k]),
-                        cell(r.reference.uncertainty[k].series),
-                        cell(r.reference.order[k])});
+        rows.push_back({text_cell(r.quantities[k].name),
+                        text_cell(r.quantities[k].measure == Measure::Geodesic ? "geodesic angle, rad" : "|y − r| / (a + |r|)"),
+                        r.quantities[k].measure == Measure::Geodesic ? no_cell() : number_cell(r.reference.scale[k]),
+                        number_cell(r.reference.uncertainty[k].series), number_cell(r.reference.order[k])});
     page.facts(
         {{"reference", r.reference.words},
          {"timing",
@@ -197,12 +169,7 @@ void add_method(Page& page, const StudyResult& r)
          {"machine", r.machine.processor + "; " + r.machine.system},
          {"build", "plab " + r.machine.version + ", " + r.machine.compiler + ", " + r.machine.flags}});
     for (const std::string& note : r.notes) page.paragraph(note);
-    page.table({{"quantity", "", ""},
-                {"measure", "", ""},
-                {"length a", "", ""},
-                {"uncertainty of the reference", "", ""},
-                {"its observed order", "", ""}},
-               rows);
+    page.table(text_cells({"quantity", "measure", "length a", "uncertainty of the reference", "its observed order"}), rows);
     page.paragraph("Timings of different machines do not compare; ratios within this page do. To do it again:");
     page.code(r.command);
 }

@@ -10,6 +10,7 @@
 #include "figures/axes.h"
 #include "figures/page.h"
 #include "model/compile.h"
+#include "program/text_out.h"
 #include "study/plot/figures.h"
 #include "study/write.h"
 
@@ -246,7 +247,7 @@ Json json_of(const std::vector<Done>& all, const std::vector<Tally>& tallies, co
 /// A picture as SVG and PNG.
 Result<void> write_picture(const std::string& file, const figures::Drawing& drawing)
 {
-    if (auto written = write_file(file + ".svg", drawing.svg(true)); !written) return written;
+    if (auto written = program::write_file(file + ".svg", drawing.svg(true)); !written) return written;
     return drawing.write_png(file + ".png");
 }
 
@@ -283,8 +284,8 @@ Result<void> write_suite(const Suite& suite, const std::vector<Done>& all, const
     page.heading("To do it again");
     page.code(options.command);
     const std::string json = json_of(all, tallies, sentences, options.tolerance).dump(1) + "\n";
-    if (auto written = write_file(folder + "/suite.json", json); !written) return written;
-    return write_file(folder + "/report.html", page.html());
+    if (auto written = program::write_file(folder + "/suite.json", json); !written) return written;
+    return program::write_file(folder + "/report.html", page.html());
 }
 
 }  // namespace

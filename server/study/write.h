@@ -19,7 +19,6 @@ std::string report_html(const StudyResult& result);
 /// The findings, one sentence each; for the report and the terminal.
 std::vector<std::string> findings(const StudyResult& result);
 
-Result<void> write_file(const std::string& path, const std::string& text);
 /// Writes everything to a folder, which is created if necessary.
 Result<void> write_all(const StudyResult& result, const std::string& folder);
 

@@ -6,9 +6,9 @@
 
 #include <map>
 
+#include "control/playback/player.h"
+#include "control/recorder/recorder.h"
 #include "idl/recording/reader.h"
-#include "playback/player.h"
-#include "recorder/recorder.h"
 #include "recordings/made_recording.h"
 
 namespace plab::test

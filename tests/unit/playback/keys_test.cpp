@@ -1,4 +1,4 @@
-#include "playback/keys.h"
+#include "control/playback/keys.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The position of a playback, with a clock that the test advances.
-#include "playback/pace.h"
+#include "control/playback/pace.h"
 
 #include <doctest/doctest.h>
 

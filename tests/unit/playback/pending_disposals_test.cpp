@@ -1,5 +1,5 @@
 // Disposals of instances: accepted after a moment, unless the server itself is ending.
-#include "recorder/pending_disposals.h"
+#include "control/recorder/pending_disposals.h"
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "control/recordings/curves.h"
 #include "made_recording.h"
-#include "recordings/curves.h"
 
 using namespace plab;
 using namespace plab::recordings;

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "control/recordings/diff.h"
 #include "made_recording.h"
-#include "recordings/diff.h"
 
 using namespace plab;
 using namespace plab::recordings;

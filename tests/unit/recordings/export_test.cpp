@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "control/recordings/export.h"
+#include "control/recordings/tables.h"
 #include "made_recording.h"
-#include "recordings/export.h"
-#include "recordings/tables.h"
 
 using namespace plab;
 using namespace plab::recordings;

@@ -5,12 +5,12 @@
 #include <fstream>
 #include <sstream>
 
+#include "control/recordings/curves.h"
+#include "control/recordings/diff.h"
+#include "control/recordings/export.h"
+#include "control/recordings/report.h"
 #include "idl/recording/topic_schema.h"
 #include "made_recording.h"
-#include "recordings/curves.h"
-#include "recordings/diff.h"
-#include "recordings/export.h"
-#include "recordings/report.h"
 
 using namespace plab;
 using namespace plab::recordings;

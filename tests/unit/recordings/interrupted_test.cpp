@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <thread>
 
+#include "control/recordings/curves.h"
+#include "control/recordings/export.h"
+#include "control/recordings/report.h"
 #include "idl/recording/recovery.h"
 #include "made_recording.h"
-#include "recordings/curves.h"
-#include "recordings/export.h"
-#include "recordings/report.h"
 #include "support/process.h"
 
 using namespace plab;

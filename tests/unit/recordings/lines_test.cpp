@@ -4,10 +4,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "control/recordings/lines.h"
+#include "control/recordings/report.h"
+#include "control/recordings/segments.h"
 #include "made_recording.h"
-#include "recordings/lines.h"
-#include "recordings/report.h"
-#include "recordings/segments.h"
 
 using namespace plab;
 using namespace plab::recordings;
@@ -21,7 +21,7 @@ std::vector<std::string> lines(const std::string& file, const LineOptions& optio
     auto log = Log::open(file);
     REQUIRE(log.ok());
     const std::string path = fresh_path("lines.txt");
-    auto out = TextOut::open(path);
+    auto out = program::TextOut::open(path);
     REQUIRE(out.ok());
     const auto written = write_lines(*log, options, *out);
     REQUIRE(written.ok());

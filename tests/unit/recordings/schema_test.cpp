@@ -1,8 +1,8 @@
 // Types from the IDL that a recording contains.
 #include <doctest/doctest.h>
 
+#include "control/recordings/schema.h"
 #include "idl/recording/topic_schema.h"
-#include "recordings/schema.h"
 
 using namespace plab;
 using namespace plab::recordings;

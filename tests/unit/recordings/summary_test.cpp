@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "control/recordings/summary.h"
 #include "made_recording.h"
-#include "recordings/summary.h"
 
 using namespace plab;
 using namespace plab::recordings;

@@ -2,6 +2,7 @@
 #include "study/study.h"
 
 #include "model/values.h"
+#include "program/text_out.h"
 #include "study/write.h"
 #include "support/scene.h"
 
@@ -220,7 +221,7 @@ TEST_CASE("a reference from a file: the trajectory that a study wrote")
     Plan p = plan("scenes/studies/projectile.xml", {"solver=SemiImplicitEuler", "dt=1/60"}, "exact:parabola",
                   {"ball.position", "ball.orientation"}, 2);
     const StudyResult r = study_of(p);
-    REQUIRE(write_file(file, time_series_csv(r, r.reference.times, r.reference.time_series)).ok());
+    REQUIRE(program::write_file(file, time_series_csv(r, r.reference.times, r.reference.time_series)).ok());
     p.reference = parse_reference(file);
     const StudyResult again = study_of(p);
     CHECK(again.points[0].error() == r.points[0].error());

@@ -1,0 +1,81 @@
+#include "control/playback/keys.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <optional>
+
+namespace plab::playback
+{
+namespace
+{
+
+constexpr char kEscape = '\033';
+
+std::optional<Key> plain_key(char c)
+{
+    if (c == ' ') return Key::Pause;
+    if (c == 'q' || c == 'Q') return Key::Quit;
+    return {};
+}
+
+std::optional<Key> cursor_key(char c)
+{
+    if (c == 'A') return Key::Faster;
+    if (c == 'B') return Key::Slower;
+    if (c == 'C') return Key::Forward;
+    if (c == 'D') return Key::Back;
+    return {};
+}
+
+template <class... Values>
+std::string formatted(const char* format, Values... values)
+{
+    std::array<char, 96> text{};
+    (void)std::snprintf(text.data(), text.size(), format, values...);
+    return text.data();
+}
+
+}  // namespace
+
+std::vector<Key> KeyParser::take(std::string_view bytes)
+{
+    std::vector<Key> out;
+    for (const char c : bytes)
+    {
+        std::optional<Key> key;
+        if (c == kEscape)
+            state_ = State::Escape;
+        else if (state_ == State::Escape && (c == '[' || c == 'O'))
+            state_ = State::Sequence;
+        else
+        {
+            // A letter behind a lone escape was typed with Alt.
+            if (state_ == State::Sequence) key = cursor_key(c);
+            if (state_ == State::Plain) key = plain_key(c);
+            // Other keys send numbers before their letter: "ESC [ 5 ~".
+            const bool goes_on = state_ == State::Sequence && (c == ';' || (c >= '0' && c <= '9'));
+            if (!goes_on) state_ = State::Plain;
+        }
+        if (key) out.push_back(*key);
+    }
+    return out;
+}
+
+std::string bar(const BarState& s, std::size_t width)
+{
+    constexpr std::size_t kLeastBar = 10, kMostBar = 40;
+    const std::string head = s.is_paused ? formatted("paused %gx  ", s.rate) : formatted("%gx  ", s.rate);
+    const std::string tail = formatted("  %.2f / %.2f s  t = %.3f s, run %llu", s.at, s.to, s.time, s.run);
+    const std::string keys = "  (space, arrows, q)";
+    const std::size_t words = head.size() + tail.size() + 2;
+    const std::size_t room = width > words ? width - words : 0;
+    const bool has_keys = room >= kLeastBar + keys.size();
+    const std::size_t length = std::min(kMostBar, has_keys ? room - keys.size() : room);
+    if (length < kLeastBar) return head + tail;
+    const double share = s.to > s.from ? std::clamp((s.at - s.from) / (s.to - s.from), 0.0, 1.0) : 1.0;
+    const auto full = static_cast<std::size_t>(share * static_cast<double>(length - 1));
+    return head + "[" + std::string(full, '=') + ">" + std::string(length - 1 - full, '.') + "]" + tail + (has_keys ? keys : "");
+}
+
+}  // namespace plab::playback

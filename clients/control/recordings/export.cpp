@@ -1,0 +1,228 @@
+#include "control/recordings/export.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "control/recordings/schema.h"
+#include "control/recordings/tables.h"
+#include "link/json_text.h"
+#include "link/names.h"
+#include "program/text_out.h"
+
+namespace plab::recordings
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// "plab/states" as part of a file name: "states".
+std::string file_stem(const std::string& topic)
+{
+    std::string out = topic.substr(topic.starts_with("plab/") ? 5 : 0);
+    std::replace(out.begin(), out.end(), '/', '_');
+    return out;
+}
+
+std::vector<std::string> topics_in(const Log& log)
+{
+    std::set<std::string> out;
+    for (const auto& [id, channel] : log.reader().channels()) out.insert(channel.topic);
+    return {out.begin(), out.end()};
+}
+
+/// Full names, each once; an error names the ones that the recording has.
+Result<std::vector<std::string>> asked_for(const Log& log, const std::vector<std::string>& topics)
+{
+    const std::vector<std::string> known = topics_in(log);
+    std::vector<std::string> out;
+    for (const std::string& name : topics)
+    {
+        const std::string topic = full_topic(name);
+        if (std::find(known.begin(), known.end(), topic) == known.end())
+        {
+            std::string list;
+            for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
+            return reason(log.path() + " has no topic '" + name + "'" + link::did_you_mean(topic, known) + "; it has " +
+                          (list.empty() ? "none" : list));
+        }
+        if (std::find(out.begin(), out.end(), topic) == out.end()) out.push_back(topic);
+    }
+    return out;
+}
+
+bool is_folder(const std::string& path)
+{
+    std::error_code ignored;
+    return !path.empty() && (path.back() == '/' || fs::is_directory(path, ignored));
+}
+
+std::string names_of_tables()
+{
+    std::string out;
+    for (const Table& table : tables()) out += (out.empty() ? "" : ", ") + std::string(table.topic);
+    return out;
+}
+
+Result<std::vector<std::string>> tables_asked_for(const Log& log, const ExportOptions& options)
+{
+    auto topics = asked_for(log, options.topics);
+    if (!topics) return topics;
+    for (const std::string& topic : *topics)
+        if (find_table(topic) == nullptr) return reason(topic + " has no table; those that have one: " + names_of_tables());
+    if (topics->size() > 1 && !is_folder(options.out))
+        return reason("several tables need a folder: name one topic, or a folder that exists or ends with '/'");
+    if (!topics->empty()) return topics;
+    if (!is_folder(options.out)) return asked_for(log, {wire::topic_of<plab_v2_Frame>().name});
+    for (const std::string& topic : topics_in(log))
+        if (find_table(topic) != nullptr) topics->push_back(topic);
+    return topics;
+}
+
+/// The tables that are being written.
+class CsvFiles
+{
+public:
+    static Result<CsvFiles> open(const std::vector<std::string>& topics, const std::string& path)
+    {
+        CsvFiles out;
+        std::error_code failed;
+        if (is_folder(path)) fs::create_directories(path, failed);
+        if (failed) return reason("cannot make the folder " + path + ": " + failed.message());
+        for (const std::string& topic : topics)
+        {
+            const std::string name = is_folder(path) ? (fs::path(path) / (file_stem(topic) + ".csv")).string() : path;
+            auto file = program::TextOut::open(name);
+            if (!file) return file.errors();
+            const Table& table = *find_table(topic);
+            file->write(head_of(table));
+            out.names_.push_back(name);
+            out.files_.emplace(topic, File{&table, file.take()});
+        }
+        return out;
+    }
+
+    /// False: writing to all of them has ended.
+    bool add(const Entry& entry, const Things& things)
+    {
+        const auto found = files_.find(entry.channel->topic);
+        if (found == files_.end()) return true;
+        found->second.table->add_rows(entry, things, rows_);
+        found->second.out.write(rows_.take());
+        return !found->second.out.is_over();
+    }
+    Result<std::vector<std::string>> finish()
+    {
+        for (auto& [topic, file] : files_)
+            if (auto done = file.out.finish(); !done) return done.errors();
+        return names_;
+    }
+
+private:
+    struct File
+    {
+        const Table* table;
+        program::TextOut out;
+    };
+    std::map<std::string, File> files_;
+    std::vector<std::string> names_;
+    CsvRow rows_;
+};
+
+/// Types of the channels' messages, by the file's own schemas.
+class ChannelTypes
+{
+public:
+    explicit ChannelTypes(const recording::Reader& reader) : reader_(&reader) {}
+
+    Result<std::string> json_of(const recording::Channel& channel, recording::ByteView data)
+    {
+        auto known = types_.find(channel.id);
+        if (known == types_.end()) known = types_.emplace(channel.id, find(channel)).first;
+        if (!known->second) return known->second.errors();
+        return link::json_of(**known->second, std::as_bytes(data));
+    }
+
+private:
+    Result<link::DynamicTypePtr> find(const recording::Channel& channel) const
+    {
+        if (channel.message_encoding != "cdr") return reason("its messages are '" + channel.message_encoding + "', not cdr");
+        const recording::Schema* const schema = reader_->schema_of(channel);
+        if (schema == nullptr) return reason("it has no schema");
+        return type_of(*schema);
+    }
+
+    const recording::Reader* reader_;
+    std::map<recording::ChannelId, Result<link::DynamicTypePtr>> types_;
+};
+
+std::vector<std::string> all_but_large(const Log& log)
+{
+    std::vector<std::string> out = topics_in(log);
+    std::erase(out, wire::topic_of<plab_v2_Image>().name);
+    std::erase(out, wire::topic_of<plab_v2_Snapshot>().name);
+    return out;
+}
+
+}  // namespace
+
+Result<Exported> export_csv(const Log& log, const ExportOptions& options)
+{
+    auto topics = tables_asked_for(log, options);
+    if (!topics) return topics.errors();
+    auto files = CsvFiles::open(*topics, options.out);
+    if (!files) return files.errors();
+    Exported out;
+    Stream stream = log.stream(*topics, options.span);
+    for (const Entry* entry = stream.next(); entry != nullptr; entry = stream.next())
+    {
+        ++out.messages[entry->channel->topic];
+        if (!files->add(*entry, log.things())) break;
+    }
+    if (log.is_interrupted()) return reason("interrupted");
+    auto finished = files->finish();
+    if (!finished) return finished.errors();
+    out.files = finished.take();
+    out.troubles = stream.troubles();
+    return out;
+}
+
+Result<Exported> export_json(const Log& log, const ExportOptions& options)
+{
+    auto topics = asked_for(log, options.topics);
+    if (!topics) return topics.errors();
+    if (is_folder(options.out)) return reason("lines of JSON are written to one file, not to the folder " + options.out);
+    if (topics->empty()) *topics = all_but_large(log);
+    auto file = program::TextOut::open(options.out);
+    if (!file) return file.errors();
+    Exported out;
+    ChannelTypes types(log.reader());
+    recording::Cursor cursor = log.reader().messages(Log::query(*topics, options.span));
+    while (!topics->empty() && !file->is_over())
+    {
+        auto found = cursor.next();
+        if (found && !*found) break;
+        if (!found)
+        {
+            out.troubles.add(found.error().text());
+            continue;
+        }
+        const recording::Found& here = **found;
+        auto message = types.json_of(*here.channel, here.message.data);
+        if (!message)
+        {
+            out.troubles.add(here.channel->topic + ": " + message.error().text());
+            continue;
+        }
+        ++out.messages[here.channel->topic];
+        file->write(R"({"topic":)" + link::json_text(here.channel->topic) + R"(,"log_time":)" + std::to_string(here.message.log_time) +
+                    R"(,"publish_time":)" + std::to_string(here.message.publish_time) + R"(,"message":)" + *message + "}\n");
+    }
+    if (log.is_interrupted()) return reason("interrupted");
+    if (auto done = file->finish(); !done) return done.errors();
+    out.files = {options.out};
+    return out;
+}
+
+}  // namespace plab::recordings

@@ -1,0 +1,60 @@
+/// Samples into a recording by their topic. The schema and the channel of a topic are declared with its first sample.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "idl/recording/writer.h"
+#include "idl/topics.h"
+
+namespace plab::recording
+{
+
+/// Position of a sample on the recording's time line.
+struct Stamp
+{
+    std::uint64_t log_time = 0;      ///< ns
+    std::uint64_t publish_time = 0;  ///< ns since 1970
+    Clock::time_point now{};
+};
+
+/// Used by one thread. Trouble with the disk is Writer's; what the file itself cannot take is refused().
+class TopicFile
+{
+public:
+    explicit TopicFile(Writer writer) : writer_(std::move(writer)) {}
+
+    void write(const wire::Topic& topic, ByteView sample, const Stamp& stamp);
+    /// Stored as soon as the disk accepts it.
+    void attach(std::uint64_t log_time, std::string name, std::string media_type, std::string text);
+    void add_gap(const Losses& losses, const std::string& why) { (void)writer_.add_gap(losses, why); }
+    /// A sample that cannot be written, whatever the disk does. The first reason is kept.
+    void refuse(Error why);
+    const std::optional<Error>& refused() const { return refused_; }
+
+    void tick(Clock::time_point now) { writer_.tick(now); }
+    /// Retries a disk that failed, and stores what has waited for it.
+    void retry();
+    /// Completes the file. An error: not everything is in it.
+    Result<void> close();
+    const Writer& writer() const { return writer_; }
+
+private:
+    struct Enclosure
+    {
+        std::uint64_t log_time = 0;
+        std::string name, media_type, text;
+    };
+    ChannelId channel_of(const wire::Topic& topic);
+    Result<ChannelId> declare(const wire::Topic& topic);
+    void attach_pending();
+
+    Writer writer_;
+    std::map<const wire::Topic*, ChannelId> channels_;  ///< 0: refused
+    std::deque<Enclosure> pending_;
+    std::optional<Error> refused_;
+};
+
+}  // namespace plab::recording
