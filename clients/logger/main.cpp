@@ -3,6 +3,7 @@
 
 #include "logger/follow.h"
 #include "logger/options.h"
+#include "program/command_line.h"
 #include "program/interruption.h"
 
 using namespace plab;

@@ -4,6 +4,7 @@
 
 #include "completion/server_values.h"
 #include "link/numbers.h"
+#include "program/command_line.h"
 
 namespace plab::logger
 {
@@ -45,29 +46,19 @@ void add_options(CLI::App& app, LoggerOptions& options, std::string& severity)
 
 }  // namespace
 
-std::optional<ParseEnd> parse_options(int argc, const char* const* argv, LoggerOptions& options)
+std::optional<program::ParseEnd> parse_options(int argc, const char* const* argv, LoggerOptions& options)
 {
     if (auto from_environment = link::options_from_environment(); from_environment)
         options.link = from_environment.take();
     else
-        return ParseEnd{2, "plab-log: " + from_environment.error().text() + "\n"};
+        return program::ParseEnd{2, "plab-log: " + from_environment.error().text() + "\n"};
     std::string severity = "info";
     CLI::App app("Logs what happens in a pLab server: events and collisions, as lines.", "plab-log");
     app.footer(kExamples);
     app.set_version_flag("--version", std::string("plab-log ") + PLAB_VERSION);
     add_options(app, options, severity);
     const auto values = [&](const program::Wanted& wanted) { return completion::common_values(wanted, options.link); };
-    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, values)) return ParseEnd{0, *answer};
-    try
-    {
-        app.parse(argc, argv);
-    }
-    catch (const CLI::ParseError& e)
-    {
-        std::ostringstream text;
-        const int code = app.exit(e, text, text);
-        return ParseEnd{code == 0 ? 0 : 2, text.str()};
-    }
+    if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, values)) return end;
     options.filter.severity = severity_of(severity);
     return {};
 }

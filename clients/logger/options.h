@@ -7,6 +7,11 @@
 #include "link/session.h"
 #include "logger/filter.h"
 
+namespace plab::program
+{
+struct ParseEnd;
+}  // namespace plab::program
+
 namespace plab::logger
 {
 
@@ -23,11 +28,6 @@ struct LoggerOptions
 };
 
 /// What to print instead of running, and the exit code: 0 after --help and --version, 2 for wrong usage.
-struct ParseEnd
-{
-    int exit_code = 0;
-    std::string text;
-};
-std::optional<ParseEnd> parse_options(int argc, const char* const* argv, LoggerOptions& options);
+std::optional<program::ParseEnd> parse_options(int argc, const char* const* argv, LoggerOptions& options);
 
 }  // namespace plab::logger

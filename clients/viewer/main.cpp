@@ -10,8 +10,8 @@ int main(int argc, char** argv)
     plab::view::ViewerOptions options;
     if (const auto end = plab::view::parse_options(argc, argv, options))
     {
-        std::fputs(end->message.c_str(), end->code == 0 ? stdout : stderr);
-        return end->code;
+        std::fputs(end->text.c_str(), end->exit_code == 0 ? stdout : stderr);
+        return end->exit_code;
     }
     const plab::view::Outcome outcome = plab::view::run(options, plab::program::is_interrupted);
     if (!outcome.message.empty()) std::fprintf(stderr, "plab-view: %s\n", outcome.message.c_str());

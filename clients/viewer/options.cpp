@@ -216,17 +216,7 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, ViewerO
     add_view(app, options, texts);
     add_server(app, options, texts);
     const auto values = [&](const program::Wanted& wanted) { return completion::common_values(wanted, options.link); };
-    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, values)) return ParseEnd{0, *answer};
-    try
-    {
-        app.parse(argc, argv);
-    }
-    catch (const CLI::ParseError& e)
-    {
-        std::ostringstream out, err;
-        const int code = app.exit(e, out, err);
-        return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
-    }
+    if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, values)) return end;
     if (texts.timeout) options.timeout = link::Seconds(*texts.timeout);
     options.captions = !texts.no_captions, options.ground = !texts.no_ground;
     if (!options.link.server.empty() && !wire::is_server_name(options.link.server))

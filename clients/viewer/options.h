@@ -8,6 +8,7 @@
 
 #include "link/session.h"
 #include "plab/vector.h"
+#include "program/command_line.h"
 
 namespace plab::view
 {
@@ -58,11 +59,7 @@ struct ViewerOptions
 };
 
 /// Why the program ends before it starts: --help, --version (code 0, for standard output) or wrong usage (code 2).
-struct ParseEnd
-{
-    int code = 0;
-    std::string message;
-};
+using program::ParseEnd;
 
 /// Empty: `options` is filled.
 std::optional<ParseEnd> parse_options(int argc, const char* const* argv, ViewerOptions& options);

@@ -5,7 +5,6 @@
 
 #include "completion/scene_values.h"
 #include "control/operations.h"
-#include "program/completion.h"
 #include "program/installation.h"
 
 namespace plab::daemon
@@ -258,17 +257,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& opti
     std::string recorded_states;
     add_record_options(app, options, recorded_states);
     add_past_options(app, options);
-    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return ParseEnd{0, *answer};
-    try
-    {
-        app.parse(argc, argv);
-    }
-    catch (const CLI::ParseError& e)
-    {
-        std::ostringstream out, err;
-        const int code = app.exit(e, out, err);
-        return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
-    }
+    if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return end;
     options.scene = program::file_or_installed(options.scene);
     const bool reference = app.count("--reference") > 0;
     if (int(check) + int(expand) + int(explain) + int(reference) > 1)

@@ -7,6 +7,7 @@
 
 #include "model/compile.h"
 #include "plab/result.h"
+#include "program/command_line.h"
 #include "simulation/requests/requests.h"
 
 namespace plab::daemon
@@ -97,11 +98,7 @@ struct DaemonOptions
 model::CompileLimits limits_of(const DaemonOptions& options);
 
 /// Fills the options; otherwise sets what to print and the exit code (0 after --help and --version, 2 for wrong usage).
-struct ParseEnd
-{
-    int exit_code = 0;
-    std::string text;
-};
+using program::ParseEnd;
 std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& options);
 
 /// "120:contact.response=Response/None" or without the step.

@@ -5,7 +5,6 @@
 
 #include "completion/scene_values.h"
 #include "model/numbers.h"
-#include "program/completion.h"
 #include "program/installation.h"
 
 namespace plab::study
@@ -165,17 +164,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
     auto* const quiet = app.add_flag("--quiet", options.quiet, "print no progress on standard error");
     app.add_flag("--progress", options.progress, "print the progress every five seconds on standard error, even if that is not a terminal")
         ->excludes(quiet);
-    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return ParseEnd{0, *answer};
-    try
-    {
-        app.parse(argc, argv);
-    }
-    catch (const CLI::ParseError& e)
-    {
-        std::ostringstream out, err;
-        const int code = app.exit(e, out, err);
-        return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
-    }
+    if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return end;
     options.scene = program::file_or_installed(options.scene);
     options.suite = app.count("--suite") > 0;
     if (options.suite && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite has its own scenes: leave SCENE out\n"};

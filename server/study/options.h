@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "program/command_line.h"
 #include "study/settings.h"
 #include "study/study.h"
 
@@ -34,11 +35,7 @@ struct StudyOptions
 };
 
 /// What to print, and the exit code: 0 after --help and --version, 2 for wrong usage.
-struct ParseEnd
-{
-    int exit_code = 0;
-    std::string text;
-};
+using program::ParseEnd;
 std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& options);
 
 }  // namespace plab::study

@@ -172,7 +172,7 @@ TEST_CASE("wrong use ends with code 2 and the reason")
     {
         ViewerOptions options;
         const auto end = parse(std::move(words), options);
-        return end ? std::to_string(end->code) + " " + end->message : std::string("fine");
+        return end ? std::to_string(end->exit_code) + " " + end->text : std::string("fine");
     };
     CHECK(says({"--png", "a.png", "--at", "2", "--from", "1 2 3"}) == "fine");
     CHECK(says({"--mp4", "a.mp4", "--orbit", "0", "--until", "3"}) == "fine");
