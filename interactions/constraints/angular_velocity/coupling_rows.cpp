@@ -9,15 +9,7 @@ RoleBuilder CouplingRows::describe_driven(Schema& s) { return s.role(driven, "dr
 
 void CouplingRows::describe_fields(Schema& s)
 {
-    s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver").or_else(1).nonzero();
-    s.param(driver_teeth, "driver_teeth", unit::one, "tooth count of the driver; with driven_teeth, instead of velocity_factor")
-        .or_else(0)
-        .not_negative()
-        .at_most(1e9);
-    s.param(driven_teeth, "driven_teeth", unit::one, "tooth count of the driven").or_else(0).not_negative().at_most(1e9);
-    s.param(mesh, "mesh", unit::one, "of teeth: external reverses, internal and belt keep the sense of rotation")
-        .or_else("external")
-        .one_of({"external", "internal", "belt"});
+    describe_factor(s, velocity_factor, driver_teeth, driven_teeth, mesh);
     s.state(phase_offset, "phase_offset", unit::radian, "angle_driven - factor * angle_driver when the coupling engaged");
     s.state(phase_factor, "phase_factor", unit::one, "factor for which phase_offset was taken; 0: not engaged yet");
     s.output(velocity_error, "velocity_error", unit::radian_per_second, "speed_driven - factor * speed_driver").reported_as_error();

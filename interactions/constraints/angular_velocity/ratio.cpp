@@ -58,6 +58,20 @@ Ratio tooth_ratio(std::int64_t driver_teeth, std::int64_t driven_teeth, bool rev
     return r;
 }
 
+void describe_factor(Schema& s, Column<double>& velocity_factor, Column<std::int64_t>& driver_teeth, Column<std::int64_t>& driven_teeth,
+                     Column<std::string>& mesh)
+{
+    s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver").or_else(1).nonzero();
+    s.param(driver_teeth, "driver_teeth", unit::one, "tooth count of the driver; with driven_teeth, instead of velocity_factor")
+        .or_else(0)
+        .not_negative()
+        .at_most(1e9);
+    s.param(driven_teeth, "driven_teeth", unit::one, "tooth count of the driven").or_else(0).not_negative().at_most(1e9);
+    s.param(mesh, "mesh", unit::one, "of teeth: external reverses, internal and belt keep the sense of rotation")
+        .or_else("external")
+        .one_of({"external", "internal", "belt"});
+}
+
 Result<Ratio> ratio_of(const FactorGiven& given)
 {
     const bool driver = given.driver_teeth != 0;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "plab/registrar.h"
 #include "plab/result.h"
 #include "plab/shafts.h"
 
@@ -24,6 +25,9 @@ struct FactorGiven
     std::int64_t driven_teeth = 0;
     std::string mesh = "external";
 };
+/// Declares the parameters that give a factor.
+void describe_factor(Schema& s, Column<double>& velocity_factor, Column<std::int64_t>& driver_teeth, Column<std::int64_t>& driven_teeth,
+                     Column<std::string>& mesh);
 /// The ratio, or an error if the input is ambiguous or incomplete.
 Result<Ratio> ratio_of(const FactorGiven& given);
 

@@ -37,15 +37,7 @@ void GearRows::describe(Schema& s)
     s.role(driver, "driver", {Facet::Body, Facet::Shaft}, "the driving side").writes();
     s.role(driven, "driven", {Facet::Body, Facet::Shaft}, "the driven side").writes();
     s.role(carrier, "carrier", {Facet::Body}, "the body that carries both axles; none: the world").optional().writes();
-    s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver").or_else(1).nonzero();
-    s.param(driver_teeth, "driver_teeth", unit::one, "tooth count of the driver; with driven_teeth, instead of velocity_factor")
-        .or_else(0)
-        .not_negative()
-        .at_most(1e9);
-    s.param(driven_teeth, "driven_teeth", unit::one, "tooth count of the driven").or_else(0).not_negative().at_most(1e9);
-    s.param(mesh, "mesh", unit::one, "of teeth: external reverses, internal and belt keep the sense of rotation")
-        .or_else("external")
-        .one_of({"external", "internal", "belt"});
+    describe_factor(s, velocity_factor, driver_teeth, driven_teeth, mesh);
     s.param(driven_radius, "driven_radius", unit::metre, "of the driven's pitch circle, for the forces between the teeth; 0: not given")
         .or_else(0)
         .not_negative();
