@@ -219,7 +219,7 @@ void lay_lines(const SupportingFace& X, const SupportingFace& Y, Collector& out)
     lay(X, b, v, vv, true), lay(Y, a, u, uu, false);
 }
 
-void lay_patches(const SupportingFace& X, const SupportingFace& Y, Collector& out)
+void overlay_faces(const SupportingFace& X, const SupportingFace& Y, Collector& out)
 {
     using Kind = SupportingFace::Kind;
     if (X.kind == Kind::Line && Y.kind == Kind::Line) return lay_lines(X, Y, out);
@@ -292,7 +292,7 @@ void add_manifold(const Solid& A, const Solid& B, const Separation& s, ContactPo
     const bool few =
         X.corners.size() + Y.corners.size() <= 8 && X.kind != SupportingFace::Kind::Disc && Y.kind != SupportingFace::Kind::Disc;
     Collector collector(A, B, s.normal, few, out);
-    lay_patches(X, Y, collector);
+    overlay_faces(X, Y, collector);
     // Corner on corner, or crossing edges: no other point is as near as the closest points.
     const double enough = std::max(1e-3 * std::fabs(s.gap), 1e-12 * (A.extent() + B.extent()));
     if (collector.deepest() < -s.gap - enough)
@@ -310,7 +310,7 @@ void box_box(const Solid& A, const Solid& B, ContactPoints& out)
     const bool parallel = dot(X.normal, axis.normal) >= kParallelFaces || dot(Y.normal, axis.normal) <= -kParallelFaces;
     if (axis.edge_a >= 0 && !parallel) return add_manifold(A, B, edge_pair(A, B, axis), out);
     Collector collector(A, B, axis.normal, true, out);
-    lay_patches(X, Y, collector);
+    overlay_faces(X, Y, collector);
     const bool reached = collector.deepest() >= -axis.gap - std::max(1e-3 * std::fabs(axis.gap), 1e-12 * (A.extent() + B.extent()));
     if (reached) return;
     if (axis.edge_a >= 0)

@@ -38,7 +38,7 @@ SupportingFace line_of(const Solid& solid, std::span<FaceCorner> room, const Vec
     return out;
 }
 
-SupportingFace box_patch(const Solid& box, const Vec3& d, double least_cosine, std::span<FaceCorner> room)
+SupportingFace supporting_box_face(const Solid& box, const Vec3& d, double least_cosine, std::span<FaceCorner> room)
 {
     const Vec3 l = box.to_local_direction(d);
     if (std::max({std::fabs(l.x), std::fabs(l.y), std::fabs(l.z)}) >= least_cosine) return box_face(box, d, room);
@@ -53,14 +53,14 @@ SupportingFace box_patch(const Solid& box, const Vec3& d, double least_cosine, s
     return line_of(box, room, box.from_local(box_corner(box.size(), id)), id, box.from_local(box_corner(box.size(), other)), other);
 }
 
-SupportingFace segment_patch(const Solid& s, const Vec3& d, std::span<FaceCorner> room)
+SupportingFace supporting_segment(const Solid& s, const Vec3& d, std::span<FaceCorner> room)
 {
     const Vec3 u = s.axis(2);
     if (std::fabs(dot(u, d)) >= kSquare) return corner_of(s);
     return line_of(s, room, s.pose().p - s.size().z * u, 0, s.pose().p + s.size().z * u, 1);
 }
 
-SupportingFace cylinder_patch(const Solid& c, const Vec3& d, double least_cosine, std::span<FaceCorner> room)
+SupportingFace supporting_cylinder_face(const Solid& c, const Vec3& d, double least_cosine, std::span<FaceCorner> room)
 {
     const Vec3 u = c.axis(2);
     const double along = dot(u, d);
@@ -104,7 +104,7 @@ SupportingFace hull_face(const Solid& solid, std::size_t polygon, std::span<Face
     return out;
 }
 
-SupportingFace hull_patch(const Solid& solid, const Vec3& d, double least_cosine, std::span<FaceCorner> room)
+SupportingFace supporting_hull_face(const Solid& solid, const Vec3& d, double least_cosine, std::span<FaceCorner> room)
 {
     const Hull& hull = solid.hull();
     const Vec3 d_S = solid.to_local_direction(d);
@@ -226,13 +226,13 @@ SupportingFace supporting_face(const Solid& solid, const Vec3& d, double least_c
     switch (solid.core())
     {
         case Core::Segment:
-            return segment_patch(solid, d, room);
+            return supporting_segment(solid, d, room);
         case Core::Box:
-            return box_patch(solid, d, least_cosine, room);
+            return supporting_box_face(solid, d, least_cosine, room);
         case Core::Cylinder:
-            return cylinder_patch(solid, d, least_cosine, room);
+            return supporting_cylinder_face(solid, d, least_cosine, room);
         case Core::Hull:
-            return hull_patch(solid, d, least_cosine, room);
+            return supporting_hull_face(solid, d, least_cosine, room);
         case Core::Point:
             break;
     }

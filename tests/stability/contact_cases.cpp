@@ -46,21 +46,21 @@ Case overlap()
 Case painleve()
 {
     const std::vector<double> frictions{0.5, 1, 4.0 / 3, 2, 5};
-    Case c{
-        "painleve",
-        "Painleve's rod",
-        "A rod of 2 m and 1 kg at 60 degrees touches the floor with its lower end, which slides ahead with 5 m/s: beyond a friction of "
-        "about 4/3 no "
-        "finite force solves its equations, and an impulse has to. 1 s at 1/240 s, no restitution. Error: deepest the rod's axis gets "
-        "below the "
-        "floor, m, or energy that it gains, relative. Stable to 0.03 (the way of a step at 7.1 m/s, with which the upper end comes down), "
-        "bounded to 0.1.",
-        "contact",
-        "friction",
-        names_of(contact_algorithms()),
-        brief(frictions),
-        {},
-        {}};
+    Case c{"painleve",
+           "Painleve's rod",
+           "A rod of 2 m and 1 kg at 60 degrees touches the floor with its lower end, which slides ahead with 5 m/s: beyond a friction of "
+           "about 4/3 no "
+           "finite force solves its equations, and an impulse has to. 1 s at 1/240 s, no restitution. Error: deepest the rod's axis gets "
+           "below the "
+           "floor, m, or energy that it gains, relative. Stable to 0.03 (the distance of a step at 7.1 m/s, with which the upper end comes "
+           "down), "
+           "bounded to 0.1.",
+           "contact",
+           "friction",
+           names_of(contact_algorithms()),
+           brief(frictions),
+           {},
+           {}};
     c.run = [frictions](std::size_t r, std::size_t v)
     {
         const ContactAlgorithm& algorithm = contact_algorithms()[r];

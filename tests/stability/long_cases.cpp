@@ -128,7 +128,7 @@ Case resting_cube()
         "long_rest",
         "A cube on a slope for ten million steps",
         "A cube of 1 m and 1 kg stands on a slope of 15 degrees with friction 0.5, steps of 1/240 s: eleven and a half hours. Error: the "
-        "way of its centre, m. Stable to 1e-6, bounded to 0.1.",
+        "displacement of its centre, m. Stable to 1e-6, bounded to 0.1.",
         "contact",
         "steps",
         names_of(algorithms),

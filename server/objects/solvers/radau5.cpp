@@ -175,7 +175,7 @@ void Radau5Rows::describe(Schema& schema)
 {
     describe_control(schema);
     schema.output(factorisations, "factorisations", unit::one, "pairs of linear systems that were factorised in the last step");
-    schema.state(reported_size, "told_size", unit::one, "an event told that the group is large");
+    schema.state(reported_size, "told_size", unit::one, "an event has said that the group is large");
     schema.scratch(memory, "memory", "working vectors and matrices");
 }
 

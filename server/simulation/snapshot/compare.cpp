@@ -147,15 +147,15 @@ void add_point(const ForceContact& c, const std::string& at, Facts& out)
                                       {"depth", c.depth},
                                       {"peak", c.peak},
                                       {"half_period", c.half_period},
-                                      {"lively", c.swing_speed},
-                                      {"liveliest", c.peak_swing_speed},
+                                      {"swing_speed", c.swing_speed},
+                                      {"peak_swing_speed", c.peak_swing_speed},
                                       {"normal_rate", c.rates.normal},
                                       {"tangential_rate", c.rates.tangential},
                                       {"damping_rate", c.rates.damping},
                                       {"mobility", c.rates.mobility},
                                       {"share_a", c.rates.share_a}})
         out.push_back({at + name, Weight::State, value});
-    for (const auto& [name, value] : {std::pair{"slack", c.slack}, {"told", c.reported}, {"dormant", c.dormant}})
+    for (const auto& [name, value] : {std::pair{"slack", c.slack}, {"reported", c.reported}, {"dormant", c.dormant}})
         out.push_back({at + name, Weight::State, value});
     out.push_back({at + "asked", Weight::State, Value(std::int64_t{c.asked})});
 }

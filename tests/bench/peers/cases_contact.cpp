@@ -95,7 +95,8 @@ std::vector<double> measure_stack(const Scene& scene, const Trace& trace)
 Case stack_case(const char* id, const char* title, const Scene& scene)
 {
     Case c{id, title, {scene}, Sampling::End, {}, {}, steps({60, 120, 240, 480, 1000})};
-    c.metrics = {{"sink", "m", "way of the top cube along z, where the stack stands"}, {"shift", "m", "way of the top cube across z"}};
+    c.metrics = {{"sink", "m", "displacement of the top cube along z, where the stack stands"},
+                 {"shift", "m", "displacement of the top cube across z"}};
     c.measure = measure_stack;
     return c;
 }
