@@ -258,7 +258,7 @@ void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bo
 void AutomaticRows::describe(Schema& s)
 {
     s.param(max_points, "max_points", unit::one, "an island of at most so many contact points and rows is solved exactly")
-        .or_else(160)
+        .or_else(80)
         .not_negative()
         .at_most(20000);
     s.param(

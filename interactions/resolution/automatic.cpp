@@ -39,10 +39,10 @@ void AutomaticRows::describe(Schema& s)
         .or_else(4000)
         .not_negative();
     s.param(max_bodies, "max_bodies", unit::one, "impacts are located while no island of touching bodies has more bodies than this")
-        .or_else(12)
+        .or_else(8)
         .positive()
         .at_most(1e6);
-    s.param(max_points, "max_points", unit::one, "likewise, contact points of an island").or_else(96).positive().at_most(1e7);
+    s.param(max_points, "max_points", unit::one, "likewise, contact points of an island").or_else(64).positive().at_most(1e7);
     s.param(max_located, "max_located", unit::one, "likewise, dynamic bodies of the scene").or_else(2000).positive().at_most(1e7);
     s.output(resolved, "resolved", unit::one, "how the impacts of the last step were found");
     s.output(reason, "reason", unit::one, "why");
