@@ -30,8 +30,8 @@ void OdeRows::describe(Schema& s)
         .independent();
     s.role(resolution, "resolution", {Facet::Component}, "finds the time of an impact")
         .family("Resolution/")
-        .default_type("Resolution/Bisection");
-    s.role(response, "response", {Facet::Component}, "answers contacts").family("Response/").default_type("Response/Impulse");
+        .default_type("Resolution/Automatic");
+    s.role(response, "response", {Facet::Component}, "answers contacts").family("Response/").default_type("Response/Automatic");
     s.param(space, "space", unit::one,
             "broad-phase search: pLab's tree of boxes (hash, in older scenes, means the same) or one of ODE's "
             "spaces; the choice changes no result")

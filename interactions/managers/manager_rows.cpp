@@ -255,4 +255,78 @@ void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bo
     rows.account.add(context, row, island, rows.tolerance[row]);
 }
 
+void AutomaticRows::describe(Schema& s)
+{
+    s.param(max_points, "max_points", unit::one, "an island of at most so many contact points and rows is solved exactly")
+        .or_else(80)
+        .not_negative()
+        .at_most(20000);
+    s.param(
+         heavy, "heavy", unit::one,
+         "ratio of the heaviest to the lightest body above which sweeps would let bodies sink: such an island is solved exactly up to 16 "
+         "times as many points")
+        .or_else(20)
+        .at_least(1);
+    s.output(resolved, "resolved", unit::one, "the methods that advanced the islands of the last step");
+    s.output(reason, "reason", unit::one, "why the larger of its islands were advanced so");
+    s.output(direct_islands, "direct_islands", unit::one, "islands that were solved exactly in the last step");
+    s.output(soft_islands, "soft_islands", unit::one, "islands that were advanced by SoftStep in the last step");
+    account.describe(s);
+    s.scratch(memory, "memory", "working memory");
+}
+
+namespace
+{
+
+constexpr std::size_t kHeavyPoints = 16;  // times max_points
+
+/// The ratio of the heaviest to the lightest body of an island.
+double mass_ratio(const Island& island, const Bodies& bodies)
+{
+    double least = HUGE_VAL, most = 0;
+    for (const std::uint32_t b : island.bodies) least = std::min(least, bodies.mass[b]), most = std::max(most, bodies.mass[b]);
+    return most > 0 ? most / least : 1.0;
+}
+
+/// Keeps `resolved` and `reason` of the step. `context.events` is null in trials, which leave nothing behind.
+void note_method(const StepContext& context, Row row, AutomaticRows& rows, bool direct, std::size_t points, double ratio)
+{
+    if (!context.events) return;
+    if (rows.account.step[row] != context.tick) rows.direct_islands[row] = rows.soft_islands[row] = 0;
+    ++(direct ? rows.direct_islands : rows.soft_islands)[row];
+    const std::string_view used = rows.soft_islands[row] == 0 ? "Direct" : rows.direct_islands[row] == 0 ? "SoftStep" : "Direct, SoftStep";
+    if (rows.resolved[row] == used) return;
+    rows.resolved[row] = used;
+    if (direct && rows.soft_islands[row] != 0) return;
+    rows.reason[row] = std::string(direct ? "Direct: " : "SoftStep: ") + "an island has " + std::to_string(points) +
+                       " contact points and rows, and masses up to " + rounded_text(ratio, 2) + " to 1";
+}
+
+}  // namespace
+
+void solve_automatic(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+{
+    const std::size_t points = island.contacts.size() + island.rows.size(), most = static_cast<std::size_t>(rows.max_points[row]);
+    const double ratio = mass_ratio(island, bodies);
+    const bool direct = points <= most || (ratio >= rows.heavy[row] && points <= kHeavyPoints * most);
+    AutomaticRows::Memory& memory = rows.memory[row];
+    double tolerance = 0;
+    if (direct)
+    {
+        const Solving how;
+        tolerance = how.tolerance;
+        Exactly method(memory.direct.newton, how);
+        report(island, advance_island(island, bodies, shafts, method, {}, memory.direct.step));
+    }
+    else
+    {
+        const SoftChoices choices;
+        tolerance = choices.tolerance;
+        report(island, advance_softly(island, bodies, shafts, choices, memory.soft));
+    }
+    forget_if_given_up(island, memory);
+    note_method(context, row, rows, direct, points, ratio);
+    rows.account.add(context, row, island, tolerance);
+}
+
 }  // namespace plab::managers

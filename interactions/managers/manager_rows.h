@@ -64,4 +64,29 @@ struct SoftStepRows
 };
 void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, Island& island);
 
+/// Manager/Automatic: exact where that is affordable, and of a fixed cost where an island is large.
+///
+///   an island of at most `max_points` contact points and rows                     Direct
+///   with bodies that are `heavy` times heavier than others, at most 16 x as many  Direct      (sweeps would let them sink)
+///   otherwise                                                                     SoftStep    (8 sub-steps)
+///
+/// The choice follows from the island alone, so rewinds, trials and replays make the same one.
+struct AutomaticRows
+{
+    Column<std::int64_t> max_points;
+    Column<double> heavy;
+    Column<std::string> resolved, reason;
+    Column<std::int64_t> direct_islands, soft_islands;  ///< in the last step
+    Account account;
+    struct Memory
+    {
+        DirectRows::Memory direct;
+        SoftMemory soft;
+    };
+    Column<Memory> memory;
+
+    void describe(Schema& schema);
+};
+void solve_automatic(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Shafts& shafts, Island& island);
+
 }  // namespace plab::managers

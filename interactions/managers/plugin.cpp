@@ -50,4 +50,12 @@ PLAB_PLUGIN("managers", registrar)
             "max_contacts. Time stepping: an impact is answered at the start of the next step unless a "
             "resolution locates it")
         .source("Alart, Curnier, CMAME 92 (1991); Acary, Cadoux, Lemarechal, Malick, ZAMM 91 (2011); Castro et al., IEEE T-RO 38 (2022)");
+    registrar.component<AutomaticRows>("Manager/Automatic", "Direct for islands that are small or hold heavy bodies, otherwise SoftStep")
+        .command<solve_automatic>(Phase::Solve, "Manager/Solve", "advances an island of contacts and one-sided rows")
+        .order(1)
+        .accuracy("exact to 1e-12 m/s where `resolved` says Direct, otherwise that of SoftStep")
+        .strengths("no choice has to be made: few contacts are exact, and thousands run in time")
+        .cost("that of the method in use, by island")
+        .limits("an island whose size is near the bound changes between the two methods")
+        .source("the two methods; server/docs/pace.md for the bound");
 }

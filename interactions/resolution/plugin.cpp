@@ -1,5 +1,6 @@
 #include "plab/plugin.h"
 #include "advancement.h"
+#include "automatic.h"
 #include "bisection.h"
 #include "root.h"
 #include "speculative.h"
@@ -88,4 +89,20 @@ PLAB_PLUGIN("resolution", registrar)
         .source(
             "Oliveira, Takahashi, ACM TOMS 47 (2020) for brackets that are never worse than bisection; Zhang, "
             "Redon, Lee, Kim, SIGGRAPH (2007) for second-order bounds");
+    registrar
+        .component<AutomaticRows>("Resolution/Automatic",
+                                  "locates impacts while islands of touching bodies are small; otherwise the manager answers them")
+        .command<choose_search>(Phase::Choose, "Resolution/Choose", "chooses how the impacts of the step are found")
+        .command<find_root_automatically>(Phase::Locate, "Resolution/Locate", "as Resolution/LocalRoot, where impacts are located")
+        .locates()
+        .local()
+        .certifies()
+        .adapts()
+        .accuracy("that of LocalRoot, Speculative or None, as `resolved` says")
+        .strengths("no choice has to be made: few bodies are exact, and many run in time")
+        .cost("that of the algorithm in use, and one pass over the known pairs")
+        .limits(
+            "one island that is large ends the location of impacts for all bodies of the detection; a heap whose "
+            "size is near the bounds changes between algorithms")
+        .source("server/docs/pace.md, for the bounds");
 }

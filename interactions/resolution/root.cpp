@@ -8,7 +8,7 @@
 namespace plab::resolution
 {
 
-void RootRows::describe(Schema& s)
+void RootRows::describe_search(Schema& s)
 {
     s.param(time_tolerance, "time_tolerance", unit::second,
             "length of the bracket at which the search ends; never less than 2^-48 of the step")
@@ -18,6 +18,11 @@ void RootRows::describe(Schema& s)
         .or_else(1000)
         .positive()
         .at_most(1e6);
+}
+
+void RootRows::describe(Schema& s)
+{
+    describe_search(s);
     describe_work(s, max_work);
 }
 

@@ -24,6 +24,8 @@ struct RootRows
     Column<std::int64_t> max_iterations;  // distance queries
 
     void describe(Schema& schema);
+    /// All but max_work.
+    void describe_search(Schema& schema);
 };
 /// Phase::Locate.
 void find_root(const StepContext& context, Row row, const RootRows& rows, Trial& trial);

@@ -8,6 +8,9 @@
 namespace plab::resolution
 {
 
+/// Declares the parameter `acceleration`, by which gaps are judged.
+void describe_acceleration(Schema& schema, Column<double>& acceleration);
+
 /// For responses by rows: the manager lets a gap close but not overlap, so that bodies stop at the surface. Nothing is rewound.
 struct SpeculativeRows
 {

@@ -1,4 +1,5 @@
 #include "plab/plugin.h"
+#include "automatic.h"
 #include "impulse.h"
 #include "penalty.h"
 #include "rows.h"
@@ -66,4 +67,16 @@ PLAB_PLUGIN("response", registrar)
             "without gaps: all balls move). Newton's restitution returns less where friction would otherwise add "
             "energy")
         .source("Moreau, Unilateral contact and dry friction (1988); Glocker, Set-Valued Force Laws (2001)");
+    registrar
+        .component<AutomaticRows>("Response/Automatic",
+                                  "impulses for located impacts, one pair after the other; a manager for contacts that persist")
+        .command<respond_automatically>(Phase::Respond, "Response/Respond", "applies the impulses of a located impact")
+        .by_rows()
+        .accuracy("located impacts: to rounding; persistent contacts: that of its manager")
+        .strengths("no choice has to be made: bounces, sequences of impacts, stacks and heaps")
+        .cost("one 3x3 solve per contact of an impact; for persistent contacts that of its manager")
+        .limits(
+            "impacts that the resolution does not locate are answered by the manager at the start of the next step, all of an island "
+            "together")
+        .source("as Response/Impulse for impacts, and as its manager for contacts that persist");
 }

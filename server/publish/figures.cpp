@@ -49,6 +49,8 @@ double unexplained(const simulation::Simulation& simulation, const simulation::T
 std::string answer_of(const simulation::Simulation& s, const simulation::Detector& d)
 {
     std::string out = d.resolution == kNoIndex ? "no resolution" : s.world().type_of(d.resolution)->info.name;
+    if (const std::string method = d.resolution == kNoIndex ? "" : chosen_method(s.world(), d.resolution); !method.empty())
+        out += " by " + method;
     out += d.locates ? (d.local ? " (rewinds the bodies in contact)" : " (rewinds the whole world)") : " (no rewinding)";
     out += ", " + (d.response == kNoIndex ? std::string("no response") : s.world().type_of(d.response)->info.name);
     return out + (d.responds ? "" : " (a sensor: applies no forces)");

@@ -37,6 +37,10 @@ private:
 /// kinetic - kinetic at start - work: energy that the methods created or lost, J.
 double unexplained(const simulation::Simulation& simulation, const simulation::Totals& totals);
 
+/// The method that a component which chooses among several has used last (its output `resolved`); empty if it is what its name says, or
+/// if it does not choose.
+std::string chosen_method(const world::World& world, std::uint32_t component);
+
 /// Which components process the results of a detection: "Resolution/Bisection (rewinds the whole world), Response/Impulse".
 std::string answer_of(const simulation::Simulation& simulation, const simulation::Detector& detector);
 

@@ -10,6 +10,26 @@ namespace plab::publish
 namespace
 {
 
+/// The current value of a text output of a component; empty if it has none of that name.
+std::string text_of(const world::World& world, std::uint32_t component, const std::string& output)
+{
+    if (!world.table_of(component).schema().find_field(output)) return {};
+    const Value value = world.get(component, output);
+    const auto* text = std::get_if<std::string>(&value);
+    return text ? *text : std::string();
+}
+
+}  // namespace
+
+std::string chosen_method(const world::World& world, std::uint32_t component)
+{
+    const std::string method = text_of(world, component, "resolved");
+    return world.type_of(component)->info.name.ends_with("/" + method) ? std::string() : method;
+}
+
+namespace
+{
+
 /// The work of a solver in the current structure.
 struct Use
 {
@@ -62,20 +82,11 @@ std::map<std::uint32_t, Use> uses_of_solvers(const simulation::Simulation& s)
     return out;
 }
 
-/// The current value of a text output of a component; empty if it has none of that name.
-std::string text_of(const world::World& world, std::uint32_t component, const std::string& output)
+/// The method that a component with a choice or fallback reports, and why; empty if it is what its name says.
+std::string choice_of(const world::World& world, std::uint32_t component)
 {
-    if (!world.table_of(component).schema().find_field(output)) return {};
-    const Value value = world.get(component, output);
-    const auto* text = std::get_if<std::string>(&value);
-    return text ? *text : std::string();
-}
-
-/// The method that a solver with a choice or fallback reports, and why; empty if it is what its name says.
-std::string choice_of(const world::World& world, std::uint32_t solver)
-{
-    const std::string method = text_of(world, solver, "resolved"), why = text_of(world, solver, "reason");
-    if (method.empty() || world.type_of(solver)->info.name.ends_with("/" + method)) return {};
+    const std::string method = chosen_method(world, component), why = text_of(world, component, "reason");
+    if (method.empty()) return {};
     return ", by " + method + (why.empty() ? "" : " (last choice: " + why + ")");
 }
 
@@ -109,7 +120,7 @@ std::vector<std::string> resolved_algorithms(const simulation::Simulation& s)
         else if (is_solver(world, i))
             out[i] = words_for_solver(world, i, use == uses.end() ? Use{} : use->second);
         else
-            out[i] = world.type_of(i)->info.name;
+            out[i] = world.type_of(i)->info.name + choice_of(world, i);
     }
     for (const simulation::Detector& d : s.stepper().detectors()) out[d.component] += ": " + answer_of(s, d);
     return out;

@@ -79,6 +79,28 @@ struct GapQuery
     double further_pairs = 0;  ///< cost, as in ContactSink::took()
 };
 
+/// How the impacts of a step are found.
+enum class ImpactSearch : std::uint8_t
+{
+    Locate,     ///< inside the step, each at its time
+    Speculate,  ///< not at all: gaps that may close within the step are contacts of a manager
+    AtEnd,      ///< where the step ends, with the overlap that has developed
+};
+
+/// Phase::Choose: the contacts of one detection at the start of a step, for a resolution that adapts to them. The choice must follow from
+/// these facts alone, so that a rewound or restored run makes the same one.
+struct ContactLoad
+{
+    // in
+    std::uint32_t bodies = 0;         ///< dynamic bodies of the scene
+    std::uint32_t island_bodies = 0;  ///< dynamic bodies of the largest island that persistent contacts hold together
+    std::uint32_t island_points = 0;  ///< contact points of the island that has most of them
+    double travel = 0;                ///< largest distance that a body moves within the step, in units of its radius
+    bool has_manager = false;         ///< the response leaves contacts to a manager; without one, speculation is not possible
+    // out
+    ImpactSearch search = ImpactSearch::AtEnd;
+};
+
 /// Phase::Locate: a step [0, h] is known to contain an event; the resolution chooses the next time to try.
 struct Trial
 {

@@ -73,6 +73,7 @@ struct PhaseCall
     GapQuery* gap = nullptr;                    // Gap
     ContactSink* contacts = nullptr;            // Detect
     Trial* trial = nullptr;                     // Locate
+    ContactLoad* load = nullptr;                // Choose
     Impact* impact = nullptr;                   // Respond, Touch
     MassProperties* solid = nullptr;            // Measure
     StoredEnergy* stored = nullptr;             // Potential
@@ -113,6 +114,7 @@ struct TypeInfo
     bool local = false;        ///< resolution: rewinds only the group concerned, not the whole world
     bool locates = false;      ///< resolution: finds the time of an event inside the step
     bool certifies = false;    ///< resolution: searches inside the step for events that its two ends do not show
+    bool adapts = false;       ///< resolution: chooses in each step whether it locates, speculates or does neither (Phase::Choose)
     bool speculates = false;   ///< resolution: gaps that may close within the step become rows
     bool by_rows = false;      ///< response: contacts are rows solved by a manager, including impacts
     bool by_force = false;     ///< response: contacts are forces, evaluated at every solver stage
@@ -157,6 +159,7 @@ PLAB_ARGUMENT(Island&, island, "Island");
 PLAB_ARGUMENT(GapQuery&, gap, "Gap");
 PLAB_ARGUMENT(ContactSink&, contacts, "Contacts");
 PLAB_ARGUMENT(Trial&, trial, "Trial");
+PLAB_ARGUMENT(ContactLoad&, load, "ContactLoad");
 PLAB_ARGUMENT(Impact&, impact, "Impact");
 PLAB_ARGUMENT(MassProperties&, solid, "MassProperties");
 PLAB_ARGUMENT(StoredEnergy&, stored, "StoredEnergy");
@@ -255,6 +258,7 @@ public:
     TypeBuilder& local() { return info_->local = true, *this; }
     TypeBuilder& locates() { return info_->locates = true, *this; }
     TypeBuilder& certifies() { return info_->certifies = true, *this; }
+    TypeBuilder& adapts() { return info_->adapts = true, *this; }
     TypeBuilder& speculates() { return info_->speculates = true, *this; }
     TypeBuilder& by_rows() { return info_->by_rows = true, *this; }
     TypeBuilder& by_force() { return info_->by_force = true, *this; }

@@ -25,6 +25,7 @@ enum class Phase : std::uint8_t
     Connect,    ///< Init, and after any structural change: contribute to structures that are built from all components
     Drive,      ///< PreStep: once per step; may change its own declared state
     Force,      ///< Step: add wrenches; a pure function of time and state, at every solver stage
+    Choose,     ///< Step: a resolution that adapts chooses how impacts of this step are found
     Couple,     ///< Step: relate speeds of shafts, at every solver stage and after impulses
     Constrain,  ///< Step: constraint rows at the present state, at every solver stage
     Touch,      ///< Step: force-based contacts add their wrenches, at every solver stage
@@ -52,6 +53,7 @@ constexpr Stage stage_of(Phase phase)
         case Phase::Drive:
             return Stage::PreStep;
         case Phase::Force:
+        case Phase::Choose:
         case Phase::Couple:
         case Phase::Constrain:
         case Phase::Touch:
@@ -73,8 +75,9 @@ constexpr std::string_view name_of(Stage stage)
 
 constexpr std::string_view name_of(Phase phase)
 {
-    constexpr std::string_view names[] = {"measure", "prepare", "connect", "drive",  "force",   "couple", "constrain", "touch", "advance",
-                                          "solve",   "detect",  "gap",     "locate", "respond", "finish", "potential", "draw",  "restore"};
+    constexpr std::string_view names[] = {"measure",   "prepare", "connect",   "drive", "force",  "choose", "couple",
+                                          "constrain", "touch",   "advance",   "solve", "detect", "gap",    "locate",
+                                          "respond",   "finish",  "potential", "draw",  "restore"};
     return names[static_cast<int>(phase)];
 }
 

@@ -22,6 +22,9 @@ public:
     /// Errors: see contact_rules.h.
     Errors rebuild();
     void begin_step() { releases_.clear(); }
+    /// Lets the resolutions that adapt choose how the impacts of this step are found. True if one of them chose otherwise than before: then
+    /// what was detected with the former margins does not serve this step.
+    bool choose_search();
 
     const std::vector<Detector>& detectors() const { return detectors_; }
     ContactCache& cache() { return cache_; }
@@ -97,6 +100,7 @@ public:
 
 private:
     void measure_bodies();
+    void measure_islands(ContactLoad& load);
     void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
     double gap_margin(const PairState& pair, double h) const;
     void drop_far(std::vector<FoundContact>& out, double h) const;
@@ -112,6 +116,12 @@ private:
 
     // Scratch lists, members to keep their memory.
     mutable std::vector<std::uint32_t> counted_;
+    struct IslandCount
+    {
+        std::uint32_t bodies = 0, points = 0;
+    };
+    DisjointSets load_islands_;             ///< of bodies
+    std::vector<IslandCount> load_counts_;  ///< by representative body
     std::vector<PersistentPair> persistent_;
     std::vector<Contact> impact_contacts_;
 };

@@ -239,7 +239,9 @@ void describe(Detector& d, const world::World& world)
     d.steps_per_contact = {world, d.response, "steps_per_contact"}, d.max_substeps = {world, d.response, "max_substeps"};
     if (!find_command(world, d.resolution, Phase::Locate)) return;
     d.speculation_acceleration = {world, d.resolution, "acceleration"}, d.max_work = {world, d.resolution, "max_work"};
+    d.base_work = {world, d.resolution, "base_work"};
     const TypeInfo& resolution = world.type_of(d.resolution)->info;
+    d.adapts = resolution.adapts && !d.by_force;
     d.speculates = resolution.speculates;
     d.locates = resolution.locates && !d.by_force;
     d.local = d.locates && resolution.local;

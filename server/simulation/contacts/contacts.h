@@ -45,6 +45,7 @@ struct Detector
     std::uint32_t response = kNoIndex;    ///< component
     std::uint32_t manager = kNoIndex;     ///< component; for a response by rows
     const CommandInfo* gap = nullptr;     ///< command that measures the gap of two bodies; null: it has none
+    bool adapts = false;                  ///< the resolution chooses the next four for each step (ContactBook::choose_search)
     bool locates = false, local = false;
     bool certifies = false;                          ///< the resolution uses motion bounds: no impact inside the step is missed
     bool speculates = false;                         ///< gaps that may close within the step count as contacts, with depth < 0
@@ -54,7 +55,7 @@ struct Detector
     DeclaredNumber friction, restitution;            ///< of the response; materials may have their own
     DeclaredNumber steps_per_contact, max_substeps;  ///< of a response that is a force
     DeclaredNumber speculation_acceleration;         ///< m/s^2, of a resolution that speculates
-    DeclaredNumber max_work;                         ///< of a resolution that locates
+    DeclaredNumber max_work, base_work;              ///< of a resolution that locates
     /// Contacts are not events: a touching pair is persistent at once, and a manager or a force handles it.
     bool persists() const { return by_force || (by_rows && !locates); }
 };

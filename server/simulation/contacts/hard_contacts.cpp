@@ -7,6 +7,7 @@ namespace plab::simulation
 
 void HardContacts::begin_step()
 {
+    if (contacts_.choose_search()) held_.forget_state();
     if (held_.any()) held_.begin_step();
     // A step that starts from a snapshot has to detect contacts that are otherwise known from the step before. This must not count in the
     // work budget, or the step would not be reproducible.

@@ -115,6 +115,8 @@ public:
     void pass_on(PairState& pair, std::uint32_t known, std::span<const FoundContact> found) const;
     /// Notes that the found contacts belong to the present state.
     void note_state();
+    /// Notes that they do not serve the next step: contacts are detected otherwise there.
+    void forget_state() { known_ = false; }
     /// Takes the groups that managers advance out of `groups` (ascending).
     void take(std::vector<std::uint32_t>& groups, DisjointSets& islands);
     bool holds_any() const { return !held_.empty(); }

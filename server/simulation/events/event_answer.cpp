@@ -47,22 +47,26 @@ void EventLocator::advance_scope(double time, WorkBook book, bool trial)
     budget_.spend(static_cast<double>(scope_.size()) + sweeps_and_queries() - before);
 }
 
+/// Groups whose pieces began at the same time advance together, as those do that rest on one another: alone, each would be solved as if
+/// its neighbours could not move. Pieces of a scope begin at different times where a pair is about to meet of which one has been rewound.
 void EventLocator::move_scope(double time, WorkBook book, bool trial)
 {
-    // Groups whose pieces began at the same time advance together; usually all of them did.
-    bool together = true, rests = false;
-    for (const std::uint32_t g : scope_)
-        together = together && motion_.segment_begin(g) == motion_.segment_begin(scope_.front()), rests = rests || rests_[g] != 0;
-    if (any_certifies_ && !(together && rests))
+    left_.assign(scope_.begin(), scope_.end());
+    for (std::size_t first = 0, end = 0; first < left_.size(); first = end)
     {
-        for (const std::uint32_t g : scope_) advance_group(g, time, book, trial);
-        return;
+        const double begin = motion_.segment_begin(left_[first]);
+        const auto begins = [&](std::uint32_t g) { return motion_.segment_begin(g) == begin; };
+        const auto rest = std::stable_partition(left_.begin() + static_cast<std::ptrdiff_t>(first), left_.end(), begins);
+        end = static_cast<std::size_t>(rest - left_.begin());
+        const std::span<const std::uint32_t> together = std::span(left_).subspan(first, end - first);
+        if (any_certifies_ && std::none_of(together.begin(), together.end(), [&](std::uint32_t g) { return rests_[g] != 0; }))
+        {
+            for (const std::uint32_t g : together) advance_group(g, time, book, trial);
+            continue;
+        }
+        for (const std::uint32_t g : together) motion_.rewind(g);
+        advance_.advance(together, begin, time, book, trial);
     }
-    for (const std::uint32_t g : scope_) motion_.rewind(g);
-    if (together)
-        advance_.advance(scope_, motion_.segment_begin(scope_.front()), time, book, trial);
-    else
-        for (const std::uint32_t& g : scope_) advance_.advance(std::span(&g, 1), motion_.segment_begin(g), time, book, trial);
 }
 
 /// Puts the groups of the scope to their state at `time`. Both ends of a piece are stored; other times take an advance.

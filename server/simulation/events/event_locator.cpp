@@ -316,10 +316,11 @@ double EventLocator::sweeps_and_queries() const
 void EventLocator::begin_budget()
 {
     const double plain = static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()) + sweeps_and_queries();
-    double multiple = 0;
+    double multiple = 0, base = 0;
     for (const Detector& d : contacts_.detectors())
-        if (d.locates) multiple = std::max(multiple, d.max_work.value_or(0));
-    budget_.begin(plain, multiple > 0 ? multiple : WorkBudget::kMultiple);
+        if (d.locates)
+            multiple = std::max(multiple, d.max_work.value_or(0)), base = std::max(base, d.base_work.value_or(WorkBudget::kBase));
+    budget_.begin(plain, multiple > 0 ? multiple : WorkBudget::kMultiple, base);
 }
 
 void EventLocator::report_too_many(std::size_t left)
@@ -329,6 +330,7 @@ void EventLocator::report_too_many(std::size_t left)
     const auto locates =
         std::find_if(contacts_.detectors().begin(), contacts_.detectors().end(), [](const Detector& d) { return d.locates; });
     e.component = (locates == contacts_.detectors().end() ? contacts_.detectors().front() : *locates).component;
+    if (locates != contacts_.detectors().end() && locates->adapts) e.severity = Severity::Info;  // it is meant to give way
     e.message = "event location exceeded the work budget of the step (" + std::to_string(std::llround(budget_.allowed())) +
                 " distance queries and advances) after " + std::to_string(step_.report.events) + " impacts; " + std::to_string(left) +
                 " pairs are answered at the end of the step; take shorter steps, Resolution/None, or a larger max_work";

@@ -215,6 +215,7 @@ private:
     std::vector<std::uint32_t> chosen_;               ///< slots that are answered together
     std::vector<std::uint32_t> set_aside_;            ///< slots
     std::vector<std::uint32_t> scope_;                ///< groups that are rewound, ascending
+    std::vector<std::uint32_t> left_;                 ///< scratch of move_scope()
     std::vector<std::uint8_t> in_scope_, disturbed_;  ///< by group; disturbed_: belongs to the last answer's pairs or rests on them
     std::vector<std::uint8_t> rests_;                 ///< by group: it takes part in a persistent contact
     bool any_rests_ = false;                          ///< a group in the scope of the present answer takes part in a persistent contact

@@ -12,7 +12,8 @@ namespace plab::simulation
 class WorkBudget
 {
 public:
-    /// Units that every step has, however small its scene: enough for some thousand impacts of a few bodies.
+    /// Units that every step has, however small its scene, unless the resolution declares a number of its own: enough for some thousand
+    /// impacts of a few bodies.
     static constexpr double kBase = 100'000;
     static constexpr double kMultiple = 20;
     /// Cost in units of one sweep over one row of a contact or joint, and of one pair that the broad phase lists.
@@ -24,7 +25,7 @@ public:
     static constexpr double kFurtherPair = 1.0 / 4;
 
     /// `plain`: units that the step takes without event location.
-    void begin(double plain, double multiple) { spent_ = 0, allowed_ = kBase + multiple * plain; }
+    void begin(double plain, double multiple, double base) { spent_ = 0, allowed_ = base + multiple * plain; }
     void spend(double units) { spent_ += units; }
     bool is_spent() const { return spent_ >= allowed_; }
     double spent() const { return spent_; }

@@ -44,9 +44,9 @@ TEST_CASE("at first everything, as the scene has it")
     const CatalogueChange& all = run.watcher.changes[0];
     CHECK(all.everything);
     CHECK(ids_in(all) == Ids{"ball", "red", "green", "floor", "floor.shape", "wheel", "gravity", "drag", "contact", "contact.resolution",
-                             "contact.response", "solver"});
+                             "contact.response", "contact.response.manager", "solver"});
     CHECK(all.scene.objects == 4);
-    CHECK(all.scene.interactions == 6);
+    CHECK(all.scene.interactions == 7);
     CHECK(all.scene.dt == doctest::Approx(1.0 / 120));
     CHECK(all.scene.seed == 7);
     CHECK(all.scene.title == "two balls");

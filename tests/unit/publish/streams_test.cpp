@@ -22,7 +22,8 @@ const std::string kDrop = R"(
   <component id="ball" type="State/RigidBody" mass="1" shape="Shape/Sphere" shape.radius="0.1" position="0 0 0.5"/>
   <component id="floor" type="State/Static" shape="Shape/Plane"/>
   <component id="gravity" type="Field/Gravity" between="ball"/>
-  <component id="contact" type="CDetection/ODE" between="ball floor" response.restitution="0.5"/>
+  <component id="contact" type="CDetection/ODE" between="ball floor" resolution="Resolution/Bisection" response="Response/Impulse"
+             response.restitution="0.5"/>
 )";
 
 /// Numbers of batches follow one another; returns the number after the last one.

@@ -1,0 +1,37 @@
+/// Resolution/Automatic: locates impacts while that is affordable, and leaves them to the manager where bodies are many.
+///
+///   islands of at most `max_bodies` bodies and `max_points` contact points    Resolution/LocalRoot    (each impact at its time)
+///   larger, and some body is fast for its size                               Resolution/Speculative  (no tunnelling, nothing is rewound)
+///   larger                                                                   Resolution/None
+///
+/// An island is what persistent contacts hold together. An impact rewinds and solves the whole island of its bodies, so the cost of
+/// locating all impacts of a step grows with the square of the largest island, and not with the number of bodies that fly or rest apart:
+/// a thousand balls that bounce on a floor are located, a heap of nine is not. Fast: within a step a body moves by more than a quarter
+/// of its radius.
+///
+/// The choice follows from the state at the start of the step alone, so that rewinds, trials and replays make the same one. `resolved`
+/// names it and `reason` says why; resolution.chosen reports each change.
+#pragma once
+
+#include "root.h"
+
+namespace plab::resolution
+{
+
+struct AutomaticRows
+{
+    RootRows root;
+    Column<double> base_work;                     // 1
+    Column<double> acceleration;                  // m/s^2
+    Column<std::int64_t> max_bodies, max_points;  // of an island
+    Column<std::int64_t> max_located;             // bodies of the scene
+    Column<std::string> resolved, reason;
+
+    void describe(Schema& schema);
+};
+/// Phase::Choose.
+void choose_search(const StepContext& context, Row row, AutomaticRows& rows, ContactLoad& load);
+/// Phase::Locate, in steps in which impacts are located.
+void find_root_automatically(const StepContext& context, Row row, const AutomaticRows& rows, Trial& trial);
+
+}  // namespace plab::resolution

@@ -1,0 +1,84 @@
+// How the impacts of a step are found, where the resolution of a detection adapts to its contacts (TypeInfo::adapts).
+//
+// The choice is made at the start of each step, from the known pairs and the velocities alone: all of these are state, so a run that is
+// rewound or restored makes the same choice.
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/contacts/contact_book.h"
+#include "simulation/motion/component_call.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// The largest distance that a dynamic body moves within the step at its present speed, in units of its radius.
+double largest_travel(const Bodies& bodies, std::span<const double> radius_of_body, double h)
+{
+    double most = 0;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+        if (const double radius = radius_of_body[b]; bodies.dynamic(b) && radius > 0 && std::isfinite(radius))
+            most = std::max(most, length(bodies.velocity[b]) * h / radius);
+    return most;
+}
+
+void apply(ImpactSearch search, Detector& d)
+{
+    d.locates = d.local = d.certifies = search == ImpactSearch::Locate;
+    d.speculates = search == ImpactSearch::Speculate;
+}
+
+ImpactSearch search_of(const Detector& d)
+{
+    return d.locates ? ImpactSearch::Locate : d.speculates ? ImpactSearch::Speculate : ImpactSearch::AtEnd;
+}
+
+}  // namespace
+
+/// Fills in the largest islands of persistent contacts, over all detections: a body may rest on what another detection holds.
+void ContactBook::measure_islands(ContactLoad& load)
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    load_islands_.reset(bodies.size());
+    for (const PairState& p : cache_.pairs())
+        if (p.resting && bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) load_islands_.join(p.a.index, p.b.index);
+    load_counts_.assign(bodies.size(), {});
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+        if (bodies.dynamic(b))
+            ++load.bodies, load.island_bodies = std::max(load.island_bodies, ++load_counts_[load_islands_.find(b)].bodies);
+    for (const PairState& p : cache_.pairs())
+    {
+        if (!p.resting) continue;
+        std::uint32_t& points = load_counts_[load_islands_.find(bodies.dynamic(p.a.index) ? p.a.index : p.b.index)].points;
+        load.island_points = std::max(load.island_points, points += p.count);
+    }
+}
+
+bool ContactBook::choose_search()
+{
+    if (std::none_of(detectors_.begin(), detectors_.end(), [](const Detector& d) { return d.adapts; })) return false;
+    ContactLoad load;
+    measure_islands(load);
+    load.travel = largest_travel(step_.world.host().bodies, radius_of_body_, step_.frame.step);
+    bool changed = false;
+    for (Detector& d : detectors_)
+    {
+        if (!d.adapts) continue;
+        load.has_manager = d.by_rows, load.search = ImpactSearch::AtEnd;
+        ComponentCall question(step_, d.resolution);
+        question.call.load = &load;
+        question.run(Phase::Choose);
+        if (load.search == ImpactSearch::Locate && !d.gap) load.search = ImpactSearch::AtEnd;
+        if (load.search == ImpactSearch::Speculate && !d.by_rows) load.search = ImpactSearch::AtEnd;
+        changed = changed || load.search != search_of(d);
+        apply(load.search, d);
+        if (!d.persists()) continue;
+        // A pair between two bounces is a contact like any other where impacts are not located.
+        for (PairState& p : cache_.pairs())
+            if (p.detector == d.component) p.resting = true;
+    }
+    return changed;
+}
+
+}  // namespace plab::simulation

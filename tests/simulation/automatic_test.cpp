@@ -1,0 +1,104 @@
+// Scenes in which no algorithm is named: a few bodies are exact, many run at a bounded cost, and nothing is gained or lost between the two.
+#include <algorithm>
+
+#include "plab/random.h"
+#include "reference/impacts.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+/// Boxes and balls in a loose lattice above the ground. The seed displaces them a little.
+std::string heap(int count, std::uint64_t seed)
+{
+    const auto any = [&] { return 0.02 * (2 * next_uniform(seed) - 1); };
+    std::string out;
+    for (int k = 0; k < count; ++k)
+    {
+        const Vec3 place{0.3 * (k % 4) + any(), 0.3 * (k / 4 % 4) + any(), 0.3 + 0.3 * (k / 16)};
+        const std::string id = "b" + std::to_string(k);
+        out += k % 2 == 0 ? sphere(id, 0.1, at(place)) : box(id, {0.1, 0.1, 0.1}, at(place));
+    }
+    return out;
+}
+
+const std::string kContact = "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\"/>";
+
+std::string resolved(const Scene& s) { return std::get<std::string>(s.get("contact.resolution", "resolved")); }
+
+}  // namespace
+
+TEST_CASE("a ball that bounces by itself is located: its trajectory has a closed form")
+{
+    Scene s(sphere("ball", 0.1, at({0, 0, 0.6})) + std::string(kGround) + gravity("ball") +
+            "<component id=\"contact\" type=\"CDetection/ODE\" between=\"ball\" against=\"ground\" response.restitution=\"0.8\"/>");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(0.7);
+    const double g = 9.81, fall = std::sqrt(2 * 0.5 / g), up = 0.8 * g * fall, t = 0.7 - fall;
+    REQUIRE(t < 2 * up / g);
+    CHECK(std::fabs(s.vec("ball", "position").z - (0.1 + up * t - 0.5 * g * t * t)) < 1e-12);
+    CHECK(resolved(s) == "LocalRoot");
+}
+
+TEST_CASE("a heap is not located: work, overlap and energy stay bounded in each step")
+{
+    for (const std::uint64_t seed : {1u, 2u})
+    {
+        CAPTURE(seed);
+        Scene s(heap(64, seed) + std::string(kGround) + gravity("*") + kContact);
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.keep_events = true;
+        double before = energy(s);
+        const double all = before;
+        int most = 0;
+        while (s.simulation().time() < 1.5)
+        {
+            s.step();
+            most = std::max(most, s.simulation().stepper().report().trials);
+            CHECK(s.simulation().stepper().report().deepest < 0.02);
+            const double now = energy(s);
+            CHECK(now <= before + 1e-3 * all);
+            before = now;
+        }
+        CHECK(most < 6000);
+        CHECK(s.count("resolution.chosen") > 0);
+        CHECK(before < 0.5 * all);
+    }
+}
+
+TEST_CASE("a fast body among many does not pass through a thin wall")
+{
+    std::string still;
+    for (int k = 0; k < 12; ++k) still += box("s" + std::to_string(k), {0.1, 0.1, 0.1}, at({2, 0, 0.1 + 0.2 * k}));
+    Scene s(still + box("wall", {0.005, 1, 1}, "position=\"0 0 1\"", "Static") +
+            sphere("bullet", 0.02, at({-1.37, 0, 1}, {80, 0, 0}, 0.01)) + std::string(kGround) + gravity("*") + kContact);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(2);  // the stack touches from the end of the first one
+    CHECK(resolved(s) == "Speculative");
+    s.run(0.1);
+    CHECK(s.vec("bullet", "position").x < 0);
+}
+
+TEST_CASE("a body that meets a row of others in the step in which another one has hit it meets it at its time")
+{
+    // Four boxes that touch; A hits them from the left at t = 1 ms and moves on with them, B comes from the right.
+    std::string row;
+    for (int k = 0; k < 4; ++k) row += box("c" + std::to_string(k), {0.1, 0.1, 0.1}, at({0.2 * k, 0, 0}));
+    for (const std::string response : {"Response/Automatic", "Response/Rows", "Response/Impulse"})
+    {
+        CAPTURE(response);
+        Scene s(row + box("A", {0.1, 0.1, 0.1}, at({-0.21, 0, 0}, {10, 0, 0}, 4)) +
+                box("B", {0.1, 0.1, 0.1}, at({0.82, 0, 0}, {-10, 0, 0}, 4)) +
+                "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" response=\"" + response + "\" resolution=\"LocalRoot\"/>");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.keep_events = true;
+        s.step();
+        double met = -1;
+        for (const Event& e : events_of(s, "contact.begin"))
+            if (e.time > 0.0011 && met < 0) met = e.time;
+        CHECK(met == doctest::Approx(0.001 + 0.01 / 15).epsilon(1e-9));
+        CHECK(std::fabs(s.vec("B", "linear_velocity").x - (8 * 5 - 4 * 10) / 12.0) < 1e-9);
+    }
+}
