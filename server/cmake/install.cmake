@@ -38,6 +38,7 @@ install(DIRECTORY server/base/plab server/sdk/plab DESTINATION include COMPONENT
 install(DIRECTORY clients/link DESTINATION include/plab-link COMPONENT sdk FILES_MATCHING PATTERN "*.h" PATTERN "json.h" EXCLUDE)
 file(GLOB wire_headers CONFIGURE_DEPENDS idl/*.h)
 install(FILES ${wire_headers} DESTINATION include/plab-link/idl COMPONENT sdk)
+install(DIRECTORY idl/values DESTINATION include/plab-link/idl COMPONENT sdk FILES_MATCHING PATTERN "*.h")
 # idlc writes the folders of this build into its header, and makes the guard out of them.
 set(PLAB_GENERATED_HEADER ${PROJECT_BINARY_DIR}/idl/plab.h)
 configure_file(server/cmake/install_header.cmake.in ${PROJECT_BINARY_DIR}/package/install_header.cmake @ONLY)

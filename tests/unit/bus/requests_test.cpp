@@ -119,7 +119,7 @@ TEST_CASE("a request arrives as it was sent, and so does its reply")
     REQUIRE(r.swaps.size() == 1);
     CHECK(r.swaps[0].to == "G/B");
     REQUIRE(r.swaps[0].fields.size() == 2);
-    CHECK(r.swaps[0].fields[1].transfer == "lost");
+    CHECK(r.swaps[0].fields[1].fate == "lost");
     CHECK(r.swaps[0].with_new.momentum[2] == 3);
 }
 
