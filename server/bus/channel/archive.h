@@ -50,7 +50,7 @@ public:
         else if constexpr (std::is_same_v<T, bool>)
             put(static_cast<std::uint8_t>(value ? 1 : 0));
         else
-            for_each_member([this](const char*, const auto& member) { put(member); }, value);
+            for_each_member([this](const char*, const auto& member) { this->put(member); }, value);
     }
     void put(const std::string& text)
     {
@@ -102,7 +102,7 @@ public:
             value = byte != 0;
         }
         else
-            for_each_member([this](const char*, auto& member) { get(member); }, value);
+            for_each_member([this](const char*, auto& member) { this->get(member); }, value);
     }
     void get(std::string& text)
     {

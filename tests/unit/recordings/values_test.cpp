@@ -45,7 +45,7 @@ struct Filler
     void fill(T& value)
     {
         if constexpr (Described<T>)
-            for_each_member([this](const char*, auto& member) { fill(member); }, value);
+            for_each_member([this](const char*, auto& member) { this->fill(member); }, value);
         else if constexpr (std::is_same_v<T, std::string>)
             value = "text " + std::to_string(next++);
         else if constexpr (std::is_same_v<T, bool>)
