@@ -18,6 +18,12 @@ Identity identify(const std::string& name, const std::string& version)
     return {name, version, host.data(), getpid(), std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()};
 }
 
+void sign(Server& server, const Identity& identity)
+{
+    server.name = identity.name, server.version = identity.version, server.host = identity.host;
+    server.process = identity.process, server.started_ns = identity.started_ns;
+}
+
 bool keeps_the_name(const plab_v2_Server& other, const Identity& self)
 {
     if (other.started_ns <= 0 || other.host == nullptr || other.name == nullptr || self.name != other.name) return false;

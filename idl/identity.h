@@ -6,6 +6,7 @@
 #include <string>
 
 #include "idl/plab.h"
+#include "idl/values/values.h"
 
 namespace plab::wire
 {
@@ -20,6 +21,9 @@ struct Identity
 
 /// The identity of this process, starting now.
 Identity identify(const std::string& name, const std::string& version);
+
+/// Fills in what a server says of itself with every status.
+void sign(Server& server, const Identity& identity);
 
 /// Whether `other` is another server with this name, and may keep it: it started earlier, or at the same time and is first by
 /// host and process.

@@ -71,8 +71,8 @@ link::CatalogueContents snapshot_of(const link::SessionOptions& options, link::P
 std::vector<Candidate> ids_in(const link::CatalogueContents& now)
 {
     std::vector<Candidate> out;
-    for (const auto& [id, o] : now.objects) out.push_back({id, o.type});
-    for (const auto& [id, i] : now.interactions) out.push_back({id, i.type});
+    for (const auto& [id, o] : now.objects) out.push_back({id, o.type_name});
+    for (const auto& [id, i] : now.interactions) out.push_back({id, i.type_name});
     return out;
 }
 

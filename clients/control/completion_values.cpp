@@ -33,8 +33,8 @@ std::vector<Candidate> ids(const Wanted& wanted, const link::SessionOptions& opt
 
 std::string type_of(const link::CatalogueContents& now, const std::string& id)
 {
-    if (const auto at = now.interactions.find(id); at != now.interactions.end()) return at->second.type;
-    if (const auto at = now.objects.find(id); at != now.objects.end()) return at->second.type;
+    if (const auto at = now.interactions.find(id); at != now.interactions.end()) return at->second.type_name;
+    if (const auto at = now.objects.find(id); at != now.objects.end()) return at->second.type_name;
     return {};
 }
 

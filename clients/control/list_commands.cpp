@@ -104,17 +104,17 @@ std::vector<std::string> object_row(const link::Object& o, const Motion* m)
     std::string speed, angle;
     if (m != nullptr) speed = m->is_shaft ? number(m->speed) + " rad/s" : number(length(m->linear_velocity)) + " m/s";
     if (m != nullptr && m->is_shaft) angle = three_decimals(m->angle) + " rad";
-    return {o.id,
-            o.type,
+    return {o.component_id,
+            o.type_name,
             o.motion,
-            number(o.mass) + (o.is_shaft ? " kg m2" : " kg"),
+            number(o.mass) + (link::is_shaft(o) ? " kg m2" : " kg"),
             three_decimals(p.x),
             three_decimals(p.y),
             three_decimals(p.z),
             angle,
             speed,
             o.quarantined ? "quarantined" : "",
-            o.name == o.id ? "" : o.name};
+            o.name == o.component_id ? "" : o.name};
 }
 
 Exit run_objects(Context& c)
@@ -172,9 +172,9 @@ std::string members_text(const link::Interaction& i)
 std::string note_of(const link::Interaction& i, const link::InteractionMetrics* m)
 {
     if (i.quarantined || (m != nullptr && m->quarantined)) return "quarantined";
-    if (m == nullptr || m->resolved.empty() || m->resolved == i.type) return {};
+    if (m == nullptr || m->resolved.empty() || m->resolved == i.type_name) return {};
     // "TYPE: what about it", or another type that does the work.
-    return m->resolved.starts_with(i.type + ": ") ? m->resolved.substr(i.type.size() + 2) : "works as " + m->resolved;
+    return m->resolved.starts_with(i.type_name + ": ") ? m->resolved.substr(i.type_name.size() + 2) : "works as " + m->resolved;
 }
 
 Exit run_interactions(Context& c)
@@ -195,10 +195,10 @@ Exit run_interactions(Context& c)
                  {"participants", Align::Left, Shrink::End}});
     for (const auto& [id, i] : now.interactions)
     {
-        const link::InteractionMetrics* const m = now.metrics ? now.metrics->find(id) : nullptr;
+        const link::InteractionMetrics* const m = link::find_metrics(now.metrics, id);
         const std::string note = note_of(i, m);
-        table.add({id, i.type, m ? cost_text(*m) : "", m ? error_text(*m) : "", m ? error_unit(*m) : "", m ? number(m->work) + " J" : "",
-                   std::to_string(i.since), note, members_text(i)},
+        table.add({id, i.type_name, m ? cost_text(*m) : "", m ? error_text(*m) : "", m ? error_unit(*m) : "",
+                   m ? number(m->work) + " J" : "", std::to_string(i.since), note, members_text(i)},
                   note == "quarantined" ? Style::Red
                   : note.empty()        ? Style::Plain
                                         : Style::Yellow);
@@ -232,9 +232,9 @@ std::string lower(std::string text)
 Result<std::string> family_of(const link::CatalogueContents& now, const std::string& id)
 {
     std::string type;
-    if (const auto at = now.interactions.find(id); at != now.interactions.end()) type = at->second.type;
-    if (const auto at = now.objects.find(id); at != now.objects.end()) type = at->second.type;
-    if (const auto at = now.shapes.find(id); at != now.shapes.end()) type = at->second.type;
+    if (const auto at = now.interactions.find(id); at != now.interactions.end()) type = at->second.type_name;
+    if (const auto at = now.objects.find(id); at != now.objects.end()) type = at->second.type_name;
+    if (const auto at = now.shapes.find(id); at != now.shapes.end()) type = at->second.type_name;
     if (const auto at = now.types.find(type); at != now.types.end()) return at->second.family;
     if (!type.empty()) return reason("the server does not list " + type + ", the type of '" + id + "'");
     std::vector<std::string> known;
@@ -255,7 +255,7 @@ void print_types(Context& c, const std::vector<const link::Type*>& types)
                  {"cost", Align::Left, Shrink::End}});
     for (const link::Type* t : types)
     {
-        table.add({t->name, t->family, t->loaded ? "yes" : "no", t->order > 0 ? std::to_string(t->order) : "", t->doc, t->cost});
+        table.add({t->type_name, t->family, t->is_loaded ? "yes" : "no", t->order > 0 ? std::to_string(t->order) : "", t->doc, t->cost});
         list.push_back(json_of(*t));
     }
     if (c.settings.json)

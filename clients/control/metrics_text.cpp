@@ -11,7 +11,7 @@ namespace
 
 std::string text_of(const link::InteractionMetrics& m, std::string_view name)
 {
-    const link::Parameter* const account = m.account(name);
+    const link::Parameter* const account = link::find_account(m, name);
     return account != nullptr ? account->text : std::string();
 }
 
@@ -35,11 +35,11 @@ std::string cost_in_words(const link::InteractionMetrics& m)
     return out + (shared.empty() || shared == "1" ? "" : "; divided evenly, " + shared + " components of its type are measured together");
 }
 
-std::string error_text(const link::InteractionMetrics& m) { return m.account("no_error") != nullptr ? "-" : number(m.error); }
+std::string error_text(const link::InteractionMetrics& m) { return link::find_account(m, "no_error") != nullptr ? "-" : number(m.error); }
 
 std::string error_unit(const link::InteractionMetrics& m)
 {
-    const link::Parameter* const account = m.account("error");
+    const link::Parameter* const account = link::find_account(m, "error");
     return account != nullptr ? account->unit : std::string();
 }
 

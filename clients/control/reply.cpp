@@ -47,26 +47,23 @@ void print_fields(const Console& console, const link::SwapReport& swap)
 {
     std::vector<std::pair<std::string, Style>> transfers{
         {"kept", Style::Green}, {"converted", Style::Yellow}, {"given", Style::Cyan}, {"fresh", Style::Yellow}, {"lost", Style::Red}};
-    for (const link::TransferredField& f : swap.fields)
-        if (std::none_of(transfers.begin(), transfers.end(), [&](const auto& known) { return known.first == f.transfer; }))
-            transfers.emplace_back(f.transfer, Style::Plain);
+    for (const link::FieldFate& f : swap.fields)
+        if (std::none_of(transfers.begin(), transfers.end(), [&](const auto& known) { return known.first == f.fate; }))
+            transfers.emplace_back(f.fate, Style::Plain);
     for (const auto& [transfer, style] : transfers)
     {
         std::string names;
-        for (const link::TransferredField& f : swap.fields)
-            if (f.transfer == transfer) names += (names.empty() ? "" : ", ") + printable(f.name);
+        for (const link::FieldFate& f : swap.fields)
+            if (f.fate == transfer) names += (names.empty() ? "" : ", ") + printable(f.name);
         if (names.empty()) names = "-";
         const std::string padded = transfer + std::string(transfer.size() < 10 ? 10 - transfer.size() : 1, ' ');
         console.out("  " + console.styled(names == "-" ? Style::Dim : style, padded) + names + "\n");
     }
 }
 
-std::string vector_text(const double (&v)[3]) { return exact_number(v[0]) + " " + exact_number(v[1]) + " " + exact_number(v[2]); }
+std::string vector_text(const Vec3& v) { return exact_number(v.x) + " " + exact_number(v.y) + " " + exact_number(v.z); }
 
-std::string change_text(const double (&a)[3], const double (&b)[3])
-{
-    return number(b[0] - a[0]) + " " + number(b[1] - a[1]) + " " + number(b[2] - a[2]);
-}
+std::string change_text(const Vec3& a, const Vec3& b) { return number(b.x - a.x) + " " + number(b.y - a.y) + " " + number(b.z - a.z); }
 
 /// The server sends the old component's cost only if it differs from the new one's by more than chance.
 void add_cost(Table& table, const link::StepOutcome& old, const link::StepOutcome& now)
@@ -79,8 +76,8 @@ void add_cost(Table& table, const link::StepOutcome& old, const link::StepOutcom
 
 void print_swap(const Console& console, const link::SwapReport& swap)
 {
-    console.out(console.styled(Style::Bold, printable(swap.component)) + ": " + printable(swap.from) + " -> " +
-                console.styled(Style::Bold, printable(swap.to)) + "\n");
+    console.out(console.styled(Style::Bold, printable(swap.component_id)) + ": " + printable(swap.from_type) + " -> " +
+                console.styled(Style::Bold, printable(swap.to_type)) + "\n");
     print_fields(console, swap);
     const link::StepOutcome &a = swap.with_old, &b = swap.with_new;
     if (std::isnan(b.energy))

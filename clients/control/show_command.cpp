@@ -71,11 +71,11 @@ void print_parameters(const Console& console, const std::vector<link::Parameter>
 
 void print_object(Context& c, const link::Object& o, const Motion* motion, const link::Type* type)
 {
-    title(c.console, o.id, o.is_shaft ? "shaft" : "body", o.type);
+    title(c.console, o.component_id, link::is_shaft(o) ? "shaft" : "body", o.type_name);
     Lines lines;
-    lines.add("name", o.name == o.id ? "" : o.name);
+    lines.add("name", o.name == o.component_id ? "" : o.name);
     lines.add("motion", o.motion);
-    lines.add(o.is_shaft ? "inertia" : "mass", number(o.mass) + (o.is_shaft ? " kg m2" : " kg"));
+    lines.add(link::is_shaft(o) ? "inertia" : "mass", number(o.mass) + (link::is_shaft(o) ? " kg m2" : " kg"));
     const bool is_body_in_motion = motion != nullptr && !motion->is_shaft;
     lines.add("position", text_of(is_body_in_motion ? motion->position : o.position) + " m");
     lines.add("orientation", text_of(is_body_in_motion ? motion->orientation : o.orientation));
@@ -91,7 +91,7 @@ void print_object(Context& c, const link::Object& o, const Motion* motion, const
 
 void print_shape(Context& c, const link::Shape& s)
 {
-    title(c.console, s.id, "shape", s.type);
+    title(c.console, s.component_id, "shape", s.type_name);
     Lines lines;
     lines.add("form", s.form);
     lines.add("position in its body", text_of(s.position) + " m");
@@ -99,15 +99,16 @@ void print_shape(Context& c, const link::Shape& s)
     if (s.form == "sphere") lines.add("radius", number(s.size.x) + " m");
     if (s.form == "box") lines.add("half extents", text_of(s.size) + " m");
     if (s.form == "mesh")
-        lines.add("mesh", std::to_string(s.vertices.size()) + " vertices, " + std::to_string(s.triangles.size()) + " triangles");
+        lines.add("mesh",
+                  std::to_string(s.vertices.size()) + " vertices, " + std::to_string(link::triangles_of(s).size() / 3) + " triangles");
     lines.print(c.console);
 }
 
 void print_interaction(Context& c, const link::Interaction& i, const link::InteractionMetrics* m, const link::Type* type)
 {
-    title(c.console, i.id, "interaction", i.type);
+    title(c.console, i.component_id, "interaction", i.type_name);
     Lines lines;
-    lines.add("name", i.name == i.id ? "" : i.name);
+    lines.add("name", i.name == i.component_id ? "" : i.name);
     lines.add("family", i.family);
     for (const link::Participants& p : i.roles) lines.add(p.role, join(p.members));
     lines.add("since step", std::to_string(i.since));
@@ -135,12 +136,12 @@ std::string arity(const link::RoleInfo& r)
 
 void print_type(Context& c, const link::Type& t)
 {
-    title(c.console, t.name, "type", "");
+    title(c.console, t.type_name, "type", "");
     Lines lines;
     lines.add("does", t.doc);
     lines.add("family", t.family);
     lines.add("plugin", t.plugin);
-    lines.add("loaded", yes_no(t.loaded));
+    lines.add("loaded", yes_no(t.is_loaded));
     lines.add("order", t.order > 0 ? std::to_string(t.order) : "");
     lines.add("accuracy", t.accuracy);
     lines.add("good for", t.strengths);
@@ -188,10 +189,10 @@ Exit show_object(Context& c, const link::CatalogueContents& now, const link::Obj
     if (frame && frame->run == o.run)
         if (const auto at = frame->motions.find(o.handle); at != frame->motions.end()) motion = &at->second;
     if (!c.settings.json)
-        print_object(c, o, motion, find_type(now, o.type));
+        print_object(c, o, motion, find_type(now, o.type_name));
     else
     {
-        Json json = with_type(o.is_shaft ? "shaft" : "body", json_of(o), find_type(now, o.type));
+        Json json = with_type(link::is_shaft(o) ? "shaft" : "body", json_of(o), find_type(now, o.type_name));
         json["state"] = motion != nullptr ? json_of(*motion) : Json();
         print(c.console, json);
     }
@@ -200,12 +201,12 @@ Exit show_object(Context& c, const link::CatalogueContents& now, const link::Obj
 
 Exit show_interaction(Context& c, const link::CatalogueContents& now, const link::Interaction& i)
 {
-    const link::InteractionMetrics* const m = now.metrics ? now.metrics->find(i.id) : nullptr;
+    const link::InteractionMetrics* const m = link::find_metrics(now.metrics, i.component_id);
     if (!c.settings.json)
-        print_interaction(c, i, m, find_type(now, i.type));
+        print_interaction(c, i, m, find_type(now, i.type_name));
     else
     {
-        Json json = with_type("interaction", json_of(i), find_type(now, i.type));
+        Json json = with_type("interaction", json_of(i), find_type(now, i.type_name));
         json["metrics"] = m != nullptr ? json_of(*m) : Json();
         print(c.console, json);
     }
@@ -235,7 +236,7 @@ Exit run_show(Context& c, const std::string& id)
     if (const auto s = now.shapes.find(id); s != now.shapes.end())
     {
         if (c.settings.json)
-            print(c.console, with_type("shape", json_of(s->second), find_type(now, s->second.type)));
+            print(c.console, with_type("shape", json_of(s->second), find_type(now, s->second.type_name)));
         else
             print_shape(c, s->second);
         return Exit::Done;

@@ -5,6 +5,7 @@
 #include "control/commands.h"
 #include "control/stream.h"
 #include "control/watch_print.h"
+#include "idl/samples.h"
 #include "link/names.h"
 #include "link/numbers.h"
 
@@ -95,7 +96,7 @@ Exit watch_metrics(Watch& w)
                                    [&](const plab_v2_Metrics& sample)
                                    {
                                        if (!w.thinning.takes(sample.run, sample.time)) return;
-                                       w.printer.metrics(link::metrics_of(sample));
+                                       w.printer.metrics(wire::value_of<link::Metrics>(sample));
                                        w.limit.count();
                                    });
 }

@@ -25,7 +25,7 @@ Vec3 vector(const plab_v2_Vector& v) { return {v.x, v.y, v.z}; }
 std::string name_of(std::uint32_t handle, const link::Catalogue& catalogue)
 {
     const link::Object* const object = catalogue.find_object(handle);
-    return object != nullptr ? object->id : "#" + std::to_string(handle);
+    return object != nullptr ? object->component_id : "#" + std::to_string(handle);
 }
 
 Json frame_json(const Frame& f, const std::map<std::string, const Motion*>& motions)
@@ -87,12 +87,12 @@ void WatchPrinter::frame(const Frame& frame, const link::Catalogue& catalogue)
 void WatchPrinter::metrics(const link::Metrics& metrics)
 {
     link::Metrics m = metrics;
-    std::erase_if(m.interactions, [&](const link::InteractionMetrics& i) { return !selection_.takes(i.component); });
+    std::erase_if(m.interactions, [&](const link::InteractionMetrics& i) { return !selection_.takes(i.component_id); });
     if (json_) return print(console_, json_of(m));
     console_.out(console_.styled(Style::Bold, when(m.step, m.time)) + "  " +
                  (m.real_time_factor > 0 ? number(m.real_time_factor) + "x  " : "") + (m.step_ns > 0 ? duration_text(m.step_ns) : "-") +
-                 " a step  kinetic " + number(m.kinetic) + " J  stored " + number(m.stored) + " J  unexplained " + number(m.unexplained) +
-                 " J  " + std::to_string(m.contacts) + " contacts  deepest " + number(m.deepest) + " m\n");
+                 " a step  kinetic " + number(m.ledger.kinetic) + " J  stored " + number(m.ledger.stored) + " J  unexplained " +
+                 number(m.ledger.unexplained) + " J  " + std::to_string(m.contacts) + " contacts  deepest " + number(m.deepest) + " m\n");
     Table table({{"interaction", Align::Left, Shrink::Middle},
                  {"algorithm", Align::Left, Shrink::Middle},
                  {"cost/step", Align::Right},
@@ -101,7 +101,7 @@ void WatchPrinter::metrics(const link::Metrics& metrics)
                  {"work", Align::Right, Shrink::Never, 3},
                  {"state"}});
     for (const link::InteractionMetrics& i : m.interactions)
-        table.add({i.component, algorithm_of(i), cost_text(i), error_text(i), error_unit(i), number(i.work) + " J",
+        table.add({i.component_id, algorithm_of(i), cost_text(i), error_text(i), error_unit(i), number(i.work) + " J",
                    i.quarantined ? "quarantined" : ""},
                   i.quarantined ? Style::Red : Style::Plain);
     table.print(console_, !has_title_);

@@ -5,37 +5,14 @@
 #include <cstring>
 #include <random>
 
+#include "idl/samples.h"
+
 namespace plab::link
 {
 namespace
 {
 
 using Clock = std::chrono::steady_clock;
-
-std::vector<TransferredField> transferred_fields(const plab_v2_SwapReport& swap)
-{
-    std::vector<TransferredField> out;
-    for (std::uint32_t i = 0; i < swap.fields._length; ++i) out.push_back({swap.fields._buffer[i].name, swap.fields._buffer[i].fate});
-    return out;
-}
-
-StepOutcome outcome_of(const plab_v2_StepOutcome& o) { return {o.energy, {o.momentum.x, o.momentum.y, o.momentum.z}, o.error, o.cost_ns}; }
-
-Reply reply_of(const plab_v2_Reply& r)
-{
-    Reply out;
-    out.outcome = r.outcome, out.repeated = r.repeated;
-    for (std::uint32_t i = 0; i < r.reasons._length; ++i) out.reasons.emplace_back(r.reasons._buffer[i]);
-    out.run = r.run, out.revision = r.revision, out.step = r.step, out.time = r.time;
-    out.pause_ns = r.pause_ns, out.waited_ns = r.waited_ns, out.trial = r.trial;
-    for (std::uint32_t i = 0; i < r.swaps._length; ++i)
-    {
-        const plab_v2_SwapReport& s = r.swaps._buffer[i];
-        out.swaps.push_back({s.component_id, s.from_type, s.to_type, transferred_fields(s), s.energy_before, outcome_of(s.with_old),
-                             outcome_of(s.with_new)});
-    }
-    return out;
-}
 
 using Guid = std::array<std::uint8_t, sizeof(dds_guid_t)>;
 using Endpoint = dds_builtintopic_endpoint_t* (*)(dds_entity_t, dds_instance_handle_t);
@@ -72,14 +49,15 @@ bool reaches_server(const wire::Entity& requests, const wire::Entity& replies)
 struct Caller::State
 {
     const Session* session = nullptr;
-    plab_v2_ClientId id{};
+    wire::ClientId id{};
     std::uint64_t last = 0;
     wire::Reader<plab_v2_Reply> replies;  // its filter reads `id`: State never moves
     wire::Writer<plab_v2_Request> requests;
 
     static bool is_mine(const void* sample, void* self)
     {
-        return std::memcmp(static_cast<const plab_v2_Reply*>(sample)->client, static_cast<State*>(self)->id, sizeof(plab_v2_ClientId)) == 0;
+        return std::memcmp(static_cast<const plab_v2_Reply*>(sample)->client, static_cast<State*>(self)->id.data(),
+                           sizeof(wire::ClientId)) == 0;
     }
 };
 
@@ -117,26 +95,10 @@ Result<std::uint64_t> Caller::send(const Request& request)
 
 Result<void> Caller::send_again(const Request& request, std::uint64_t number)
 {
-    std::vector<std::vector<plab_v2_NamedText>> values;
-    std::vector<plab_v2_Operation> operations;
-    for (const Operation& op : request.operations)
-    {
-        std::vector<plab_v2_NamedText>& named = values.emplace_back();
-        for (const auto& [name, value] : op.values) named.push_back({wire::text(name), wire::text(value)});
-        const auto count = static_cast<std::uint32_t>(named.size());
-        operations.push_back({wire::text(op.verb),
-                              wire::text(op.target),
-                              wire::text(op.argument),
-                              wire::text(op.blueprint),
-                              {count, count, named.data(), false}});
-    }
-    plab_v2_Request sample{};
-    std::memcpy(sample.client, state_->id, sizeof sample.client);
-    sample.number = number, sample.at = request.at.value_or(-1);
-    sample.revision = request.revision ? static_cast<std::int64_t>(*request.revision) : -1;
-    const auto count = static_cast<std::uint32_t>(operations.size());
-    sample.operations = {count, count, operations.data(), false};
-    if (const dds_return_t code = state_->requests.write(sample); code != DDS_RETCODE_OK)
+    wire::Request whole{state_->id, number, request.at.value_or(-1), -1, request.operations};
+    if (request.revision) whole.revision = static_cast<std::int64_t>(*request.revision);
+    wire::SampleView<plab_v2_Request> view;
+    if (const dds_return_t code = state_->requests.write(view.of(whole)); code != DDS_RETCODE_OK)
         return wire::failed("cannot send the request", code);
     return {};
 }
@@ -146,7 +108,7 @@ void Caller::take(const std::function<void(std::uint64_t, Reply)>& handle)
     (void)state_->replies.take(
         [&](const plab_v2_Reply& reply, const dds_sample_info_t& info)
         {
-            if (info.valid_data) handle(reply.number, reply_of(reply));
+            if (info.valid_data) handle(reply.number, wire::value_of<Reply>(reply));
         });
 }
 

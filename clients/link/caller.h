@@ -9,49 +9,12 @@
 namespace plab::link
 {
 
-struct Operation
-{
-    std::string verb;  ///< see server/docs/requests.md
-    std::string target = {}, argument = {}, blueprint = {};
-    std::vector<std::pair<std::string, std::string>> values = {};
-};
-
+/// What a client asks for; the caller adds who asks, and a number.
 struct Request
 {
     std::vector<Operation> operations;
     std::optional<std::int64_t> at;  ///< step
     std::optional<std::uint64_t> revision;
-};
-
-struct TransferredField
-{
-    std::string name, transfer;
-};
-struct StepOutcome
-{
-    double energy = 0;
-    double momentum[3] = {0, 0, 0};
-    double error = 0, cost_ns = 0;
-};
-struct SwapReport
-{
-    std::string component, from, to;
-    std::vector<TransferredField> fields;
-    double energy_before = 0;
-    StepOutcome with_old, with_new;
-};
-struct Reply
-{
-    std::string outcome;  ///< "done", "refused", "late"
-    bool repeated = false;
-    std::vector<std::string> reasons;
-    std::uint64_t run = 0, revision = 0;
-    std::int64_t step = 0;
-    double time = 0, pause_ns = 0, waited_ns = 0;
-    std::vector<SwapReport> swaps;
-    std::string trial;  ///< how it was tested, in the server's words
-
-    bool done() const { return outcome == "done"; }
 };
 
 /// State of a server that did not reply.

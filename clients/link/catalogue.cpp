@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "link/catalogue_convert.h"
+#include "idl/samples.h"
 
 namespace plab::link
 {
@@ -27,17 +27,17 @@ Result<void> open_reader(const Session& session, bool wanted, wire::Reader<T>& r
 }
 
 /// Updates `things` with the reader's samples; true if there were any.
-template <class T, class Thing, class KeyOf, class Convert>
-bool take_into(wire::Reader<T>& reader, std::map<std::string, Thing>& things, KeyOf key_of, Convert convert)
+template <class T, class Thing>
+bool take_into(wire::Reader<T>& reader, std::map<std::string, Thing>& things, char* T::*key)
 {
     if (!reader.entity().valid()) return false;
     const dds_return_t taken = reader.take(
         [&](const T& sample, const dds_sample_info_t& info)
         {
             if (info.instance_state != DDS_IST_ALIVE)
-                things.erase(key_of(sample));
+                things.erase(sample.*key);
             else if (info.valid_data)
-                things.insert_or_assign(key_of(sample), convert(sample));
+                wire::read_sample(sample, things[sample.*key]);
         });
     return taken > 0;
 }
@@ -48,19 +48,6 @@ std::string count_text(const char* what, std::size_t got, std::size_t wanted)
 }
 
 }  // namespace
-
-const Parameter* InteractionMetrics::account(std::string_view name) const
-{
-    for (const Parameter& p : outputs)
-        if (p.kind == "account" && p.name == name) return &p;
-    return nullptr;
-}
-
-const InteractionMetrics* Metrics::find(const std::string& component) const
-{
-    const auto at = std::find_if(interactions.begin(), interactions.end(), [&](const auto& i) { return i.component == component; });
-    return at == interactions.end() ? nullptr : &*at;
-}
 
 Result<Catalogue> Catalogue::open(const Session& session, Parts parts)
 {
@@ -149,13 +136,13 @@ bool Catalogue::take_state()
                            if (info.instance_state != DDS_IST_ALIVE)
                                now_.server.reset();
                            else if (info.valid_data)
-                               now_.server = server_of(sample), was_there_ = true;
+                               now_.server = wire::value_of<ServerInfo>(sample), was_there_ = true;
                        }) > 0;
     if (!metrics_.entity().valid()) return changed;
     changed |= metrics_.take(
                    [&](const plab_v2_Metrics& sample, const dds_sample_info_t& info)
                    {
-                       if (info.valid_data) now_.metrics = metrics_of(sample);
+                       if (info.valid_data) now_.metrics = wire::value_of<Metrics>(sample);
                    }) > 0;
     return changed;
 }
@@ -165,14 +152,12 @@ bool Catalogue::take_things()
     bool changed = scene_.take(
                        [&](const plab_v2_Scene& sample, const dds_sample_info_t& info)
                        {
-                           if (info.valid_data && info.instance_state == DDS_IST_ALIVE) now_.scene = scene_of(sample);
+                           if (info.valid_data && info.instance_state == DDS_IST_ALIVE) now_.scene = wire::value_of<Scene>(sample);
                        }) > 0;
-    const auto component = [](const auto& sample) { return std::string(sample.component_id); };
-    changed |= take_into(objects_, now_.objects, component, object_of);
-    changed |= take_into(shapes_, now_.shapes, component, shape_of);
-    changed |= take_into(interactions_, now_.interactions, component, interaction_of);
-    changed |= take_into(
-        types_, now_.types, [](const plab_v2_Type& t) { return std::string(t.type_name); }, type_of);
+    changed |= take_into(objects_, now_.objects, &plab_v2_SceneObject::component_id);
+    changed |= take_into(shapes_, now_.shapes, &plab_v2_Shape::component_id);
+    changed |= take_into(interactions_, now_.interactions, &plab_v2_Interaction::component_id);
+    changed |= take_into(types_, now_.types, &plab_v2_Type::type_name);
     return changed;
 }
 

@@ -1,4 +1,4 @@
-/// What a server says of its scene, as plain structs: a snapshot that can be kept up to date.
+/// What a server says of its scene, as plain values: a snapshot that can be kept up to date.
 ///
 ///   auto catalogue = link::Catalogue::open(session);
 ///   if (catalogue->fetch(2s)) for (const auto& [id, object] : catalogue->now().objects) ...
@@ -11,14 +11,10 @@
 #include <map>
 #include <optional>
 
-#include "link/catalogue_data.h"
 #include "link/session.h"
 
 namespace plab::link
 {
-
-/// The sample as a plain struct, for code that reads the topic itself.
-Metrics metrics_of(const plab_v2_Metrics& sample);
 
 /// The topics that a catalogue reads. Omitted topics cost nothing.
 enum class Part : unsigned

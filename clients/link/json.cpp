@@ -1,5 +1,8 @@
 #include "link/json.h"
 
+#include <initializer_list>
+
+#include "idl/samples.h"
 #include "link/json_text.h"
 
 namespace plab::link
@@ -7,259 +10,164 @@ namespace plab::link
 namespace
 {
 
-Json outcome(const StepOutcome& o)
+/// A list of these is an object: the first member is the key; where there are only two, the second one is the value.
+template <class T>
+inline constexpr bool kIsKeyed = false;
+template <>
+inline constexpr bool kIsKeyed<Parameter> = true;
+template <>
+inline constexpr bool kIsKeyed<Participants> = true;
+template <>
+inline constexpr bool kIsKeyed<FieldFate> = true;
+template <>
+inline constexpr bool kIsKeyed<InteractionMetrics> = true;
+template <>
+inline constexpr bool kIsKeyed<wire::DroppedSamples> = true;
+
+/// The key of a member of T: its name on the bus, or a shorter one.
+template <class T>
+std::string_view key_of(std::string_view member)
 {
-    return {{"energy", o.energy}, {"momentum", {o.momentum[0], o.momentum[1], o.momentum[2]}}, {"error", o.error}, {"cost_ns", o.cost_ns}};
+    constexpr bool kIsReport = std::is_same_v<T, SwapReport> || std::is_same_v<T, EventInfo>;
+    if (member == "component_id") return kIsReport ? "component" : "id";
+    if (member == "type_name") return std::is_same_v<T, Type> ? "name" : "type";
+    if (member == "shape_of") return "kind";
+    if (member == "is_loaded") return "loaded";
+    if (member == "from_type") return "from";
+    if (member == "to_type") return "to";
+    if (member == "ledger") return "energy";
+    return member;
 }
 
-Json roles(const std::vector<Participants>& participants)
+template <class T>
+Json json_from(const T& value);
+
+/// All members by their keys.
+template <class T>
+Json members_of(const T& value)
 {
     Json out = Json::object();
-    for (const Participants& p : participants) out[p.role] = p.members;
+    for_each_member([&](const char* name, const auto& member) { out[std::string(key_of<T>(name))] = json_from(member); }, value);
     return out;
 }
 
-Json field(const FieldInfo& f)
+/// Moves these members behind the others, in this order.
+Json with_last(Json json, std::initializer_list<const char*> keys)
 {
-    return {{"name", f.name},
-            {"kind", f.kind},
-            {"value_type", f.value_type},
-            {"unit", f.unit},
-            {"fallback", f.fallback},
-            {"required", f.required},
-            {"rule", f.rule},
-            {"doc", f.doc}};
+    for (const char* key : keys)
+    {
+        Json value = std::move(json.at(key));
+        json.erase(key);
+        json[key] = std::move(value);
+    }
+    return json;
 }
 
-Json role(const RoleInfo& r)
-{
-    const Json most = r.most == kAnyNumber ? Json() : Json(r.most);
-    return {{"name", r.name}, {"accepts", r.accepts}, {"least", r.least}, {"most", most}, {"doc", r.doc}};
-}
+// Where the JSON of a type is more than its members.
+Json form_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+Json form_of(const Quat& q) { return Json::array({q.w, q.x, q.y, q.z}); }
 
-template <class T, class Convert>
-Json array(const std::vector<T>& items, Convert convert)
+Json form_of(const wire::RecordingInfo& r) { return r.file.empty() ? Json() : with_last(members_of(r), {"bytes", "messages", "dropped"}); }
+
+Json form_of(const ServerInfo& s)
 {
-    Json out = Json::array();
-    for (const T& item : items) out.push_back(convert(item));
+    Json out = members_of(s);
+    if (s.rewind_from < 0) out["rewind_from"] = nullptr;
     return out;
 }
 
-Json kept(const ServerInfo::KeptSnapshot& s)
+Json form_of(const Object& o)
 {
-    return {{"name", s.name}, {"run", s.run}, {"step", s.step}, {"time", s.time}, {"bytes", s.bytes}};
+    Json all = members_of(o), out;
+    for (auto& [key, value] : all.items()) out[key == "mass" && is_shaft(o) ? "inertia" : key] = std::move(value);
+    if (!color_of(o)) out["color"] = nullptr;
+    return with_last(std::move(out), {"handle", "run", "quarantined", "parameters"});
 }
 
-/// Null where nothing is recorded.
-Json recording(const ServerInfo::Recording& r)
+Json form_of(const Shape& s)
 {
-    if (r.file.empty()) return {};
-    return {{"file", r.file}, {"trouble", r.trouble}, {"bytes", r.bytes}, {"messages", r.messages}, {"dropped", r.dropped}};
+    Shape head = s;
+    head.vertices.clear(), head.triangles.clear();
+    Json out = members_of(head);
+    out["vertices"] = s.vertices.size(), out["triangles"] = triangles_of(s).size() / 3;
+    return out;
 }
 
-Json triple(const plab_v2_Vector& v) { return Json::array({v.x, v.y, v.z}); }
-
-/// What the entries of events and of collisions begin with.
-template <class Sample>
-Json place(const Sample& sample, std::uint32_t entry)
+Json form_of(const RoleInfo& r)
 {
-    return {{"run", sample.run}, {"sequence_number", sample.sequence_number + entry}, {"step", sample.step}};
+    Json out = members_of(r);
+    if (r.most == kAnyNumber) out["most"] = nullptr;
+    return out;
+}
+
+Json form_of(const InteractionMetrics& m) { return with_last(members_of(m), {"quarantined"}); }
+
+Json form_of(const Reply& r)
+{
+    Json out = members_of(r);
+    out.erase("client"), out.erase("number");
+    return out;
+}
+
+template <class T>
+Json form_of(const std::vector<T>& items)
+{
+    Json out = kIsKeyed<T> ? Json::object() : Json::array();
+    for (const T& item : items)
+    {
+        Json json = json_from(item);
+        if constexpr (!kIsKeyed<T>)
+            out.push_back(std::move(json));
+        else
+        {
+            const std::string key = json.begin().value();
+            json.erase(json.begin());
+            out[key] = json.size() == 1 ? json.begin().value() : json;
+        }
+    }
+    return out;
+}
+
+template <class T>
+Json json_from(const T& value)
+{
+    if constexpr (requires { form_of(value); })
+        return form_of(value);
+    else if constexpr (Described<T>)
+        return members_of(value);
+    else
+        return value;
+}
+
+/// One entry of events or of collisions, with its place in front.
+template <class Entry, class Sample>
+Json placed(const Sample& sample, std::uint32_t entry)
+{
+    const auto& one = sample.entries._buffer[entry];
+    Json out{{"run", sample.run}, {"sequence_number", sample.sequence_number + entry}, {"step", sample.step}, {"time", one.time}};
+    out.update(members_of(wire::value_of<Entry>(one)));
+    return out;
 }
 
 }  // namespace
 
-Json json_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
-Json json_of(const Quat& q) { return Json::array({q.w, q.x, q.y, q.z}); }
-
-Json json_of(const ServerInfo& s)
-{
-    Json dropped = Json::object();
-    for (const auto& [topic, samples] : s.dropped) dropped[topic] = samples;
-    return {{"name", s.name},
-            {"version", s.version},
-            {"host", s.host},
-            {"process", s.process},
-            {"started_ns", s.started_ns},
-            {"scene_file", s.scene_file},
-            {"run", s.run},
-            {"revision", s.revision},
-            {"step", s.step},
-            {"time", s.time},
-            {"dt", s.dt},
-            {"paused", s.paused},
-            {"rate_asked", s.rate_asked},
-            {"rate_reached", s.rate_reached},
-            {"slipped", s.slipped},
-            {"overload", s.overload},
-            {"states_per_second", s.states_per_second},
-            {"threads", s.threads},
-            {"last_event", s.last_event},
-            {"last_collision", s.last_collision},
-            {"requests_done", s.requests_done},
-            {"requests_refused", s.requests_refused},
-            {"dropped", dropped},
-            {"playback", s.playback},
-            {"rewind_from", s.rewind_from < 0 ? Json() : Json(s.rewind_from)},
-            {"snapshots", array(s.snapshots, kept)},
-            {"recording", recording(s.recording)}};
-}
-
-Json json_of(const std::vector<Parameter>& parameters)
-{
-    Json out = Json::object();
-    for (const Parameter& p : parameters) out[p.name] = {{"text", p.text}, {"unit", p.unit}, {"kind", p.kind}};
-    return out;
-}
-
-Json json_of(const Object& o)
-{
-    return {{"id", o.id},
-            {"name", o.name},
-            {"type", o.type},
-            {"kind", o.is_shaft ? "shaft" : "body"},
-            {"motion", o.motion},
-            {o.is_shaft ? "inertia" : "mass", o.mass},
-            {"position", json_of(o.position)},
-            {"orientation", json_of(o.orientation)},
-            {"color", o.color ? json_of(*o.color) : Json()},
-            {"shapes", o.shapes},
-            {"handle", o.handle},
-            {"run", o.run},
-            {"quarantined", o.quarantined},
-            {"parameters", json_of(o.parameters)}};
-}
-
-Json json_of(const Shape& s)
-{
-    return {{"id", s.id},
-            {"type", s.type},
-            {"form", s.form},
-            {"position", json_of(s.position)},
-            {"orientation", json_of(s.orientation)},
-            {"size", json_of(s.size)},
-            {"vertices", s.vertices.size()},
-            {"triangles", s.triangles.size()}};
-}
-
-Json json_of(const Interaction& i)
-{
-    return {{"id", i.id},
-            {"name", i.name},
-            {"type", i.type},
-            {"family", i.family},
-            {"run", i.run},
-            {"since", i.since},
-            {"roles", roles(i.roles)},
-            {"quarantined", i.quarantined},
-            {"parameters", json_of(i.parameters)}};
-}
-
+Json json_of(const Vec3& v) { return form_of(v); }
+Json json_of(const Quat& q) { return form_of(q); }
+Json json_of(const ServerInfo& s) { return form_of(s); }
+Json json_of(const Object& o) { return form_of(o); }
+Json json_of(const Shape& s) { return form_of(s); }
+Json json_of(const Interaction& i) { return members_of(i); }
 Json json_of(const InteractionMetrics& m)
 {
-    return {{"requested", m.requested}, {"resolved", m.resolved}, {"cost_ns", m.cost_ns},
-            {"error", m.error},         {"work", m.work},         {"outputs", json_of(m.outputs)}};
-}
-
-Json json_of(const Metrics& m)
-{
-    Json interactions = Json::object();
-    for (const InteractionMetrics& i : m.interactions)
-    {
-        interactions[i.component] = json_of(i);
-        interactions[i.component]["quarantined"] = i.quarantined;
-    }
-    return {
-        {"run", m.run},
-        {"revision", m.revision},
-        {"step", m.step},
-        {"time", m.time},
-        {"step_ns", m.step_ns},
-        {"real_time_factor", m.real_time_factor},
-        {"energy",
-         {{"kinetic", m.kinetic}, {"stored", m.stored}, {"work", m.work}, {"of_requests", m.of_requests}, {"unexplained", m.unexplained}}},
-        {"momentum", json_of(m.momentum)},
-        {"angular_momentum", json_of(m.angular_momentum)},
-        {"residual", m.residual},
-        {"deepest", m.deepest},
-        {"contacts", m.contacts},
-        {"interactions", interactions}};
-}
-
-Json json_of(const Type& t)
-{
-    return {{"name", t.name},
-            {"family", t.family},
-            {"doc", t.doc},
-            {"plugin", t.plugin},
-            {"loaded", t.loaded},
-            {"order", t.order},
-            {"accuracy", t.accuracy},
-            {"strengths", t.strengths},
-            {"cost", t.cost},
-            {"limits", t.limits},
-            {"source", t.source},
-            {"roles", array(t.roles, role)},
-            {"fields", array(t.fields, field)}};
-}
-
-Json json_of(const SwapReport& s)
-{
-    Json fields = Json::object();
-    for (const TransferredField& f : s.fields) fields[f.name] = f.transfer;
-    return {{"component", s.component},
-            {"from", s.from},
-            {"to", s.to},
-            {"fields", fields},
-            {"energy_before", s.energy_before},
-            {"with_old", outcome(s.with_old)},
-            {"with_new", outcome(s.with_new)}};
-}
-
-Json json_of(const Reply& r)
-{
-    return {{"outcome", r.outcome},
-            {"repeated", r.repeated},
-            {"reasons", r.reasons},
-            {"run", r.run},
-            {"revision", r.revision},
-            {"step", r.step},
-            {"time", r.time},
-            {"pause_ns", r.pause_ns},
-            {"waited_ns", r.waited_ns},
-            {"trial", r.trial},
-            {"swaps", array(r.swaps, [](const SwapReport& s) { return json_of(s); })}};
-}
-
-Json json_of(const plab_v2_Events& sample, std::uint32_t entry)
-{
-    const plab_v2_EventInfo& e = sample.entries._buffer[entry];
-    Json out = place(sample, entry);
-    out.update({{"time", e.time},
-                {"kind", e.kind},
-                {"severity", e.severity},
-                {"component", e.component_id},
-                {"a", e.a},
-                {"b", e.b},
-                {"message", e.message},
-                {"values", std::vector<double>(e.values._buffer, e.values._buffer + e.values._length)}});
+    Json out = members_of(m);
+    out.erase("id"), out.erase("quarantined");
     return out;
 }
-
-Json json_of(const plab_v2_Collisions& sample, std::uint32_t entry)
-{
-    const plab_v2_CollisionInfo& c = sample.entries._buffer[entry];
-    Json out = place(sample, entry);
-    out.update({{"time", c.time},
-                {"kind", c.kind},
-                {"detector", c.detector},
-                {"a", c.a},
-                {"b", c.b},
-                {"position", triple(c.position)},
-                {"normal", triple(c.normal)},
-                {"impulse", triple(c.impulse)},
-                {"depth", c.depth}});
-    return out;
-}
+Json json_of(const Metrics& m) { return members_of(m); }
+Json json_of(const Type& t) { return members_of(t); }
+Json json_of(const Reply& r) { return form_of(r); }
+Json json_of(const plab_v2_Events& sample, std::uint32_t entry) { return placed<EventInfo>(sample, entry); }
+Json json_of(const plab_v2_Collisions& sample, std::uint32_t entry) { return placed<wire::CollisionInfo>(sample, entry); }
 
 std::string line_of(const Json& json) { return safe_json(json.dump(-1, ' ', false, Json::error_handler_t::replace)); }
 

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <map>
 
+#include "idl/samples.h"
+
 namespace plab::link
 {
 namespace
@@ -21,28 +23,6 @@ std::string names_of(const std::vector<ServerInfo>& servers)
 }
 
 }  // namespace
-
-ServerInfo server_of(const plab_v2_Server& s)
-{
-    ServerInfo out;
-    out.name = s.name, out.version = s.version, out.host = s.host, out.scene_file = s.scene_file;
-    out.process = s.process, out.run = s.run, out.revision = s.revision, out.step = s.step;
-    out.time = s.time, out.dt = s.dt, out.rate_asked = s.rate_asked, out.rate_reached = s.rate_reached, out.slipped = s.slipped;
-    out.paused = s.paused, out.started_ns = s.started_ns, out.overload = s.overload;
-    out.states_per_second = s.states_per_second, out.threads = s.threads;
-    out.last_event = s.last_event, out.last_collision = s.last_collision;
-    out.requests_done = s.requests_done, out.requests_refused = s.requests_refused;
-    for (std::uint32_t i = 0; i < s.dropped._length; ++i)
-        out.dropped.emplace_back(s.dropped._buffer[i].topic, s.dropped._buffer[i].samples);
-    out.playback = s.playback, out.rewind_from = s.rewind_from;
-    for (std::uint32_t i = 0; i < s.snapshots._length; ++i)
-    {
-        const plab_v2_KeptSnapshot& k = s.snapshots._buffer[i];
-        out.snapshots.push_back({k.name, k.run, k.step, k.time, k.bytes});
-    }
-    out.recording = {s.recording.file, s.recording.trouble, s.recording.bytes, s.recording.messages, s.recording.dropped};
-    return out;
-}
 
 Result<SessionOptions> options_from_environment()
 {
@@ -122,7 +102,7 @@ std::vector<ServerInfo> Session::servers_in(const std::string& partition, Second
             [&](const plab_v2_Server& s, const dds_sample_info_t& sample)
             {
                 if (sample.valid_data && sample.instance_state == DDS_IST_ALIVE)
-                    seen[s.name] = server_of(s);
+                    wire::read_sample(s, seen[s.name]);
                 else
                     seen.erase(s.name);
             });

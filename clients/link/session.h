@@ -11,6 +11,7 @@
 
 #include "idl/domain.h"
 #include "link/duration.h"
+#include "link/values.h"
 
 namespace plab::link
 {
@@ -26,43 +27,6 @@ struct SessionOptions
 
 /// From PLAB_SERVER, PLAB_DOMAIN and PLAB_INTERFACE, if set.
 Result<SessionOptions> options_from_environment();
-
-/// What a server publishes about itself.
-struct ServerInfo
-{
-    std::string name, version, host, scene_file;
-    std::int32_t process = 0;
-    std::uint64_t run = 0, revision = 0;
-    std::int64_t step = 0;
-    double time = 0, dt = 0, rate_asked = 0, rate_reached = 0, slipped = 0;
-    bool paused = false;
-    std::int64_t started_ns = 0;
-    std::string overload;  ///< "" or how steps that take too long are handled: "slip"
-    double states_per_second = 0;
-    std::uint32_t threads = 0;
-    std::uint64_t last_event = 0, last_collision = 0;  ///< sequence numbers
-    std::uint64_t requests_done = 0, requests_refused = 0;
-    std::vector<std::pair<std::string, std::uint64_t>> dropped = {};  ///< topic, number of samples that rings in the server dropped
-    std::string playback = {};                                        ///< file that is played back; empty: it is a simulation
-    double rewind_from = -1;                                          ///< s; negative: a rewind is not possible
-    struct KeptSnapshot
-    {
-        std::string name;
-        std::uint64_t run = 0;
-        std::int64_t step = 0;
-        double time = 0;  ///< s
-        std::uint64_t bytes = 0;
-    };
-    std::vector<KeptSnapshot> snapshots = {};
-    struct Recording
-    {
-        std::string file, trouble;
-        std::uint64_t bytes = 0, messages = 0, dropped = 0;
-    };
-    Recording recording = {};
-};
-
-ServerInfo server_of(const plab_v2_Server& sample);
 
 class Session
 {

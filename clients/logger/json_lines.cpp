@@ -1,5 +1,6 @@
 // Each line is an object whose "type" is one of event, collision, metrics, status, gap, run, server. The other keys are those
 // that plabctl writes with --json.
+#include "idl/samples.h"
 #include "link/json.h"
 #include "logger/lines.h"
 
@@ -31,9 +32,15 @@ public:
         return line("collision", link::json_of(sample, index));
     }
 
-    std::string metrics(const plab_v2_Metrics& sample) const override { return line("metrics", link::json_of(link::metrics_of(sample))); }
+    std::string metrics(const plab_v2_Metrics& sample) const override
+    {
+        return line("metrics", link::json_of(wire::value_of<link::Metrics>(sample)));
+    }
 
-    std::string status(const plab_v2_Server& sample) const override { return line("status", link::json_of(link::server_of(sample))); }
+    std::string status(const plab_v2_Server& sample) const override
+    {
+        return line("status", link::json_of(wire::value_of<link::ServerInfo>(sample)));
+    }
 
     std::string gap(const Gap& gap) const override
     {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "idl/samples.h"
+
 namespace plab::logger
 {
 namespace
@@ -90,7 +92,7 @@ void Logger::take_server()
                 is_there_ = false;
                 return;
             }
-            const link::ServerInfo now = link::server_of(sample);
+            const link::ServerInfo now = wire::value_of<link::ServerInfo>(sample);
             const bool is_another = was_there_ && now.started_ns != last_.started_ns;
             // A server that was killed counts as gone only when its lease is over; its successor may appear before that.
             if (is_there_ && is_another) say_server(ServerChange::Gone, last_);

@@ -24,7 +24,7 @@ std::vector<std::string> choose(const link::CatalogueContents& scene)
     std::vector<std::pair<double, std::string>> ranked;
     for (const auto& [id, interaction] : scene.interactions)
     {
-        const link::InteractionMetrics* const metrics = scene.metrics ? scene.metrics->find(id) : nullptr;
+        const link::InteractionMetrics* const metrics = link::find_metrics(scene.metrics, id);
         ranked.emplace_back(metrics != nullptr ? metrics->cost_ns : 0.0, id);
     }
     if (ranked.size() > Captions::kMostLines)
@@ -52,7 +52,8 @@ void Captions::use(const link::CatalogueContents& scene)
     for (const auto& [id, interaction] : scene.interactions)
     {
         std::vector<Change>& changes = algorithms_[id];
-        if (changes.empty() || changes.back().second != interaction.type) changes.emplace_back(interaction.since, interaction.type);
+        if (changes.empty() || changes.back().second != interaction.type_name)
+            changes.emplace_back(interaction.since, interaction.type_name);
         if (changes.size() > kMostChanges) changes.erase(changes.begin());
         quarantined_[id] = interaction.quarantined;
     }

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "idl/recording/format.h"
-#include "link/catalogue_convert.h"
+#include "idl/samples.h"
 #include "viewer/scene_model.h"
 
 namespace plab::view
@@ -34,7 +34,7 @@ std::optional<link::Metrics> metrics_of(recording::ByteView bytes)
     recording::Sample<plab_v2_Metrics> sample;
     recording::Decoder decoder;
     if (!decoder.decode(bytes, sample)) return {};
-    return link::metrics_of(*sample);
+    return wire::value_of<link::Metrics>(*sample);
 }
 
 /// The last ones until `time`, or the first ones; empty: there are none.
@@ -194,10 +194,10 @@ void FileSource::apply(const recording::Found& found)
     recording::Sample<plab_v2_Shape> shape;
     recording::Sample<plab_v2_Interaction> interaction;
     recording::Sample<plab_v2_Gone> gone;
-    if (decoded(scene)) now_.scene = link::scene_of(*scene);
-    if (decoded(object)) now_.objects.insert_or_assign(object->component_id, link::object_of(*object));
-    if (decoded(shape)) now_.shapes.insert_or_assign(shape->component_id, link::shape_of(*shape));
-    if (decoded(interaction)) now_.interactions.insert_or_assign(interaction->component_id, link::interaction_of(*interaction));
+    if (decoded(scene)) now_.scene = wire::value_of<link::Scene>(*scene);
+    if (decoded(object)) wire::read_sample(*object, now_.objects[object->component_id]);
+    if (decoded(shape)) wire::read_sample(*shape, now_.shapes[shape->component_id]);
+    if (decoded(interaction)) wire::read_sample(*interaction, now_.interactions[interaction->component_id]);
     if (decoded(gone)) erase(gone->topic_name, gone->component_id);
 }
 
@@ -231,7 +231,7 @@ std::optional<link::ServerInfo> FileSource::server() const
     recording::Sample<plab_v2_Server> sample;
     recording::Decoder decoder;
     if (!decoder.decode((*last)->data, sample)) return {};
-    return link::server_of(*sample);
+    return wire::value_of<link::ServerInfo>(*sample);
 }
 
 }  // namespace plab::view

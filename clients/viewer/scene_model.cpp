@@ -47,17 +47,10 @@ double angle_of(const link::Object& shaft)
 
 bool same_mesh(const render::Mesh& mesh, const link::Shape& shape)
 {
-    const auto equal = [](std::uint32_t a, std::uint32_t b) { return a == b; };
-    return mesh.vertices == shape.vertices && mesh.triangles.size() == 3 * shape.triangles.size() &&
-           (shape.triangles.empty() || std::equal(mesh.triangles.begin(), mesh.triangles.end(), shape.triangles.front().data(), equal));
+    return mesh.vertices == shape.vertices && mesh.triangles == link::triangles_of(shape);
 }
 
-render::Mesh mesh_of(const link::Shape& shape)
-{
-    render::Mesh out{shape.vertices, {}};
-    for (const auto& triangle : shape.triangles) out.triangles.insert(out.triangles.end(), triangle.begin(), triangle.end());
-    return out;
-}
+render::Mesh mesh_of(const link::Shape& shape) { return {shape.vertices, link::triangles_of(shape)}; }
 
 }  // namespace
 
@@ -92,7 +85,7 @@ State state_of_catalogue(const link::CatalogueContents& scene, const link::Serve
     State out{server.run, server.revision, server.step, server.time, {}, {}};
     for (const auto& [id, object] : scene.objects)
     {
-        if (object.is_shaft)
+        if (link::is_shaft(object))
             out.shafts.push_back({object.handle, angle_of(object)});
         else if (object.motion != "static")
             out.bodies.push_back({object.handle, {object.position, object.orientation}});
@@ -120,7 +113,7 @@ void SceneModel::rebuild_meshes()
         if (form_of(shape.form) == render::Form::Mesh) wanted.push_back(&shape);
     const auto as_before = [this](const link::Shape* shape)
     {
-        const auto known = std::find(mesh_ids_.begin(), mesh_ids_.end(), shape->id);
+        const auto known = std::find(mesh_ids_.begin(), mesh_ids_.end(), shape->component_id);
         return known != mesh_ids_.end() && same_mesh(drawing_.meshes[static_cast<std::size_t>(known - mesh_ids_.begin())], *shape);
     };
     if (wanted.size() == mesh_ids_.size() && std::all_of(wanted.begin(), wanted.end(), as_before)) return;
@@ -128,7 +121,7 @@ void SceneModel::rebuild_meshes()
     drawing_.meshes.clear();
     for (const link::Shape* shape : wanted)
     {
-        mesh_ids_.push_back(shape->id);
+        mesh_ids_.push_back(shape->component_id);
         drawing_.meshes.push_back(mesh_of(*shape));
     }
     ++drawing_.meshes_revision;
@@ -151,11 +144,11 @@ void SceneModel::add_parts(const link::Object& object, const Vec3& color, std::v
 
 void SceneModel::add_prop(const link::Object& object)
 {
-    const bool is_static = !object.is_shaft && object.motion == "static";
-    const Vec3 color = object.color.value_or(is_static ? kStaticColor : color_of_id(object.id));
-    Prop prop{object.id, object.handle, object.run, object.is_shaft, is_static, {object.position, object.orientation}, {}};
+    const bool is_static = !link::is_shaft(object) && object.motion == "static";
+    const Vec3 color = link::color_of(object).value_or(is_static ? kStaticColor : color_of_id(object.component_id));
+    Prop prop{object.component_id, object.handle, object.run, link::is_shaft(object), is_static, {object.position, object.orientation}, {}};
     add_parts(object, color, prop.parts);
-    if (object.is_shaft && object.shapes.empty())
+    if (link::is_shaft(object) && object.shapes.empty())
     {
         const Axle axle = axle_of_inertia(object.mass);
         prop.parts.push_back({render::Form::Cylinder, {}, {axle.radius, axle.radius, axle.half_length}, color, 0});

@@ -37,9 +37,9 @@ class Bus : public publish::Observer
 {
 public:
     /// The oldest request that has not been taken yet. Each request is handed out once, however often its client sent it.
-    virtual bool take(publish::RequestText& request) = 0;
+    virtual bool take(publish::ReceivedRequest& request) = 0;
     /// Sends an answer to the client that asked, and to no other client. Never dropped.
-    virtual void answer(publish::Answer&& answer) = 0;
+    virtual void answer(wire::Reply&& answer) = 0;
     /// Empty while all is well; otherwise the reason why this server must end (another server has its name).
     virtual std::string lost() const = 0;
     /// What happened to the process that talks to the clients, if it ended and was replaced since the last call.

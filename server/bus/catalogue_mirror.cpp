@@ -14,15 +14,15 @@ void CatalogueMirror::apply(const publish::CatalogueChange& change)
     // An id belongs to one component: if it comes back as another kind, remove the entry of the former kind.
     const auto put = [&](auto& known, const auto& entries)
     {
-        for (const auto& entry : entries) erase(entry.component), known.insert_or_assign(entry.component, entry);
+        for (const auto& entry : entries) erase(entry.component_id), known.insert_or_assign(entry.component_id, entry);
     };
     put(shapes_, change.shapes), put(objects_, change.objects), put(interactions_, change.interactions);
     if (change.everything && !change.types.empty())
         types_ = change.types;
     else
-        for (const model::TypeSummary& type : change.types)
+        for (const wire::Type& type : change.types)
         {
-            const auto known = std::find_if(types_.begin(), types_.end(), [&](const auto& t) { return t.name == type.name; });
+            const auto known = std::find_if(types_.begin(), types_.end(), [&](const auto& t) { return t.type_name == type.type_name; });
             known == types_.end() ? types_.push_back(type) : void(*known = type);
         }
     scene_ = change.scene;

@@ -22,11 +22,11 @@ private:
     using EntriesById = std::map<std::string, Entry>;
 
     bool is_there_ = false;
-    publish::SceneEntry scene_;
-    EntriesById<publish::ObjectEntry> objects_;
-    EntriesById<publish::ShapeEntry> shapes_;
-    EntriesById<publish::InteractionEntry> interactions_;
-    std::vector<model::TypeSummary> types_;
+    wire::Scene scene_;
+    EntriesById<wire::SceneObject> objects_;
+    EntriesById<wire::Shape> shapes_;
+    EntriesById<wire::Interaction> interactions_;
+    std::vector<wire::Type> types_;
 };
 
 }  // namespace plab::bus

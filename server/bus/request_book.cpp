@@ -9,23 +9,23 @@ namespace
 {
 
 /// Approximate memory that a stored answer needs.
-std::size_t bytes_of(const publish::Answer& answer)
+std::size_t bytes_of(const wire::Reply& answer)
 {
     std::size_t bytes = sizeof answer;
-    for (const Error& e : answer.reply.errors) bytes += sizeof e + e.where.file.size() + e.element.size() + e.reason.size();
-    for (const simulation::SwapReport& swap : answer.reply.swaps)
+    for (const std::string& reason : answer.reasons) bytes += sizeof reason + reason.size();
+    for (const wire::SwapReport& swap : answer.swaps)
     {
-        bytes += sizeof swap + swap.id.size() + swap.from.size() + swap.to.size();
-        for (const simulation::TransferredField& transfer : swap.fields) bytes += sizeof transfer + transfer.field.size();
+        bytes += sizeof swap + swap.component_id.size() + swap.from_type.size() + swap.to_type.size();
+        for (const wire::FieldFate& field : swap.fields) bytes += sizeof field + field.name.size();
     }
     return bytes;
 }
 
-publish::Answer refusal(const publish::ClientId& client, std::uint64_t number, Error why)
+wire::Reply refusal(const wire::ClientId& client, std::uint64_t number, Error why)
 {
-    publish::Answer answer;
-    answer.client = client, answer.number = number;
-    answer.reply.errors.push_back(std::move(why));
+    wire::Reply answer;
+    answer.client = client, answer.number = number, answer.outcome = "refused", answer.trial = "none";
+    answer.reasons.push_back(why.text());
     return answer;
 }
 
@@ -35,7 +35,7 @@ Error full(const std::string& what) { return reason(what + " already waiting: se
 
 }  // namespace
 
-RequestBook::Client& RequestBook::client_of(const publish::ClientId& id)
+RequestBook::Client& RequestBook::client_of(const wire::ClientId& id)
 {
     const auto found = by_id_.find(id);
     if (found != by_id_.end())
@@ -111,11 +111,10 @@ void RequestBook::discount(Client& client, const Load& load)
     if (load.names_step) take(with_step_);
 }
 
-RequestBook::Decision RequestBook::open(const publish::ClientId& id, std::uint64_t number, const Load& load,
-                                        const std::optional<Error>& wrong)
+RequestBook::Decision RequestBook::open(const wire::ClientId& id, std::uint64_t number, const Load& load, const std::optional<Error>& wrong)
 {
     // Without a client id or a number, the request cannot be identified later.
-    if (number == 0 || id == publish::ClientId{})
+    if (number == 0 || id == wire::ClientId{})
         return {Verdict::Refused, refusal(id, number, wrong.value_or(reason("the request has no client id or no number")))};
     Client& client = client_of(id);
     if (auto decision = known(client, number)) return *std::move(decision);
@@ -132,7 +131,7 @@ RequestBook::Decision RequestBook::open(const publish::ClientId& id, std::uint64
     return {};
 }
 
-bool RequestBook::close(const publish::Answer& answer)
+bool RequestBook::close(const wire::Reply& answer)
 {
     const auto found = by_id_.find(answer.client);
     if (found == by_id_.end()) return false;
@@ -145,7 +144,7 @@ bool RequestBook::close(const publish::Answer& answer)
     return true;
 }
 
-void RequestBook::keep(Client& client, const publish::Answer& answer)
+void RequestBook::keep(Client& client, const wire::Reply& answer)
 {
     client.answers.push_back(answer);
     answer_bytes_ += bytes_of(answer);

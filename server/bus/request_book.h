@@ -41,7 +41,7 @@ public:
     struct Decision
     {
         Verdict verdict = Verdict::New;
-        publish::Answer answer;
+        wire::Reply answer;
     };
     /// Resources that a request uses while it waits.
     struct Load
@@ -52,9 +52,9 @@ public:
     };
     /// Registers an incoming request. `wrong`: why it cannot be carried out in any case; then it is never New, and this refusal
     /// is its answer from now on.
-    Decision open(const publish::ClientId& client, std::uint64_t number, const Load& load, const std::optional<Error>& wrong);
+    Decision open(const wire::ClientId& client, std::uint64_t number, const Load& load, const std::optional<Error>& wrong);
     /// Stores the answer to a request for which open() returned New. False if there is no such request.
-    bool close(const publish::Answer& answer);
+    bool close(const wire::Reply& answer);
 
     std::size_t waiting() const { return all_.requests + shutdowns_.requests; }
     std::size_t waiting_bytes() const { return all_.bytes; }
@@ -68,28 +68,28 @@ private:
     };
     struct Client
     {
-        publish::ClientId id{};
+        wire::ClientId id{};
         std::uint64_t highest = 0;    ///< highest number received
         std::uint64_t forgotten = 0;  ///< highest number whose answer is no longer kept
         std::map<std::uint64_t, Load> waiting;
-        std::size_t counted = 0;              ///< of `waiting`: all except shutdowns that need no room
-        std::deque<publish::Answer> answers;  ///< the last one is the latest
+        std::size_t counted = 0;          ///< of `waiting`: all except shutdowns that need no room
+        std::deque<wire::Reply> answers;  ///< the last one is the latest
     };
     using Clients = std::list<Client>;
 
-    Client& client_of(const publish::ClientId& id);
+    Client& client_of(const wire::ClientId& id);
     std::optional<Decision> known(const Client& client, std::uint64_t number) const;
     std::optional<Error> no_room(const Client& client, const Load& load) const;
     std::optional<Error> no_bytes(const Load& load) const;
     void count(Client& client, const Load& load);
     void discount(Client& client, const Load& load);
-    void keep(Client& client, const publish::Answer& answer);
+    void keep(Client& client, const wire::Reply& answer);
     void forget_oldest_answer(Client& client);
     void forget_silent_clients(const Client& except);
 
     BookLimits limits_;
     Clients clients_;  ///< the first one has been silent for longest
-    std::map<publish::ClientId, Clients::iterator> by_id_;
+    std::map<wire::ClientId, Clients::iterator> by_id_;
     Count all_;        ///< in progress, without those of shutdowns_
     Count with_step_;  ///< of them, those that name a step
     Count shutdowns_;  ///< beyond the others

@@ -83,7 +83,7 @@ std::string TextBudget::wrong(std::string_view text, const char* what)
     return is_utf8(text) ? std::string() : std::string(what) + " is not UTF-8";
 }
 
-std::string wrong_with(const publish::RequestText& request)
+std::string wrong_with(const wire::Request& request)
 {
     std::string wrong = wrong_form({request.client, request.number, request.at, request.revision, request.operations.size()});
     for (std::size_t i = 0; i < request.operations.size() && wrong.empty(); ++i)
@@ -93,7 +93,7 @@ std::string wrong_with(const publish::RequestText& request)
     {
         if (wrong.empty()) wrong = budget.wrong(text, what);
     };
-    for (const publish::OperationText& op : request.operations)
+    for (const wire::Operation& op : request.operations)
     {
         look(op.verb, "a verb"), look(op.target, "a target"), look(op.argument, "an argument"), look(op.blueprint, "a blueprint");
         for (const auto& [name, text] : op.values) look(name, "a name"), look(text, "a value");
@@ -101,11 +101,11 @@ std::string wrong_with(const publish::RequestText& request)
     return wrong;
 }
 
-std::size_t bytes_of(const publish::RequestText& request)
+std::size_t bytes_of(const wire::Request& request)
 {
     constexpr std::size_t kEachText = 32;
     std::size_t bytes = 0;
-    for (const publish::OperationText& operation : request.operations)
+    for (const wire::Operation& operation : request.operations)
     {
         bytes += operation.verb.size() + operation.target.size() + operation.argument.size() + operation.blueprint.size() + 4 * kEachText;
         for (const auto& [name, text] : operation.values) bytes += name.size() + text.size() + 2 * kEachText;
@@ -113,10 +113,10 @@ std::size_t bytes_of(const publish::RequestText& request)
     return bytes;
 }
 
-bool is_shutdown(const publish::RequestText& request)
+bool is_shutdown(const wire::Request& request)
 {
     if (request.operations.size() != 1) return false;
-    const publish::OperationText& only = request.operations[0];
+    const wire::Operation& only = request.operations[0];
     return only.verb == "shutdown" && only.target.empty() && only.argument.empty() && only.blueprint.empty() && only.values.empty();
 }
 

@@ -15,15 +15,15 @@ bool is_utf8(std::string_view text);
 
 /// How the limit on the text of all waiting requests counts: each text costs 32 bytes more than its length, roughly its memory
 /// overhead, so that the limit also bounds the number of empty texts.
-std::size_t bytes_of(const publish::RequestText& request);
+std::size_t bytes_of(const wire::Request& request);
 
 /// Whether the request consists of one shutdown operation and nothing else.
-bool is_shutdown(const publish::RequestText& request);
+bool is_shutdown(const wire::Request& request);
 
 /// A request without its text.
 struct RequestForm
 {
-    publish::ClientId client{};
+    wire::ClientId client{};
     std::uint64_t number = 0;
     std::int64_t at = -1, revision = -1;
     std::size_t operations = 0;
@@ -48,6 +48,6 @@ private:
 };
 
 /// All of these checks, for a request whose text has been copied elsewhere.
-std::string wrong_with(const publish::RequestText& request);
+std::string wrong_with(const wire::Request& request);
 
 }  // namespace plab::bus

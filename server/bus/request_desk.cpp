@@ -20,16 +20,16 @@ RequestDesk::RequestDesk()
 {
 }
 
-bool RequestDesk::take(publish::RequestText& request)
+bool RequestDesk::take(publish::ReceivedRequest& request)
 {
-    publish::RequestText* const oldest = requests_.begin_pop();
+    publish::ReceivedRequest* const oldest = requests_.begin_pop();
     if (oldest == nullptr) return false;
     request = std::move(*oldest);
     requests_.end_pop();
     return true;
 }
 
-void RequestDesk::answer(publish::Answer&& answer)
+void RequestDesk::answer(wire::Reply&& answer)
 {
     answers_.begin_push() = std::move(answer);
     answers_.end_push();
@@ -38,7 +38,7 @@ void RequestDesk::answer(publish::Answer&& answer)
 
 RequestDesk::Received RequestDesk::receive(RequestMessage&& message, std::int64_t now_ns)
 {
-    publish::RequestText& request = message.request;
+    wire::Request& request = message.request;
     std::string wrong = std::move(message.wrong);
     if (wrong.size() > kLongestReason || !is_utf8(wrong)) wrong = "the request cannot be decoded";
     if (wrong.empty()) wrong = wrong_with(request);
@@ -49,33 +49,33 @@ RequestDesk::Received RequestDesk::receive(RequestMessage&& message, std::int64_
     switch (decision.verdict)
     {
         case RequestBook::Verdict::New:
-            request.arrived_ns = now_ns;
-            requests_.begin_push() = std::move(request);
+            requests_.begin_push() = {std::move(request), now_ns};
             requests_.end_push();
             return {true, load.shutdown};
         case RequestBook::Verdict::Waiting:
             return {};
         case RequestBook::Verdict::Answered:
         case RequestBook::Verdict::Refused:
-            at_once_.push_back({std::move(decision.answer), decision.verdict == RequestBook::Verdict::Answered});
+            decision.answer.repeated = decision.verdict == RequestBook::Verdict::Answered;
+            at_once_.push_back(std::move(decision.answer));
             return {};
     }
     return {};
 }
 
-std::optional<AnswerMessage> RequestDesk::next_answer(std::uint64_t& strays)
+std::optional<wire::Reply> RequestDesk::next_answer(std::uint64_t& strays)
 {
     if (!at_once_.empty())
     {
-        std::optional<AnswerMessage> out(std::move(at_once_.front()));
+        std::optional<wire::Reply> out(std::move(at_once_.front()));
         at_once_.pop_front();
         return out;
     }
-    while (publish::Answer* const answer = answers_.begin_pop())
+    while (wire::Reply* const oldest = answers_.begin_pop())
     {
-        AnswerMessage message{std::move(*answer), false};
+        wire::Reply answer = std::move(*oldest);
         answers_.end_pop();
-        if (book_.close(message.answer)) return message;
+        if (book_.close(answer)) return answer;
         ++strays;
     }
     return {};

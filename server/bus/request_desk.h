@@ -16,8 +16,8 @@ public:
     RequestDesk();
 
     // Step thread ------------------------------------------------------------------------------------------------------
-    bool take(publish::RequestText& request);
-    void answer(publish::Answer&& answer);
+    bool take(publish::ReceivedRequest& request);
+    void answer(wire::Reply&& answer);
 
     // Bus thread -------------------------------------------------------------------------------------------------------
     struct Received
@@ -31,15 +31,15 @@ public:
     /// Whether so many answers wait to be fetched that no further request may be received before.
     bool is_full() const { return at_once_.size() >= kMostAtOnce; }
     /// The next answer to send. `strays` counts answers of the step thread to requests that no client waits for.
-    std::optional<AnswerMessage> next_answer(std::uint64_t& strays);
+    std::optional<wire::Reply> next_answer(std::uint64_t& strays);
 
 private:
     RequestBook book_;
     // As large as the number of requests that may wait at a time: neither ring can overflow.
-    publish::Ring<publish::RequestText> requests_;
-    publish::Ring<publish::Answer> answers_;
+    publish::Ring<publish::ReceivedRequest> requests_;
+    publish::Ring<wire::Reply> answers_;
     static constexpr std::size_t kMostAtOnce = 1024;
-    std::deque<AnswerMessage> at_once_;  ///< answers that are made here
+    std::deque<wire::Reply> at_once_;  ///< answers that are made here
 };
 
 }  // namespace plab::bus

@@ -106,7 +106,7 @@ void ServerBus::hash(std::uint64_t run, Tick step, std::uint64_t hash)
     if (auto record = hash_batch_.add(run, step, hash, publish::monotonic_now())) push(hashes_, *std::move(record));
 }
 
-void ServerBus::status(const publish::Status& status)
+void ServerBus::status(const wire::Server& status)
 {
     // A paused run completes no batch; a status is sent at most ten times per second.
     if (auto record = status.paused ? hash_batch_.flush() : hash_batch_.flush_old(publish::monotonic_now()))
@@ -127,7 +127,7 @@ bool ServerBus::catalogue(publish::CatalogueChange&& change)
     return true;
 }
 
-void ServerBus::answer(publish::Answer&& answer)
+void ServerBus::answer(wire::Reply&& answer)
 {
     desk_.answer(std::move(answer));
     bell_.ring_once();

@@ -29,19 +29,19 @@ public:
 
     bool wants(publish::Stream stream) const override;
     std::uint64_t joins(publish::Stream stream) const override;
-    publish::Frame& begin_frame() override { return states_.begin_push(); }
+    wire::Frame& begin_frame() override { return states_.begin_push(); }
     void end_frame() override;
-    void collisions(publish::Batch<publish::CollisionRecord>&& batch) override { push(collisions_, std::move(batch)); }
-    void events(publish::Batch<publish::EventRecord>&& batch) override { push(events_, std::move(batch)); }
-    void metrics(publish::Metrics&& metrics) override { push(metrics_, std::move(metrics)); }
-    void image(publish::Image&& image) override { push(images_, std::move(image)); }
-    void journal(publish::JournalRecord&& entry) override { push(journal_, std::move(entry)); }
+    void collisions(wire::Collisions&& batch) override { push(collisions_, std::move(batch)); }
+    void events(wire::Events&& batch) override { push(events_, std::move(batch)); }
+    void metrics(wire::Metrics&& metrics) override { push(metrics_, std::move(metrics)); }
+    void image(wire::Image&& image) override { push(images_, std::move(image)); }
+    void journal(wire::Journal&& entry) override { push(journal_, std::move(entry)); }
     void hash(std::uint64_t run, Tick step, std::uint64_t hash) override;
-    void snapshot(publish::SnapshotRecord&& snapshot) override { push(snapshots_, std::move(snapshot)); }
-    void status(const publish::Status& status) override;
+    void snapshot(wire::Snapshot&& snapshot) override { push(snapshots_, std::move(snapshot)); }
+    void status(const wire::Server& status) override;
     bool catalogue(publish::CatalogueChange&& change) override;
-    bool take(publish::RequestText& request) override { return desk_.take(request); }
-    void answer(publish::Answer&& answer) override;
+    bool take(publish::ReceivedRequest& request) override { return desk_.take(request); }
+    void answer(wire::Reply&& answer) override;
     std::string lost() const override;
     std::string take_restart() override;
     int process() const override { return pid_.load(std::memory_order_relaxed); }
@@ -104,15 +104,15 @@ private:
 
     publish::Ring<publish::CatalogueChange> changes_;
     std::atomic<std::size_t> changes_waiting_{0};
-    Feed<publish::Frame> states_{publish::Stream::States, 8};
-    Feed<publish::Batch<publish::CollisionRecord>> collisions_{publish::Stream::Collisions, 1024};
-    Feed<publish::Batch<publish::EventRecord>> events_{publish::Stream::Events, 1024};
-    Feed<publish::Metrics> metrics_{publish::Stream::Metrics, 4};
-    Feed<publish::Image> images_{publish::Stream::Images, 2};
-    Feed<publish::JournalRecord> journal_{publish::Stream::Journal, 1024};
-    Feed<publish::HashRecord> hashes_{publish::Stream::Hashes, 1024};
-    Feed<publish::SnapshotRecord> snapshots_{publish::Stream::Snapshots, 2};
-    publish::Ring<publish::Status> statuses_{4};
+    Feed<wire::Frame> states_{publish::Stream::States, 8};
+    Feed<wire::Collisions> collisions_{publish::Stream::Collisions, 1024};
+    Feed<wire::Events> events_{publish::Stream::Events, 1024};
+    Feed<wire::Metrics> metrics_{publish::Stream::Metrics, 4};
+    Feed<wire::Image> images_{publish::Stream::Images, 2};
+    Feed<wire::Journal> journal_{publish::Stream::Journal, 1024};
+    Feed<wire::Hashes> hashes_{publish::Stream::Hashes, 1024};
+    Feed<wire::Snapshot> snapshots_{publish::Stream::Snapshots, 2};
+    publish::Ring<wire::Server> statuses_{4};
     publish::HashBatch hash_batch_;  ///< used by the step thread only
     RequestDesk desk_;
 
@@ -123,8 +123,9 @@ private:
     std::promise<Result<void>> first_;
     bool was_first_received_ = false;
     CatalogueMirror mirror_;
-    std::optional<AnswerMessage> answer_;  ///< an answer that waits for room
+    std::optional<wire::Reply> answer_;  ///< an answer that waits for room
     StatusMessage status_;
+    std::string overload_;  ///< as the step thread reported it
     bool has_status_ = false, status_is_new_ = false;
     Clock::time_point started_{}, start_at_{}, heard_{}, died_{}, status_sent_{};
     Clock::time_point stopped_{};  ///< time of the last check whether plab-bus is stopped

@@ -272,7 +272,7 @@ bool ServerBus::send(Clock::time_point now)
         {
             if (is_broken_) return;
             using Of = std::remove_reference_t<decltype(feed)>;
-            constexpr bool kIsLarge = std::is_same_v<Of, Feed<publish::Image>> || std::is_same_v<Of, Feed<publish::SnapshotRecord>>;
+            constexpr bool kIsLarge = std::is_same_v<Of, Feed<wire::Image>> || std::is_same_v<Of, Feed<wire::Snapshot>>;
             const Sent done = feed.send(kIsLarge ? 1 : kBurst, to, is_new_);
             is_broken_ = done == Sent::Broken;
             more = more || done == Sent::More;
@@ -284,17 +284,17 @@ bool ServerBus::send(Clock::time_point now)
 /// The status comes from the step thread; its current activity is added when it has sent nothing for long.
 void ServerBus::send_status(Clock::time_point now)
 {
-    while (publish::Status* status = statuses_.begin_pop())
+    while (wire::Server* status = statuses_.begin_pop())
     {
-        status_.status = *status, has_status_ = status_is_new_ = true;
+        status_.status = *status, overload_ = status->overload, has_status_ = status_is_new_ = true;
         statuses_.end_pop();
     }
     const bool is_due = status_is_new_ || (has_status_ && now - status_sent_ >= kBusyLook);
     if (!is_due || !process_->writer().ready() || is_broken_) return;
     std::string busy = options_.busy != nullptr ? options_.busy(options_.busy_argument) : std::string();
     status_sent_ = now;
-    if (!status_is_new_ && busy.empty() && status_.status.busy.empty()) return;
-    status_.status.busy = std::move(busy);
+    if (!status_is_new_ && busy.empty() && status_.status.overload == overload_) return;
+    status_.status.overload = busy.empty() ? overload_ : std::move(busy);
     status_.dropped = {states_.dropped(), collisions_.dropped(), events_.dropped(), metrics_.dropped(),
                        images_.dropped(), journal_.dropped(),    hashes_.dropped(), snapshots_.dropped()};
     is_broken_ = !process_->writer().send(Down::Status, status_);

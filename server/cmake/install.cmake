@@ -38,6 +38,7 @@ install(DIRECTORY server/base/plab server/sdk/plab DESTINATION include COMPONENT
 install(DIRECTORY clients/link DESTINATION include/plab-link COMPONENT sdk FILES_MATCHING PATTERN "*.h" PATTERN "json.h" EXCLUDE)
 file(GLOB wire_headers CONFIGURE_DEPENDS idl/*.h)
 install(FILES ${wire_headers} DESTINATION include/plab-link/idl COMPONENT sdk)
+install(DIRECTORY idl/values DESTINATION include/plab-link/idl COMPONENT sdk FILES_MATCHING PATTERN "*.h")
 # idlc writes the folders of this build into its header, and makes the guard out of them.
 set(PLAB_GENERATED_HEADER ${PROJECT_BINARY_DIR}/idl/plab.h)
 configure_file(server/cmake/install_header.cmake.in ${PROJECT_BINARY_DIR}/package/install_header.cmake @ONLY)
@@ -45,7 +46,7 @@ install(SCRIPT ${PROJECT_BINARY_DIR}/package/install_header.cmake COMPONENT sdk)
 install(FILES idl/plab.idl DESTINATION share/plab/idl COMPONENT sdk)
 install(TARGETS plab-manifest EXPORT plab-sdk RUNTIME DESTINATION bin COMPONENT sdk)
 install(TARGETS plab_determinism plab_base plab_sdk EXPORT plab-sdk COMPONENT sdk)
-install(TARGETS plab_idl_c plab_wire_names plab_wire plab_link EXPORT plab-link ARCHIVE DESTINATION lib COMPONENT sdk)
+install(TARGETS plab_values plab_idl_c plab_wire_names plab_wire plab_link EXPORT plab-link ARCHIVE DESTINATION lib COMPONENT sdk)
 # --strip is for programs; of archives the debug information is 9 parts of 10, and names sources that are not there.
 foreach(archive plab_idl_c plab_wire_names plab_wire plab_link)
   install(CODE "execute_process(COMMAND \"${CMAKE_STRIP}\" --strip-debug \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/lib${archive}.a\" COMMAND_ERROR_IS_FATAL ANY)"

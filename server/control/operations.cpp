@@ -18,7 +18,6 @@ namespace plab::control
 namespace
 {
 
-using publish::OperationText;
 using simulation::Operation;
 
 /// What is needed to compile a scene that comes with a request.
@@ -37,10 +36,10 @@ struct Verb
     bool argument_optional = false;
     bool blueprint = false;
     bool values = false;
-    Result<Operation> (*make)(const OperationText&, const Compiling&) = nullptr;
+    Result<Operation> (*make)(const wire::Operation&, const Compiling&) = nullptr;
 };
 
-std::vector<simulation::NamedValue> named_values(const OperationText& op)
+std::vector<simulation::NamedValue> named_values(const wire::Operation& op)
 {
     std::vector<simulation::NamedValue> out;
     for (const auto& [name, text] : op.values) out.push_back({name, text});
@@ -74,13 +73,13 @@ Result<Vec3> parse_impulse(const std::string& text)
     return parse_vector(text, unit::newton_second);
 }
 
-Result<Operation> make_add(const OperationText& op, const Compiling&)
+Result<Operation> make_add(const wire::Operation& op, const Compiling&)
 {
     auto blueprint = blueprint::read_blueprint(op.blueprint, op.argument.empty() ? "request" : op.argument);
     if (!blueprint) return blueprint.errors();
     return Operation{simulation::AddBlueprintOperation{blueprint.take()}};
 }
-Result<Operation> make_load(const OperationText& op, const Compiling& with)
+Result<Operation> make_load(const wire::Operation& op, const Compiling& with)
 {
     auto blueprint = blueprint::read_blueprint(op.blueprint, op.argument.empty() ? "request" : op.argument);
     if (!blueprint) return blueprint.errors();
@@ -88,12 +87,12 @@ Result<Operation> make_load(const OperationText& op, const Compiling& with)
     if (!scene) return scene.errors();
     return Operation{simulation::LoadOperation{scene.take()}};
 }
-Result<Operation> make_remove(const OperationText& op, const Compiling&) { return Operation{simulation::RemoveOperation{op.target}}; }
-Result<Operation> make_swap(const OperationText& op, const Compiling&)
+Result<Operation> make_remove(const wire::Operation& op, const Compiling&) { return Operation{simulation::RemoveOperation{op.target}}; }
+Result<Operation> make_swap(const wire::Operation& op, const Compiling&)
 {
     return Operation{simulation::SwapOperation{op.target, op.argument, named_values(op)}};
 }
-Result<Operation> make_push(const OperationText& op, const Compiling&)
+Result<Operation> make_push(const wire::Operation& op, const Compiling&)
 {
     simulation::PushOperation push{op.target, {}, {}};
     bool given = false;
@@ -111,10 +110,10 @@ Result<Operation> make_push(const OperationText& op, const Compiling&)
     if (!given) return reason("needs the value impulse: three numbers in N s, or one in N m s for a shaft");
     return Operation{push};
 }
-Result<Operation> make_pause(const OperationText&, const Compiling&) { return Operation{simulation::PauseOperation{}}; }
-Result<Operation> make_resume(const OperationText&, const Compiling&) { return Operation{simulation::ResumeOperation{}}; }
-Result<Operation> make_reset(const OperationText&, const Compiling&) { return Operation{simulation::ResetOperation{}}; }
-Result<Operation> make_step(const OperationText& op, const Compiling&)
+Result<Operation> make_pause(const wire::Operation&, const Compiling&) { return Operation{simulation::PauseOperation{}}; }
+Result<Operation> make_resume(const wire::Operation&, const Compiling&) { return Operation{simulation::ResumeOperation{}}; }
+Result<Operation> make_reset(const wire::Operation&, const Compiling&) { return Operation{simulation::ResetOperation{}}; }
+Result<Operation> make_step(const wire::Operation& op, const Compiling&)
 {
     std::int64_t steps = 0;
     const char* const end = op.argument.data() + op.argument.size();
@@ -122,28 +121,28 @@ Result<Operation> make_step(const OperationText& op, const Compiling&)
     if (error != std::errc() || stop != end || steps < 1) return reason("'" + op.argument + "' is not a number of steps: give 1 or more");
     return Operation{simulation::StepOperation{steps}};
 }
-Result<Operation> make_rate(const OperationText& op, const Compiling&)
+Result<Operation> make_rate(const wire::Operation& op, const Compiling&)
 {
     auto factor = parse_rate(op.argument);
     if (!factor) return factor.errors();
     return Operation{simulation::RateOperation{*factor}};
 }
-Result<Operation> make_dt(const OperationText& op, const Compiling&)
+Result<Operation> make_dt(const wire::Operation& op, const Compiling&)
 {
     auto dt = model::parse_step_length(op.argument);
     if (!dt) return dt.errors();
     return Operation{simulation::StepLengthOperation{*dt}};
 }
-Result<Operation> make_snapshot(const OperationText& op, const Compiling&)
+Result<Operation> make_snapshot(const wire::Operation& op, const Compiling&)
 {
     if (!is_snapshot_name(op.target))
         return reason("'" + op.target.substr(0, 64) + "' is not a valid snapshot name: use 1 to 64 letters, digits, '.', '_' or '-'");
     return Operation{simulation::SnapshotOperation{op.target}};
 }
-Result<Operation> make_restore(const OperationText& op, const Compiling&) { return Operation{simulation::RestoreOperation{op.target}}; }
-Result<Operation> make_forget(const OperationText& op, const Compiling&) { return Operation{simulation::ForgetOperation{op.target}}; }
+Result<Operation> make_restore(const wire::Operation& op, const Compiling&) { return Operation{simulation::RestoreOperation{op.target}}; }
+Result<Operation> make_forget(const wire::Operation& op, const Compiling&) { return Operation{simulation::ForgetOperation{op.target}}; }
 /// "2.5 s" is a time of the run, "back 2.5 s" is relative to the current time.
-Result<Operation> make_rewind(const OperationText& op, const Compiling&)
+Result<Operation> make_rewind(const wire::Operation& op, const Compiling&)
 {
     constexpr std::string_view kBack = "back ";
     const bool back = op.argument.starts_with(kBack);
@@ -158,7 +157,7 @@ Result<Operation> make_rewind(const OperationText& op, const Compiling&)
     return Operation{simulation::RewindOperation{time, back}};
 }
 /// These verbs only need an entry in the table: set makes one operation of each value, shutdown none.
-Result<Operation> make_nothing(const OperationText&, const Compiling&) { return reason("is not an operation"); }
+Result<Operation> make_nothing(const wire::Operation&, const Compiling&) { return reason("is not an operation"); }
 
 constexpr std::array<Verb, 20> kVerbs{{
     {"add", "", "the file's name for messages", true, true, false, &make_add},
@@ -196,7 +195,7 @@ Error unknown_verb(const std::string& name)
     return reason("'" + name + "' is not an operation" + model::did_you_mean(name, known));
 }
 
-std::string given_too_much(const Verb& verb, const OperationText& op)
+std::string given_too_much(const Verb& verb, const wire::Operation& op)
 {
     if (verb.target.empty() && !op.target.empty()) return "takes no target";
     if (verb.argument.empty() && !op.argument.empty()) return "takes no argument";
@@ -205,7 +204,7 @@ std::string given_too_much(const Verb& verb, const OperationText& op)
     return {};
 }
 
-std::string given_too_little(const Verb& verb, const OperationText& op)
+std::string given_too_little(const Verb& verb, const wire::Operation& op)
 {
     if (!verb.target.empty() && op.target.empty()) return "needs a target: " + std::string(verb.target);
     if (!verb.argument.empty() && !verb.argument_optional && op.argument.empty()) return "needs an argument: " + std::string(verb.argument);
@@ -221,7 +220,7 @@ std::string given_too_little(const Verb& verb, const OperationText& op)
 }
 
 /// trial and energy change nothing themselves: they specify how the swap in the same request is tested.
-Result<void> choose_proof(const OperationText& op, simulation::TrialChoice& choice)
+Result<void> choose_proof(const wire::Operation& op, simulation::TrialChoice& choice)
 {
     if (op.verb == "trial")
     {
@@ -244,7 +243,7 @@ Result<void> choose_proof(const OperationText& op, simulation::TrialChoice& choi
     return {};
 }
 
-Result<void> append(const OperationText& op, const Compiling& with, Wanted& out)
+Result<void> append(const wire::Operation& op, const Compiling& with, Wanted& out)
 {
     const Verb* verb = find_verb(op.verb);
     if (!verb) return unknown_verb(op.verb);
@@ -378,7 +377,7 @@ Description description_of(const simulation::Operation& operation)
     return std::visit(Words{}, operation);
 }
 
-publish::OperationText text_of(const simulation::Operation& operation)
+wire::Operation text_of(const simulation::Operation& operation)
 {
     const auto text = [](const simulation::GivenValue& given)
     {
@@ -386,20 +385,20 @@ publish::OperationText text_of(const simulation::Operation& operation)
         return words ? *words : model::format_value(std::get<Value>(given));
     };
     const Description words = description_of(operation);
-    publish::OperationText out{words.verb, words.target, words.argument, "", {}};
+    wire::Operation out{words.verb, words.target, words.argument, "", {}};
     if (const auto* swap = std::get_if<simulation::SwapOperation>(&operation))
-        for (const simulation::NamedValue& v : swap->values) out.values.emplace_back(v.name, text(v.value));
+        for (const simulation::NamedValue& v : swap->values) out.values.push_back({v.name, text(v.value)});
     if (const auto* set = std::get_if<simulation::SetOperation>(&operation))
     {
         out.argument.clear();
-        out.values.emplace_back(set->name, text(set->value));
+        out.values.push_back({set->name, text(set->value)});
     }
     return out;
 }
 
-bool begins_a_run(const std::vector<OperationText>& operations)
+bool begins_a_run(const std::vector<wire::Operation>& operations)
 {
-    const auto begins = [](const OperationText& op)
+    const auto begins = [](const wire::Operation& op)
     { return op.verb == "reset" || op.verb == "load" || op.verb == "restore" || op.verb == "rewind"; };
     return std::any_of(operations.begin(), operations.end(), begins);
 }
@@ -415,7 +414,7 @@ Result<double> parse_rate(const std::string& text)
     return factor;
 }
 
-Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types, const model::CompileLimits& limits)
+Result<Wanted> wanted_of(const wire::Request& text, model::TypeSource& types, const model::CompileLimits& limits)
 {
     Wanted out;
     // A request on the bus runs in a loop that other clients watch: its trial must not block the loop for long.

@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "idl/values/values.h"
 #include "model/compile.h"
-#include "publish/records.h"
 #include "simulation/requests/requests.h"
 
 namespace plab::control
@@ -16,7 +16,7 @@ struct Wanted
     bool shutdown = false;        ///< the server is to shut down; then there are no operations
     struct Cancelled
     {
-        publish::ClientId client{};
+        wire::ClientId client{};
         std::uint64_t number = 0;
     };
     std::optional<Cancelled> cancel;  ///< a waiting request is cancelled; then there are no operations
@@ -25,7 +25,7 @@ struct Wanted
 /// Checks everything that needs no scene: verbs, names and numbers. The rest is checked when the request takes effect. A <plab>
 /// to load is compiled here (and its plugins are loaded); for one to add see preparation.h. Each error
 /// names the operation: "operation 2 (swap): needs an argument: the new type".
-Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types, const model::CompileLimits& limits = {});
+Result<Wanted> wanted_of(const wire::Request& text, model::TypeSource& types, const model::CompileLimits& limits = {});
 
 /// Text of an operation for log lines and events.
 struct Description
@@ -35,10 +35,10 @@ struct Description
 Description description_of(const simulation::Operation& operation);
 
 /// The text of the operation as a client would send it, for the operations that plabd's command line has (swap, set).
-publish::OperationText text_of(const simulation::Operation& operation);
+wire::Operation text_of(const simulation::Operation& operation);
 
 /// Whether the operation begins a new run: reset, load, restore, rewind.
-bool begins_a_run(const std::vector<publish::OperationText>& operations);
+bool begins_a_run(const std::vector<wire::Operation>& operations);
 
 /// "none", "20 ms", "20 ms or refuse", "or refuse", "unlimited": how a swap is tested.
 Result<simulation::TrialChoice> parse_trial(const std::string& text);

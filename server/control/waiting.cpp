@@ -9,36 +9,36 @@ namespace
 
 using nlohmann::json;
 
-json json_of(const publish::OperationText& op)
+json json_of(const wire::Operation& op)
 {
     json values = json::array();
     for (const auto& [name, text] : op.values) values.push_back({name, text});
     return {{"verb", op.verb}, {"target", op.target}, {"argument", op.argument}, {"blueprint", op.blueprint}, {"values", values}};
 }
 
-publish::OperationText operation_of(const json& from)
+wire::Operation operation_of(const json& from)
 {
-    publish::OperationText op{from.at("verb"), from.at("target"), from.at("argument"), from.at("blueprint"), {}};
-    for (const json& value : from.at("values")) op.values.emplace_back(value.at(0), value.at(1));
+    wire::Operation op{from.at("verb"), from.at("target"), from.at("argument"), from.at("blueprint"), {}};
+    for (const json& value : from.at("values")) op.values.push_back({value.at(0), value.at(1)});
     return op;
 }
 
 }  // namespace
 
-std::string text_of(const publish::RequestText& request)
+std::string text_of(const wire::Request& request)
 {
     json operations = json::array();
-    for (const publish::OperationText& op : request.operations) operations.push_back(json_of(op));
+    for (const wire::Operation& op : request.operations) operations.push_back(json_of(op));
     const json out{{"at", request.at}, {"revision", request.revision}, {"operations", operations}};
     return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-Result<publish::RequestText> read_request(const std::string& text)
+Result<wire::Request> read_request(const std::string& text)
 {
     try
     {
         const json from = json::parse(text);
-        publish::RequestText out;
+        wire::Request out;
         out.at = from.at("at"), out.revision = from.at("revision");
         for (const json& op : from.at("operations")) out.operations.push_back(operation_of(op));
         return out;

@@ -3,13 +3,14 @@
 
 #include <string>
 
-#include "publish/records.h"
+#include "idl/values/values.h"
+#include "plab/result.h"
 
 namespace plab::control
 {
 
-std::string text_of(const publish::RequestText& request);
+std::string text_of(const wire::Request& request);
 /// Operations, step and revision of a text made by text_of(); the client is not kept.
-Result<publish::RequestText> read_request(const std::string& text);
+Result<wire::Request> read_request(const std::string& text);
 
 }  // namespace plab::control

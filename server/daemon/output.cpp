@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "daemon/figures_text.h"
 #include "model/exact_text.h"
@@ -16,24 +17,8 @@ namespace plab::daemon
 namespace
 {
 
-std::string quoted(const std::string& s)
-{
-    std::string out = "\"";
-    for (const char c : s)
-    {
-        if (c == '"' || c == '\\')
-            out += '\\', out += c;
-        else if (static_cast<unsigned char>(c) < 0x20)
-        {
-            char code[8];
-            std::snprintf(code, sizeof code, "\\u%04x", c);
-            out += code;
-        }
-        else
-            out += c;
-    }
-    return out + "\"";
-}
+/// Numbers are written by number(), with 17 significant digits; text is escaped as nlohmann does it.
+std::string quoted(const std::string& s) { return nlohmann::json(s).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
 
 std::string array(const Vec3& v) { return "[" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]"; }
 std::string quartiles(const simulation::Spread& s)

@@ -28,11 +28,11 @@ class RequestReader
 public:
     struct ReadRequest
     {
-        publish::RequestText text;
+        publish::ReceivedRequest text;
         Result<control::Wanted> wanted = Error{};
     };
     /// Where requests come from: false if there is none. Called on the reader's thread only.
-    using Source = std::function<bool(publish::RequestText&)>;
+    using Source = std::function<bool(publish::ReceivedRequest&)>;
 
     /// `types` must be usable from several threads. `ready` is called on the reader's thread whenever a request has been read.
     RequestReader(Source source, model::TypeSource& types, const model::CompileLimits& limits, std::function<void()> ready);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/replies.h"
 #include "daemon/ending.h"
 #include "publish/busy.h"
 #include "simulation/costs/clock.h"
@@ -89,8 +90,8 @@ Result<void> Service::open_bus(const DaemonOptions& options, const Wake& wake, I
     bus.wake_argument = this;
     wake_ = &wake, interruption_ = &interruption;
     // The reader exists before the bus, which may call wake_up() as soon as it is open.
-    reader_ = std::make_unique<RequestReader>([this](publish::RequestText& text) { return bus_is_open_ && bus_->take(text); }, *library_,
-                                              simulation_->limits(), [&wake] { wake.wake(); });
+    reader_ = std::make_unique<RequestReader>([this](publish::ReceivedRequest& text) { return bus_is_open_ && bus_->take(text); },
+                                              *library_, simulation_->limits(), [&wake] { wake.wake(); });
     Error error;
     auto opened = reinterpret_cast<bus::Open>(module->entry)(bus, error);
     if (!opened) return error;
@@ -159,14 +160,14 @@ void Service::take_last_requests(std::chrono::milliseconds most)
 
 void Service::note_restart()
 {
-    publish::EventRecord event;
+    wire::EventInfo event;
     event.message = bus_->take_restart();
     if (event.message.empty()) return;
-    event.kind = "bus.restarted", event.severity = Severity::Warning;
+    event.kind = "bus.restarted", event.severity = "warning";
     collector_.note(*simulation_, std::move(event));
 }
 
-void Service::accept(const publish::RequestText& text, control::Wanted wanted)
+void Service::accept(const publish::ReceivedRequest& text, control::Wanted wanted)
 {
     Origin origin;
     origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
@@ -198,13 +199,13 @@ std::size_t Service::close()
         simulation::Reply reply;
         reply.step = simulation_->tick(), reply.revision = simulation_->revision();
         reply.errors = {reason("the server ended before the step that the request names")};
-        answer_client(origin, std::move(reply));
+        answer_client(origin, reply);
     }
     waiting_.clear();
     return own;
 }
 
-void Service::shut_down(const publish::RequestText& text)
+void Service::shut_down(const publish::ReceivedRequest& text)
 {
     Origin origin;
     origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
@@ -213,12 +214,12 @@ void Service::shut_down(const publish::RequestText& text)
     reply.done = true, reply.step = simulation_->tick(), reply.revision = simulation_->revision();
     note(origin, reply);
     ++done_;
-    answer_client(origin, std::move(reply));
+    answer_client(origin, reply);
     shutdown_ = true;
 }
 
 /// The client that waits for the request is told that it was cancelled.
-void Service::cancel(const publish::RequestText& text, const control::Wanted::Cancelled& which)
+void Service::cancel(const publish::ReceivedRequest& text, const control::Wanted::Cancelled& which)
 {
     const auto waits = std::find_if(waiting_.begin(), waiting_.end(),
                                     [&](const auto& w) { return w.second.client == which.client && w.second.number == which.number; });
@@ -230,7 +231,7 @@ void Service::cancel(const publish::RequestText& text, const control::Wanted::Ca
     const Origin origin = std::move(waiting_.extract(waits).mapped());
     note(origin, taken_back);
     ++refused_;
-    answer_client(origin, std::move(taken_back));
+    answer_client(origin, taken_back);
     Origin asker;
     asker.from_bus = true, asker.client = text.client, asker.number = text.number, asker.arrived_ns = text.arrived_ns;
     asker.operations = {{"cancel", "", text.operations.front().argument}};
@@ -238,27 +239,26 @@ void Service::cancel(const publish::RequestText& text, const control::Wanted::Ca
     reply.done = true, reply.step = simulation_->tick(), reply.revision = simulation_->revision();
     note(asker, reply);
     ++done_;
-    answer_client(asker, std::move(reply));
+    answer_client(asker, reply);
 }
 
-void Service::refuse(const publish::RequestText& text, Errors errors)
+void Service::refuse(const publish::ReceivedRequest& text, Errors errors)
 {
     Origin origin;
     origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
-    for (const publish::OperationText& op : text.operations) origin.operations.push_back({op.verb, op.target, op.argument});
+    for (const wire::Operation& op : text.operations) origin.operations.push_back({op.verb, op.target, op.argument});
     simulation::Reply reply;
     reply.errors = std::move(errors), reply.step = simulation_->tick(), reply.revision = simulation_->revision();
     ++refused_;
     note(origin, reply);
-    answer_client(origin, std::move(reply));
+    answer_client(origin, reply);
 }
 
-void Service::answer_client(const Origin& origin, simulation::Reply reply)
+void Service::answer_client(const Origin& origin, const simulation::Reply& reply)
 {
-    publish::Answer answer;
+    wire::Reply answer = control::reply_of(reply);
     answer.client = origin.client, answer.number = origin.number, answer.run = simulation_->run(), answer.time = simulation_->time();
     answer.waited_ns = static_cast<double>(simulation::now_ns()) - static_cast<double>(origin.arrived_ns) - reply.pause_ns;
-    answer.reply = std::move(reply);
     bus_->answer(std::move(answer));
 }
 
@@ -277,7 +277,7 @@ bool Service::answer()
         if (!origin.from_bus)
             fine = fine && reply.done;
         else if (!origin.was_answered)
-            answer_client(origin, std::move(reply));
+            answer_client(origin, reply);
     }
     return fine;
 }
@@ -290,12 +290,12 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
         spdlog::log(origin.from_bus ? spdlog::level::debug : spdlog::level::err, "request refused at step {}: {}", reply.step,
                     one_line(e.text()));
     }
-    publish::EventRecord event;
+    wire::EventInfo event;
     event.time = simulation_->time();
     if (!reply.done)
     {
-        event.kind = "request.refused", event.severity = Severity::Warning;
-        event.component = origin.operations.empty() ? "" : origin.operations.front().target;
+        event.kind = "request.refused", event.severity = "warning";
+        event.component_id = origin.operations.empty() ? "" : origin.operations.front().target;
         event.message = reply.errors.empty() ? "" : reply.errors.front().text();
         collector_.note(*simulation_, std::move(event));
         return;
@@ -303,13 +303,13 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
     for (const control::Description& op : origin.operations)
     {
         if (op.verb == "swap") continue;
-        event.kind = "request." + op.verb, event.component = op.target, event.message = op.argument;
+        event.kind = "request." + op.verb, event.component_id = op.target, event.message = op.argument;
         collector_.note(*simulation_, event);
     }
     // One request may exchange many components; a pattern does not name them individually.
     for (const simulation::SwapReport& swap : reply.swaps)
     {
-        event.kind = "request.swap", event.component = swap.id, event.message = swap.from + " -> " + swap.to;
+        event.kind = "request.swap", event.component_id = swap.id, event.message = swap.from + " -> " + swap.to;
         collector_.note(*simulation_, event);
     }
 }
@@ -332,11 +332,11 @@ void Service::idle()
 void Service::publish_status(double rate_reached, double slipped, bool slipping)
 {
     if (!bus_ && !recording_) return;
-    publish::Status s;
+    wire::Server s;
     s.scene_file = scene_file_, s.run = simulation_->run(), s.revision = simulation_->revision();
     s.step = simulation_->tick(), s.time = simulation_->time(), s.dt = simulation_->dt();
     s.paused = simulation_->paused(), s.rate_asked = simulation_->rate(), s.rate_reached = rate_reached;
-    s.slipped = slipped, s.slipping = slipping, s.threads = threads_;
+    s.slipped = slipped, s.overload = slipping ? "slip" : "", s.threads = threads_;
     s.requests_done = done_, s.requests_refused = refused_;
     const simulation::History& history = simulation_->history();
     s.rewind_from = history.can_rewind() ? history.earliest() : -1;
@@ -347,11 +347,11 @@ void Service::publish_status(double rate_reached, double slipped, bool slipping)
 
 void Service::show(std::uint32_t component, std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba)
 {
-    publish::Image image;
+    wire::Image image;
     image.camera = simulation_->world().id_of(component), image.run = simulation_->run();
     image.step = simulation_->tick() + 1, image.time = simulation_->time() + simulation_->dt();
-    image.width = width, image.height = height, image.rgba = std::move(rgba);
-    if (recording_ && recording_->wants(publish::Stream::Images)) recording_->image(publish::Image(image));
+    image.width = width, image.height = height, image.encoding = "rgba8", image.data = std::move(rgba);
+    if (recording_ && recording_->wants(publish::Stream::Images)) recording_->image(wire::Image(image));
     if (bus_ && bus_->wants(publish::Stream::Images)) bus_->image(std::move(image));
 }
 

@@ -75,17 +75,17 @@ private:
     {
         bool from_bus = false;
         bool was_answered = false;  ///< in an earlier run: a snapshot restored it, and its client has its answer already
-        publish::ClientId client{};
+        wire::ClientId client{};
         std::uint64_t number = 0;
         std::int64_t arrived_ns = 0;
         std::vector<control::Description> operations;
-        std::vector<publish::OperationText> texts;  ///< the same as text, for the journal
+        std::vector<wire::Operation> texts;  ///< the same as text, for the journal
     };
-    void accept(const publish::RequestText& text, control::Wanted wanted);
-    void refuse(const publish::RequestText& text, Errors errors);
-    void answer_client(const Origin& origin, simulation::Reply reply);
-    void shut_down(const publish::RequestText& text);
-    void cancel(const publish::RequestText& text, const control::Wanted::Cancelled& which);
+    void accept(const publish::ReceivedRequest& text, control::Wanted wanted);
+    void refuse(const publish::ReceivedRequest& text, Errors errors);
+    void answer_client(const Origin& origin, const simulation::Reply& reply);
+    void shut_down(const publish::ReceivedRequest& text);
+    void cancel(const publish::ReceivedRequest& text, const control::Wanted::Cancelled& which);
     void wake_up() const;
     void note_restart();
     void note(const Origin& origin, const simulation::Reply& reply);
@@ -96,7 +96,7 @@ private:
     void make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause);
     void send_snapshots();
     void send_named_snapshots(const Origin& origin);
-    std::vector<publish::KeptSnapshot> kept_snapshots() const;
+    std::vector<wire::KeptSnapshot> kept_snapshots() const;
 
     simulation::Simulation* simulation_;
     plugins::PluginLibrary* library_;

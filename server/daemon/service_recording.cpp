@@ -33,7 +33,7 @@ bool Service::close_recording()
     snapshots_.finish();
     send_snapshots();
     const auto closed = recording_->close();
-    const publish::RecordingStatus status = recording_->progress();
+    const wire::RecordingInfo status = recording_->progress();
     if (!closed) spdlog::error("{}", closed.error().reason);
     if (status.dropped > 0) spdlog::warn("{}: {} messages were dropped on the way to the file", status.file, status.dropped);
     spdlog::info("recorded {} messages in {} bytes: {}", status.messages, status.bytes, status.file);
@@ -60,7 +60,7 @@ std::vector<std::string> Service::words_of(const simulation::Snapshot& snapshot)
     std::vector<std::string> out;
     for (const auto& request : snapshot->waiting)
     {
-        publish::RequestText text;
+        wire::Request text;
         if (const auto said = timed_.find(request->id); said != timed_.end())
             text.operations = said->second.texts;
         else if (const auto asked = waiting_.find(request->id); asked != waiting_.end())
@@ -82,10 +82,10 @@ Result<void> Service::save(const std::string& file) const
 
 void Service::write_journal(const Origin& origin, const simulation::Reply& reply)
 {
-    publish::JournalRecord entry;
+    wire::Journal entry;
     entry.run = simulation_->run(), entry.revision = reply.revision, entry.step = reply.step, entry.time = simulation_->time();
     entry.origin = origin.from_bus ? "client" : "command line";
-    entry.client = origin.client, entry.request = origin.number, entry.operations = origin.texts;
+    entry.client = origin.client, entry.number = origin.number, entry.operations = origin.texts;
     collector_.journal(std::move(entry));
     send_named_snapshots(origin);
 }
@@ -94,7 +94,7 @@ void Service::write_journal(const Origin& origin, const simulation::Reply& reply
 void Service::send_named_snapshots(const Origin& origin)
 {
     if (!collector_.anybody_reads_snapshots()) return;
-    for (const publish::OperationText& op : origin.texts)
+    for (const wire::Operation& op : origin.texts)
     {
         if (op.verb != "snapshot") continue;
         const auto& named = simulation_->history().named();
@@ -120,9 +120,9 @@ void Service::send_snapshots()
             spdlog::error("no snapshot was written: {}", made->error().text());
 }
 
-std::vector<publish::KeptSnapshot> Service::kept_snapshots() const
+std::vector<wire::KeptSnapshot> Service::kept_snapshots() const
 {
-    std::vector<publish::KeptSnapshot> out;
+    std::vector<wire::KeptSnapshot> out;
     for (const auto& [name, kept] : simulation_->history().named())
         out.push_back({name, kept.snapshot->run, kept.snapshot->clock.tick, kept.snapshot->clock.time(), kept.bytes});
     return out;

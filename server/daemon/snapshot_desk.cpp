@@ -27,7 +27,7 @@ bool SnapshotDesk::begin(const simulation::Snapshot& snapshot, std::vector<std::
     // Types are resolved here, on the step thread, because this may load a plugin.
     if (scene_ != snapshot->world.scene) scene_ = snapshot->world.scene, blueprint_ = blueprint::write_long_form(*scene_, *types_);
     Task task{snapshot, std::move(waiting), {}};
-    publish::SnapshotRecord& out = task.record;
+    wire::Snapshot& out = task.record;
     out.run = snapshot->run, out.revision = snapshot->revision, out.step = snapshot->clock.tick, out.time = snapshot->clock.time();
     out.name = std::move(name), out.cause = cause, out.state_hash = snapshot->state_hash;
     out.blueprint = blueprint_;
@@ -40,11 +40,11 @@ bool SnapshotDesk::begin(const simulation::Snapshot& snapshot, std::vector<std::
     return true;
 }
 
-std::optional<Result<publish::SnapshotRecord>> SnapshotDesk::take()
+std::optional<Result<wire::Snapshot>> SnapshotDesk::take()
 {
     if (ready_.load(std::memory_order_acquire) == 0) return {};
     const std::lock_guard lock(mutex_);
-    std::optional<Result<publish::SnapshotRecord>> out(std::move(made_.front()));
+    std::optional<Result<wire::Snapshot>> out(std::move(made_.front()));
     made_.pop_front();
     ready_.fetch_sub(1, std::memory_order_relaxed);
     return out;
@@ -68,7 +68,7 @@ void SnapshotDesk::work()
         auto bytes = simulation::encode(task.snapshot, task.waiting);
         if (bytes) task.record.data = bytes.take();
         lock.lock();
-        made_.push_back(bytes ? Result<publish::SnapshotRecord>(std::move(task.record)) : bytes.errors());
+        made_.push_back(bytes ? Result<wire::Snapshot>(std::move(task.record)) : bytes.errors());
         tasks_.pop_front();
         ready_.fetch_add(1, std::memory_order_release);
         changed_.notify_all();

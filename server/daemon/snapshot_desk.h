@@ -35,7 +35,7 @@ public:
     /// this one is skipped (and counted). Periodic snapshots are allowed less room than requested ones.
     bool begin(const simulation::Snapshot& snapshot, std::vector<std::string> waiting, std::string name, const char* cause);
     /// The next finished record, if there is one.
-    std::optional<Result<publish::SnapshotRecord>> take();
+    std::optional<Result<wire::Snapshot>> take();
     /// Waits until all are made.
     void finish();
     std::uint64_t left_out() const { return left_out_; }
@@ -47,7 +47,7 @@ private:
     {
         simulation::Snapshot snapshot;
         std::vector<std::string> waiting;
-        publish::SnapshotRecord record;
+        wire::Snapshot record;
     };
     void work();
 
@@ -61,7 +61,7 @@ private:
     std::mutex mutex_;                   ///< protects what follows
     std::condition_variable changed_;
     std::deque<Task> tasks_;  ///< the first one is being serialized
-    std::deque<Result<publish::SnapshotRecord>> made_;
+    std::deque<Result<wire::Snapshot>> made_;
     bool is_over_ = false;
     std::thread worker_;
 };

@@ -46,6 +46,11 @@ void add_entry(const simulation::Simulation& s, const Roster::Member& member, co
 
 }  // namespace
 
+CatalogueTracker::CatalogueTracker(const std::vector<model::TypeSummary>& types)
+{
+    for (const model::TypeSummary& type : types) types_.push_back(type_entry(type));
+}
+
 void CatalogueTracker::follow(const simulation::Simulation& s, const simulation::Changes& changes, Tick boundary)
 {
     const bool anew = changes.everything || run_ != s.run();
@@ -117,8 +122,8 @@ void CatalogueTracker::mark_loaded_types(const world::World& world)
     tables_ = world.tables().size();
     std::set<std::string_view> plugins;
     for (const auto& table : world.tables()) plugins.insert(table->type().plugin);
-    for (model::TypeSummary& type : types_)
-        if (!type.loaded && plugins.contains(type.plugin)) type.loaded = types_changed_ = true;
+    for (wire::Type& type : types_)
+        if (!type.is_loaded && plugins.contains(type.plugin)) type.is_loaded = types_changed_ = true;
 }
 
 void CatalogueTracker::release_scripted(const simulation::Simulation& s)

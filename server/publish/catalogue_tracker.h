@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "model/type_summary.h"
 #include "publish/records.h"
 #include "publish/roster.h"
 #include "simulation/simulation.h"
@@ -15,7 +16,7 @@ namespace plab::publish
 class CatalogueTracker
 {
 public:
-    explicit CatalogueTracker(std::vector<model::TypeSummary> types) : types_(std::move(types)) {}
+    explicit CatalogueTracker(const std::vector<model::TypeSummary>& types);
 
     /// Records what happened. `boundary`: the step before which requests took effect.
     void follow(const simulation::Simulation& simulation, const simulation::Changes& changes, Tick boundary);
@@ -41,7 +42,7 @@ private:
     void mark_loaded_types(const world::World& world);
 
     Roster roster_;
-    std::vector<model::TypeSummary> types_;
+    std::vector<wire::Type> types_;
     std::uint64_t run_ = 0, revision_ = 0;
     double dt_ = 0;
     std::size_t tables_ = 0;  ///< tables of the world when the types were last checked

@@ -20,17 +20,17 @@ constexpr Nanoseconds kShortestSample = 50'000'000;
 constexpr Nanoseconds kShortestOwnSample = 1'000'000;
 
 /// Whether a status differs in anything that must be sent at once.
-auto matter_of(const Status& s)
+auto matter_of(const wire::Server& s)
 {
-    return std::tie(s.scene_file, s.run, s.revision, s.dt, s.paused, s.rate_asked, s.slipping, s.threads, s.requests_done,
+    return std::tie(s.scene_file, s.run, s.revision, s.dt, s.paused, s.rate_asked, s.overload, s.threads, s.requests_done,
                     s.requests_refused, s.snapshots, s.recording.file, s.recording.trouble);
 }
 
 }  // namespace
 
-Collector::Collector(const CollectorOptions& options, std::vector<model::TypeSummary> types)
+Collector::Collector(const CollectorOptions& options, const std::vector<model::TypeSummary>& types)
     : options_(options),
-      catalogue_(std::move(types)),
+      catalogue_(types),
       sampler_(options.error_share),
       states_(options.states_per_second),
       metrics_(options.metrics_per_second),
@@ -139,10 +139,10 @@ void Collector::report_states(const simulation::Simulation& s, Nanoseconds now, 
     {
         const bool due = for_all || (when == When::InTurn && in_turn(*w.observer, Stream::States, s.time(), w.next_frame, servers_turn));
         if (!w.states.wanted || !due) continue;
-        Frame& frame = w.observer->begin_frame();
+        wire::Frame& frame = w.observer->begin_frame();
         fill_frame(s, catalogue_.roster(), frame);
         // Numbered per observer: one that gets every tenth frame has not missed nine.
-        frame.number = ++w.frames;
+        frame.sequence_number = ++w.frames;
         w.observer->end_frame();
         // Out of turn: the next one is due one interval from now.
         if (const auto interval = w.observer->interval(Stream::States); for_all && interval) w.next_frame = s.time() + *interval;
@@ -158,11 +158,11 @@ void Collector::report_hash(const simulation::Simulation& s)
         if (wants(w)) w.observer->hash(s.run(), s.tick(), hash);
 }
 
-void Collector::journal(JournalRecord entry)
+void Collector::journal(wire::Journal entry)
 {
-    entry.number = next_journal_++;
+    entry.sequence_number = next_journal_++;
     for (const Watcher& w : watchers_)
-        if (w.observer->wants(Stream::Journal)) w.observer->journal(JournalRecord(entry));
+        if (w.observer->wants(Stream::Journal)) w.observer->journal(wire::Journal(entry));
 }
 
 std::optional<const char*> Collector::wants_snapshot(const simulation::Simulation& s)
@@ -192,10 +192,10 @@ bool Collector::anybody_reads_snapshots() const
     return std::any_of(watchers_.begin(), watchers_.end(), [](const Watcher& w) { return w.observer->wants(Stream::Snapshots); });
 }
 
-void Collector::snapshot(const SnapshotRecord& snapshot)
+void Collector::snapshot(const wire::Snapshot& snapshot)
 {
     for (const Watcher& w : watchers_)
-        if (w.observer->wants(Stream::Snapshots)) w.observer->snapshot(SnapshotRecord(snapshot));
+        if (w.observer->wants(Stream::Snapshots)) w.observer->snapshot(wire::Snapshot(snapshot));
 }
 
 void Collector::report_events(const simulation::Simulation& s, const Counts& counts)
@@ -225,23 +225,23 @@ void Collector::report_metrics(const simulation::Simulation& s, Nanoseconds now,
     if (out_of_turn) metrics_.restart(now);
     if (out_of_turn || !own_turn) metrics_asked_ = false;
     sampled_ = now;
-    const Metrics metrics = sampler_.sample(s, now);
+    const wire::Metrics metrics = sampler_.sample(s, now);
     for (const Watcher& w : watchers_)
-        if (w.metrics.wanted) w.observer->metrics(Metrics(metrics));
+        if (w.metrics.wanted) w.observer->metrics(wire::Metrics(metrics));
 }
 
-void Collector::note(const simulation::Simulation& s, EventRecord event)
+void Collector::note(const simulation::Simulation& s, wire::EventInfo event)
 {
-    Batch<EventRecord> batch;
+    wire::Events batch;
     report_moment(s);
-    batch.run = s.run(), batch.first = next_event_++, batch.step = s.tick();
+    batch.run = s.run(), batch.sequence_number = next_event_++, batch.step = s.tick();
     event.time = s.time();
     batch.entries.push_back(std::move(event));
     for (const Watcher& w : watchers_)
-        if (w.observer->wants(Stream::Events)) w.observer->events(Batch<EventRecord>(batch));
+        if (w.observer->wants(Stream::Events)) w.observer->events(wire::Events(batch));
 }
 
-void Collector::status(const Status& status)
+void Collector::status(const wire::Server& status)
 {
     const Nanoseconds now = monotonic_now();
     if (published_at_ != 0 && now - published_at_ < kSecond && matter_of(status) == matter_of(published_)) return;

@@ -26,7 +26,7 @@ class Collector
 {
 public:
     /// `types`: the available types, loaded or not (plugins::PluginLibrary::summaries()).
-    Collector(const CollectorOptions& options, std::vector<model::TypeSummary> types);
+    Collector(const CollectorOptions& options, const std::vector<model::TypeSummary>& types);
 
     /// Call before the first collect(): earlier changes are not known. The observer must outlive this object.
     void attach(Observer& observer);
@@ -39,18 +39,18 @@ public:
     /// happened.
     void idle(const simulation::Simulation& simulation);
     /// Publishes the effect of a request as an event ("request.swap", ...) with the current time, for all observers.
-    void note(const simulation::Simulation& simulation, EventRecord event);
+    void note(const simulation::Simulation& simulation, wire::EventInfo event);
     /// A request took effect; its sequence number among all requests is filled in here.
-    void journal(JournalRecord entry);
+    void journal(wire::Journal entry);
     /// Why a snapshot of the current state is wanted, if it is: "begin" of a run or of an observer's interest, or "periodic".
     /// The caller must then hand one over.
     std::optional<const char*> wants_snapshot(const simulation::Simulation& simulation);
     bool anybody_reads_snapshots() const;
-    void snapshot(const SnapshotRecord& snapshot);
+    void snapshot(const wire::Snapshot& snapshot);
     /// Cheap enough to call at each step: it sends on change, and once per second. Values that only progress (step, time, rate
     /// reached, time slipped, numbers of events) do not count as changes. States per second and those numbers are filled in
     /// here.
-    void status(const Status& status);
+    void status(const wire::Server& status);
 
     std::uint64_t last_event() const { return next_event_ - 1; }
     std::uint64_t last_collision() const { return next_collision_ - 1; }
@@ -98,7 +98,7 @@ private:
     Nanoseconds sampled_ = 0;     ///< time of the last sample of metrics
     bool metrics_asked_ = false;  ///< a sample out of turn was requested
     std::uint64_t next_event_ = 1, next_collision_ = 1, next_journal_ = 1;
-    Status published_;
+    wire::Server published_;
     Nanoseconds published_at_ = 0;
 };
 

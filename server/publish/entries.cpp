@@ -16,11 +16,20 @@ std::vector<std::string> ids_of(const world::World& world, const std::vector<Ref
     return out;
 }
 
+/// The word for an enumerator, in the order of its type.
+template <class Enum, std::size_t N>
+const char* word(Enum value, const char* const (&words)[N])
+{
+    return words[static_cast<std::size_t>(value)];
+}
+constexpr const char* kMotions[] = {"static", "kinematic", "dynamic"};
+constexpr const char* kForms[] = {"none", "sphere", "box", "plane", "mesh", "capsule", "cylinder", "compound"};
+
 }  // namespace
 
-std::vector<Parameter> parameters_of(const world::World& world, std::uint32_t component, unsigned kinds)
+std::vector<wire::Parameter> parameters_of(const world::World& world, std::uint32_t component, unsigned kinds)
 {
-    std::vector<Parameter> out;
+    std::vector<wire::Parameter> out;
     for (const Field& field : world.table_of(component).schema().fields())
         if ((kinds & world::kind_bit(field.kind)) != 0 && field.type != FieldType::Opaque)
             out.push_back({field.name, model::format_value(world.get(component, field.name)), std::string(field.unit.symbol),
@@ -28,39 +37,42 @@ std::vector<Parameter> parameters_of(const world::World& world, std::uint32_t co
     return out;
 }
 
-ObjectEntry object_entry(const simulation::Simulation& s, const Roster::Member& member, const std::string& name)
+wire::SceneObject object_entry(const simulation::Simulation& s, const Roster::Member& member, const std::string& name)
 {
     const world::World& world = s.world();
     const world::Component& c = world.component(member.index);
-    ObjectEntry out;
-    out.component = c.id, out.name = name, out.type = member.type->info.name;
+    wire::SceneObject out;
+    out.component_id = c.id, out.name = name, out.type_name = member.type->info.name;
     out.handle = member.handle, out.run = s.run(), out.quarantined = c.quarantined;
-    out.is_shaft = c.facet == Facet::Shaft;
+    const bool is_shaft = c.facet == Facet::Shaft;
     const std::uint32_t row = c.host_index;
     const Bodies& bodies = world.host().bodies;
     const Shafts& shafts = world.host().shafts;
-    out.motion = out.is_shaft ? shafts.motion[row] : bodies.motion[row];
-    out.mass = out.is_shaft ? shafts.inertia[row] : bodies.mass[row];
-    out.pose = out.is_shaft ? shafts.axle[row] : bodies.pose(row);
-    out.shapes = ids_of(world, out.is_shaft ? shafts.shapes[row] : bodies.shapes[row]);
+    const Pose pose = is_shaft ? shafts.axle[row] : bodies.pose(row);
+    out.shape_of = is_shaft ? "shaft" : "body";
+    out.motion = word(is_shaft ? shafts.motion[row] : bodies.motion[row], kMotions);
+    out.mass = is_shaft ? shafts.inertia[row] : bodies.mass[row];
+    out.position = pose.p, out.orientation = pose.q;
+    out.shapes = ids_of(world, is_shaft ? shafts.shapes[row] : bodies.shapes[row]);
     const Value color = world.get(member.index, "color");
     if (const auto* rgb = std::get_if<Vec3>(&color)) out.color = *rgb;
     out.parameters = parameters_of(world, member.index, kGivenKinds);
     return out;
 }
 
-ShapeEntry shape_entry(const simulation::Simulation& s, const Roster::Member& member)
+wire::Shape shape_entry(const simulation::Simulation& s, const Roster::Member& member)
 {
     const world::Component& c = s.world().component(member.index);
-    return {c.id, member.type->info.name, s.world().host().shapes.geometry[c.host_index]};
+    const Geometry& g = s.world().host().shapes.geometry[c.host_index];
+    return {c.id, member.type->info.name, word(g.kind, kForms), g.pose.p, g.pose.q, g.size, g.vertices, g.triangles};
 }
 
-InteractionEntry interaction_entry(const simulation::Simulation& s, const Roster::Member& member, const std::string& name)
+wire::Interaction interaction_entry(const simulation::Simulation& s, const Roster::Member& member, const std::string& name)
 {
     const world::World& world = s.world();
     const world::Component& c = world.component(member.index);
-    InteractionEntry out;
-    out.component = c.id, out.name = name, out.type = member.type->info.name, out.family = member.type->info.family;
+    wire::Interaction out;
+    out.component_id = c.id, out.name = name, out.type_name = member.type->info.name, out.family = member.type->info.family;
     out.run = s.run(), out.since = member.since, out.quarantined = c.quarantined;
     for (const Role& role : world.table_of(member.index).schema().roles())
         out.roles.push_back({role.name, ids_of(world, world.participants(member.index, role))});
@@ -68,14 +80,27 @@ InteractionEntry interaction_entry(const simulation::Simulation& s, const Roster
     return out;
 }
 
-SceneEntry scene_entry(const simulation::Simulation& s, const Roster& roster)
+wire::Scene scene_entry(const simulation::Simulation& s, const Roster& roster)
 {
     const model::SceneSettings& settings = s.world().scene().settings;
-    SceneEntry out;
+    wire::Scene out;
     out.run = s.run(), out.file = s.world().scene().file, out.title = settings.title;
-    out.dt = s.dt(), out.seed = settings.seed, out.cameras = settings.cameras;
+    out.dt = s.dt(), out.seed = settings.seed;
+    for (const model::Camera& c : settings.cameras) out.cameras.push_back({c.name, c.position, c.look_at, c.up, c.field_of_view});
     out.objects = static_cast<std::uint32_t>(roster.count(Roster::Kind::Object));
     out.interactions = static_cast<std::uint32_t>(roster.count(Roster::Kind::Interaction));
+    return out;
+}
+
+wire::Type type_entry(const model::TypeSummary& type)
+{
+    wire::Type out;
+    out.type_name = type.name, out.family = type.family, out.doc = type.doc, out.plugin = type.plugin;
+    out.is_loaded = type.loaded, out.order = type.order;
+    out.accuracy = type.accuracy, out.strengths = type.strengths, out.cost = type.cost, out.limits = type.limits, out.source = type.source;
+    for (const model::RoleSummary& r : type.roles) out.roles.push_back({r.name, r.accepts, r.least, r.most, r.doc});
+    for (const model::FieldSummary& f : type.fields)
+        out.fields.push_back({f.name, f.kind, f.value_type, f.unit, f.fallback, f.required, f.rule, f.doc});
     return out;
 }
 

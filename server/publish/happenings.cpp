@@ -19,9 +19,15 @@ const char* collision_kind(std::string_view kind)
 
 std::string id_of(const world::World& world, Ref ref) { return ref.valid() ? world.id_of(ref) : std::string(); }
 
-CollisionRecord collision_of(const world::World& world, const Event& e, const char* kind)
+const char* word(Severity severity)
 {
-    CollisionRecord out;
+    constexpr const char* kWords[] = {"info", "warning", "failure"};
+    return kWords[static_cast<std::size_t>(severity)];
+}
+
+wire::CollisionInfo collision_of(const world::World& world, const Event& e, const char* kind)
+{
+    wire::CollisionInfo out;
     out.kind = kind, out.time = e.time;
     out.detector = world.id_of(e.component), out.a = id_of(world, e.a), out.b = id_of(world, e.b);
     if (e.contact)
@@ -29,11 +35,11 @@ CollisionRecord collision_of(const world::World& world, const Event& e, const ch
     return out;
 }
 
-EventRecord event_of(const world::World& world, const Event& e)
+wire::EventInfo event_of(const world::World& world, const Event& e)
 {
-    EventRecord out;
-    out.kind = e.kind, out.severity = e.severity, out.time = e.time;
-    out.component = world.id_of(e.component), out.a = id_of(world, e.a), out.b = id_of(world, e.b);
+    wire::EventInfo out;
+    out.kind = e.kind, out.severity = word(e.severity), out.time = e.time;
+    out.component_id = world.id_of(e.component), out.a = id_of(world, e.a), out.b = id_of(world, e.b);
     out.message = e.message, out.values = e.values;
     // The wire gives the place of such a contact as six values: point and normal.
     if (e.contact)
@@ -50,19 +56,19 @@ Counts count(std::span<const Event> events)
     return out;
 }
 
-Batch<CollisionRecord> collisions_of(const simulation::Simulation& s, Tick step, std::uint64_t first)
+wire::Collisions collisions_of(const simulation::Simulation& s, Tick step, std::uint64_t first)
 {
-    Batch<CollisionRecord> out;
-    out.run = s.run(), out.first = first, out.step = step;
+    wire::Collisions out;
+    out.run = s.run(), out.sequence_number = first, out.step = step;
     for (const Event& e : s.events())
         if (const char* kind = collision_kind(e.kind)) out.entries.push_back(collision_of(s.world(), e, kind));
     return out;
 }
 
-Batch<EventRecord> events_of(const simulation::Simulation& s, Tick step, std::uint64_t first)
+wire::Events events_of(const simulation::Simulation& s, Tick step, std::uint64_t first)
 {
-    Batch<EventRecord> out;
-    out.run = s.run(), out.first = first, out.step = step;
+    wire::Events out;
+    out.run = s.run(), out.sequence_number = first, out.step = step;
     for (const Event& e : s.events())
         if (!collision_kind(e.kind)) out.entries.push_back(event_of(s.world(), e));
     return out;

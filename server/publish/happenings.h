@@ -16,7 +16,7 @@ struct Counts
 };
 Counts count(std::span<const Event> events);
 
-Batch<CollisionRecord> collisions_of(const simulation::Simulation& simulation, Tick step, std::uint64_t first);
-Batch<EventRecord> events_of(const simulation::Simulation& simulation, Tick step, std::uint64_t first);
+wire::Collisions collisions_of(const simulation::Simulation& simulation, Tick step, std::uint64_t first);
+wire::Events events_of(const simulation::Simulation& simulation, Tick step, std::uint64_t first);
 
 }  // namespace plab::publish

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "plab/context.h"
 #include "publish/records.h"
 
 namespace plab::publish
@@ -38,17 +39,17 @@ public:
     virtual void moment(std::uint64_t /*run*/, double /*time*/) {}
     /// Returns a frame to fill, whose vectors keep the memory of an earlier one; end_frame() hands it over. If all frames are
     /// in use, the oldest unsent one is dropped.
-    virtual Frame& begin_frame() = 0;
+    virtual wire::Frame& begin_frame() = 0;
     virtual void end_frame() = 0;
-    virtual void collisions(Batch<CollisionRecord>&& batch) = 0;
-    virtual void events(Batch<EventRecord>&& batch) = 0;
-    virtual void metrics(Metrics&& metrics) = 0;
-    virtual void image(Image&& image) = 0;
-    virtual void journal(JournalRecord&& entry) = 0;
+    virtual void collisions(wire::Collisions&& batch) = 0;
+    virtual void events(wire::Events&& batch) = 0;
+    virtual void metrics(wire::Metrics&& metrics) = 0;
+    virtual void image(wire::Image&& image) = 0;
+    virtual void journal(wire::Journal&& entry) = 0;
     /// Receives the hash of the state after a step; called for each step in order while Hashes is wanted.
     virtual void hash(std::uint64_t run, Tick step, std::uint64_t hash) = 0;
-    virtual void snapshot(SnapshotRecord&& snapshot) = 0;
-    virtual void status(const Status& status) = 0;
+    virtual void snapshot(wire::Snapshot&& snapshot) = 0;
+    virtual void status(const wire::Server& status) = 0;
     /// False if there was no room: the next change must then contain everything.
     virtual bool catalogue(CatalogueChange&& change) = 0;
 };

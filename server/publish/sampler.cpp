@@ -16,19 +16,19 @@ namespace
 /// Over a shorter real time, a rate would measure the clock rather than the run.
 constexpr Nanoseconds kShortestWindow = 100'000'000;
 
-void fill_ledger(const simulation::Simulation& s, Metrics& out)
+void fill_ledger(const simulation::Simulation& s, wire::Metrics& out)
 {
     const simulation::Totals totals = s.totals();
-    out.kinetic = totals.kinetic, out.stored = totals.stored, out.work = totals.work;
-    out.of_requests = s.stepper().requests_work(), out.unexplained = unexplained(s, totals);
+    out.ledger = {totals.kinetic, totals.stored, totals.work, s.stepper().requests_work(), unexplained(s, totals)};
     out.momentum = totals.momentum, out.angular_momentum = totals.angular_momentum;
 }
 
-InteractionMetrics metrics_of(const simulation::Simulation& s, std::uint32_t i, std::string resolved, const Cost& cost, ErrorFigure error)
+wire::InteractionMetrics metrics_of(const simulation::Simulation& s, std::uint32_t i, std::string resolved, const Cost& cost,
+                                    ErrorFigure error)
 {
     const world::World& world = s.world();
-    InteractionMetrics out;
-    out.component = world.id_of(i), out.requested = world.type_of(i)->info.name, out.resolved = std::move(resolved);
+    wire::InteractionMetrics out;
+    out.component_id = world.id_of(i), out.requested = world.type_of(i)->info.name, out.resolved = std::move(resolved);
     out.cost_ns = cost.last.median;
     if (!std::isnan(error.value)) out.error = error.value;
     out.work = i < s.stepper().work().size() ? s.stepper().work()[i] : 0.0;
@@ -57,11 +57,11 @@ void Sampler::read_rate(const simulation::Simulation& s, Nanoseconds now)
     rate_since_ = now, rate_from_ = s.time();
 }
 
-Metrics Sampler::sample(const simulation::Simulation& s, Nanoseconds now)
+wire::Metrics Sampler::sample(const simulation::Simulation& s, Nanoseconds now)
 {
     read_rate(s, now);
     errors_.follow(s, now);
-    Metrics out;
+    wire::Metrics out;
     out.run = s.run(), out.revision = s.revision(), out.step = s.tick(), out.time = s.time();
     out.step_ns = s.stepper().cost().step().median;
     out.real_time_factor = real_time_factor_;

@@ -14,7 +14,7 @@ class Sampler
 public:
     /// `error_share`: largest share of real time for measuring errors.
     explicit Sampler(double error_share) : errors_(error_share) {}
-    Metrics sample(const simulation::Simulation& simulation, Nanoseconds now);
+    wire::Metrics sample(const simulation::Simulation& simulation, Nanoseconds now);
 
 private:
     void read_rate(const simulation::Simulation& simulation, Nanoseconds now);

@@ -5,7 +5,7 @@
 namespace plab::publish
 {
 
-BodyState state_of(const Bodies& bodies, std::uint32_t row, std::uint32_t handle)
+wire::BodyState state_of(const Bodies& bodies, std::uint32_t row, std::uint32_t handle)
 {
     // The frame B of most bodies is at the centre of mass.
     if (bodies.center_B[row] == Vec3{})
@@ -14,7 +14,7 @@ BodyState state_of(const Bodies& bodies, std::uint32_t row, std::uint32_t handle
     return {handle, X_WB.p, X_WB.q, bodies.velocity_at(row, X_WB.p), bodies.angular_velocity[row]};
 }
 
-void fill_frame(const simulation::Simulation& s, const Roster& roster, Frame& frame)
+void fill_frame(const simulation::Simulation& s, const Roster& roster, wire::Frame& frame)
 {
     using std::chrono::duration_cast, std::chrono::nanoseconds, std::chrono::system_clock;
     frame.run = s.run(), frame.revision = s.revision(), frame.step = s.tick(), frame.time = s.time();

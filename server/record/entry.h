@@ -13,9 +13,8 @@ namespace plab::record
 /// A server's status, with what the recorder adds about itself.
 struct Entry
 {
-    using Body = std::variant<std::unique_ptr<publish::Frame>, publish::Batch<publish::CollisionRecord>,
-                              publish::Batch<publish::EventRecord>, publish::Metrics, publish::Image, publish::JournalRecord,
-                              publish::HashRecord, publish::SnapshotRecord, publish::CatalogueChange, publish::Status>;
+    using Body = std::variant<std::unique_ptr<wire::Frame>, wire::Collisions, wire::Events, wire::Metrics, wire::Image, wire::Journal,
+                              wire::Hashes, wire::Snapshot, publish::CatalogueChange, wire::Server>;
     std::uint64_t run = 0;
     double time = 0;            ///< s, simulated, in that run
     std::int64_t stamp_ns = 0;  ///< since 1970

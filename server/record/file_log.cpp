@@ -2,64 +2,30 @@
 
 #include <algorithm>
 
-#include "wire/wire_view.h"
+#include "idl/samples.h"
 
 namespace plab::record
 {
 namespace
 {
 
-Vec3 vector_of(const plab_v2_Vector& v) { return {v.x, v.y, v.z}; }
-Quat rotation_of(const plab_v2_Rotation& q) { return {q.w, q.x, q.y, q.z}; }
-
-publish::OperationText operation_of(const plab_v2_Operation& op)
+/// A frame that has only what moved, into the one before it.
+void merge(const wire::Frame& f, wire::Frame& out)
 {
-    publish::OperationText out{op.verb, op.target, op.argument, op.blueprint, {}};
-    for (std::uint32_t i = 0; i < op.values._length; ++i) out.values.emplace_back(op.values._buffer[i].name, op.values._buffer[i].text);
-    return out;
-}
-
-publish::JournalRecord journal_of(const plab_v2_Journal& j)
-{
-    publish::JournalRecord out;
-    out.run = j.run, out.revision = j.revision, out.number = j.sequence_number, out.step = j.step, out.time = j.time;
-    out.origin = std::string_view(j.origin) == "client" ? "client" : "command line";
-    std::copy(std::begin(j.client), std::end(j.client), out.client.begin());
-    out.request = j.number;
-    for (std::uint32_t i = 0; i < j.operations._length; ++i) out.operations.push_back(operation_of(j.operations._buffer[i]));
-    return out;
-}
-
-const char* cause_of(std::string_view cause)
-{
-    for (const char* known : {"begin", "periodic", "request"})
-        if (cause == known) return known;
-    return "";
-}
-
-void merge(const plab_v2_Frame& f, publish::Frame& out)
-{
-    out.run = f.run, out.revision = f.revision, out.number = f.sequence_number;
+    out.run = f.run, out.revision = f.revision, out.sequence_number = f.sequence_number;
     out.step = f.step, out.time = f.time, out.stamp_ns = f.stamp_ns;
-    const auto put = [](auto& list, const auto& state)
+    const auto put = [](auto& list, const auto& states)
     {
-        const auto at = std::find_if(list.begin(), list.end(), [&](const auto& s) { return s.handle == state.handle; });
-        if (at != list.end())
-            *at = state;
-        else
-            list.push_back(state);
+        for (const auto& state : states)
+        {
+            const auto at = std::find_if(list.begin(), list.end(), [&](const auto& s) { return s.handle == state.handle; });
+            if (at != list.end())
+                *at = state;
+            else
+                list.push_back(state);
+        }
     };
-    for (std::uint32_t i = 0; i < f.bodies._length; ++i)
-    {
-        const plab_v2_BodyState& b = f.bodies._buffer[i];
-        put(out.bodies, publish::BodyState{b.handle, vector_of(b.position), rotation_of(b.orientation), vector_of(b.linear_velocity),
-                                           vector_of(b.angular_velocity)});
-    }
-    for (std::uint32_t i = 0; i < f.shafts._length; ++i)
-    {
-        const plab_v2_ShaftState& s = f.shafts._buffer[i];
-        put(out.shafts, publish::ShaftState{s.handle, s.angle, s.speed});
-    }
+    put(out.bodies, f.bodies), put(out.shafts, f.shafts);
 }
 
 }  // namespace
@@ -108,9 +74,9 @@ Result<void> FileLog::list_snapshots()
                                   });
 }
 
-Result<publish::SnapshotRecord> FileLog::read(const RecordedSnapshot& snapshot)
+Result<wire::Snapshot> FileLog::read(const RecordedSnapshot& snapshot)
 {
-    std::optional<publish::SnapshotRecord> out;
+    std::optional<wire::Snapshot> out;
     recording::Query query;
     query.topics = {wire::topic_of<plab_v2_Snapshot>().name};
     query.from = query.to = snapshot.place;
@@ -118,11 +84,7 @@ Result<publish::SnapshotRecord> FileLog::read(const RecordedSnapshot& snapshot)
                                        [&](const plab_v2_Snapshot& s, std::uint64_t)
                                        {
                                            if (s.run != snapshot.run || s.step != snapshot.step) return true;
-                                           out.emplace();
-                                           out->run = s.run, out->revision = s.revision, out->step = s.step, out->time = s.time;
-                                           out->name = s.name, out->cause = cause_of(s.cause), out->state_hash = s.state_hash;
-                                           out->blueprint = s.blueprint;
-                                           out->data.assign(s.data._buffer, s.data._buffer + s.data._length);
+                                           out = wire::value_of<wire::Snapshot>(s);
                                            return false;
                                        });
     if (!done) return done.errors();
@@ -130,17 +92,17 @@ Result<publish::SnapshotRecord> FileLog::read(const RecordedSnapshot& snapshot)
     return *std::move(out);
 }
 
-Result<std::vector<publish::JournalRecord>> FileLog::journal(std::uint64_t run)
+Result<std::vector<wire::Journal>> FileLog::journal(std::uint64_t run)
 {
-    std::vector<publish::JournalRecord> out;
+    std::vector<wire::Journal> out;
     auto done = each<plab_v2_Journal>(query_of(wire::topic_of<plab_v2_Journal>().name, run),
                                       [&](const plab_v2_Journal& j, std::uint64_t)
                                       {
-                                          if (j.run == run) out.push_back(journal_of(j));
+                                          if (j.run == run) out.push_back(wire::value_of<wire::Journal>(j));
                                           return true;
                                       });
     if (!done) return done.errors();
-    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.sequence_number < b.sequence_number; });
     return out;
 }
 
@@ -151,7 +113,7 @@ Result<void> FileLog::begin_hashes(std::uint64_t run)
     return {};
 }
 
-Result<std::optional<publish::HashRecord>> FileLog::next_hashes()
+Result<std::optional<wire::Hashes>> FileLog::next_hashes()
 {
     while (hashes_)
     {
@@ -160,18 +122,15 @@ Result<std::optional<publish::HashRecord>> FileLog::next_hashes()
         if (!*next) break;
         if (auto decoded = decoder_.decode((*next)->message.data, hash_sample_); !decoded) return decoded.errors();
         if (hash_sample_->run != hash_run_) continue;
-        publish::HashRecord out;
-        out.run = hash_sample_->run, out.first = hash_sample_->sequence_number, out.step = hash_sample_->step;
-        out.hashes.assign(hash_sample_->values._buffer, hash_sample_->values._buffer + hash_sample_->values._length);
-        return std::optional(std::move(out));
+        return std::optional(wire::value_of<wire::Hashes>(*hash_sample_));
     }
-    return std::optional<publish::HashRecord>();
+    return std::optional<wire::Hashes>();
 }
 
-Result<std::optional<publish::Frame>> FileLog::frame(std::uint64_t run, Tick step)
+Result<std::optional<wire::Frame>> FileLog::frame(std::uint64_t run, Tick step)
 {
     // Frames may contain only what moved: merge all frames of the run up to that one to get a complete one.
-    publish::Frame merged;
+    wire::Frame merged;
     bool there = false;
     auto done = each<plab_v2_Frame>(query_of(wire::topic_of<plab_v2_Frame>().name, run),
                                     [&](const plab_v2_Frame& f, std::uint64_t)
@@ -180,7 +139,7 @@ Result<std::optional<publish::Frame>> FileLog::frame(std::uint64_t run, Tick ste
                                         // If there are several after one step, the last one counts: a request may have changed
                                         // states.
                                         if (there && f.step > merged.step) return false;
-                                        merge(f, merged);
+                                        merge(wire::value_of<wire::Frame>(f), merged);
                                         there = f.step >= step;
                                         return f.step <= step;
                                     });

@@ -17,11 +17,11 @@ public:
     static Result<std::unique_ptr<FileLog>> open(const std::string& file);
 
     const std::vector<RecordedSnapshot>& snapshots() const override { return snapshots_; }
-    Result<publish::SnapshotRecord> read(const RecordedSnapshot& snapshot) override;
-    Result<std::vector<publish::JournalRecord>> journal(std::uint64_t run) override;
+    Result<wire::Snapshot> read(const RecordedSnapshot& snapshot) override;
+    Result<std::vector<wire::Journal>> journal(std::uint64_t run) override;
     Result<void> begin_hashes(std::uint64_t run) override;
-    Result<std::optional<publish::HashRecord>> next_hashes() override;
-    Result<std::optional<publish::Frame>> frame(std::uint64_t run, Tick step) override;
+    Result<std::optional<wire::Hashes>> next_hashes() override;
+    Result<std::optional<wire::Frame>> frame(std::uint64_t run, Tick step) override;
     Result<std::vector<std::pair<std::uint32_t, std::string>>> objects(std::uint64_t run) override;
     std::string origin(const std::string& key) const override;
     std::string damage() const override;

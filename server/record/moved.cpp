@@ -9,13 +9,13 @@ namespace
 {
 
 // Compares raw bits: a state that changed from 0 to -0 has moved. Padding between members is not compared.
-bool same(const publish::BodyState& a, const publish::BodyState& b)
+bool same(const wire::BodyState& a, const wire::BodyState& b)
 {
-    constexpr std::size_t kFrom = offsetof(publish::BodyState, position);
-    const auto bytes = [](const publish::BodyState& s) { return reinterpret_cast<const char*>(&s) + kFrom; };
+    constexpr std::size_t kFrom = offsetof(wire::BodyState, position);
+    const auto bytes = [](const wire::BodyState& s) { return reinterpret_cast<const char*>(&s) + kFrom; };
     return a.handle == b.handle && std::memcmp(bytes(a), bytes(b), sizeof a - kFrom) == 0;
 }
-bool same(const publish::ShaftState& a, const publish::ShaftState& b)
+bool same(const wire::ShaftState& a, const wire::ShaftState& b)
 {
     return a.handle == b.handle && std::memcmp(&a.angle, &b.angle, sizeof a.angle) == 0 &&
            std::memcmp(&a.speed, &b.speed, sizeof a.speed) == 0;
@@ -36,7 +36,7 @@ void keep_moved(const std::vector<State>& now, std::vector<State>& last, std::ve
 
 }  // namespace
 
-const publish::Frame& MovedFilter::thin(const publish::Frame& frame)
+const wire::Frame& MovedFilter::thin(const wire::Frame& frame)
 {
     const bool same_things = frame.run == last_.run && frame.revision == last_.revision && frame.bodies.size() == last_.bodies.size() &&
                              frame.shafts.size() == last_.shafts.size();
@@ -46,7 +46,7 @@ const publish::Frame& MovedFilter::thin(const publish::Frame& frame)
         last_ = frame;
         return frame;
     }
-    out_.run = frame.run, out_.revision = frame.revision, out_.number = frame.number;
+    out_.run = frame.run, out_.revision = frame.revision, out_.sequence_number = frame.sequence_number;
     out_.step = frame.step, out_.time = frame.time, out_.stamp_ns = frame.stamp_ns;
     keep_moved(frame.bodies, last_.bodies, out_.bodies);
     keep_moved(frame.shafts, last_.shafts, out_.shafts);

@@ -17,12 +17,12 @@ public:
     explicit MovedFilter(double full_every) : full_every_(full_every) {}
 
     /// Valid until the next call.
-    const publish::Frame& thin(const publish::Frame& frame);
+    const wire::Frame& thin(const wire::Frame& frame);
 
 private:
     double full_every_;  ///< s, simulated
     double full_at_ = 0;
-    publish::Frame last_, out_;  ///< last_: as a reader has it
+    wire::Frame last_, out_;  ///< last_: as a reader has it
 };
 
 }  // namespace plab::record

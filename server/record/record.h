@@ -40,7 +40,7 @@ struct RecordOptions
 class Recording : public publish::Observer
 {
 public:
-    virtual publish::RecordingStatus progress() const = 0;
+    virtual wire::RecordingInfo progress() const = 0;
     /// Writes what waits and completes the file. Nothing may be handed over afterwards.
     virtual Result<void> close() = 0;
 };

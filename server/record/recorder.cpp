@@ -59,10 +59,10 @@ Result<void> check_topics(const std::vector<std::string>& topics)
     return {};
 }
 
-template <class T>
-std::size_t size_of(const publish::Batch<T>& batch)
+template <class Batch>
+std::size_t size_of(const Batch& batch)
 {
-    return sizeof batch + batch.entries.size() * (sizeof(T) + 64);
+    return sizeof batch + batch.entries.size() * (sizeof(batch.entries[0]) + 64);
 }
 
 }  // namespace
@@ -103,10 +103,10 @@ std::uint64_t Recorder::write(recording::TopicFile& file, Entry& entry)
 {
     // Snapshots are serialized in parallel with the run and arrive late: they are placed at the time when they were taken, a
     // run's first one before the run.
-    const auto* snapshot = std::get_if<publish::SnapshotRecord>(&entry.body);
+    const auto* snapshot = std::get_if<wire::Snapshot>(&entry.body);
     const std::uint64_t log_time = snapshot ? timeline_.at(snapshot->run, snapshot->time) : timeline_.at(entry.run, entry.time);
     topics_.put(file, entry, {log_time, static_cast<std::uint64_t>(entry.stamp_ns), recording::Clock::now()});
-    if (auto* frame = std::get_if<std::unique_ptr<publish::Frame>>(&entry.body)) (void)spare_.push(*frame);
+    if (auto* frame = std::get_if<std::unique_ptr<wire::Frame>>(&entry.body)) (void)spare_.push(*frame);
     return log_time;
 }
 
@@ -148,72 +148,72 @@ bool Recorder::push(Entry::Body&& body, std::size_t bytes, Weight weight)
     return writer_.push({run_, time_, std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), std::move(body)}, bytes, weight);
 }
 
-publish::Frame& Recorder::begin_frame()
+wire::Frame& Recorder::begin_frame()
 {
     if (!filling_)
         if (auto spare = spare_.pop()) filling_ = std::move(*spare);
-    if (!filling_) filling_ = std::make_unique<publish::Frame>();
+    if (!filling_) filling_ = std::make_unique<wire::Frame>();
     return *filling_;
 }
 
 void Recorder::end_frame()
 {
-    const std::size_t bytes = sizeof(publish::Frame) + filling_->bodies.size() * sizeof(publish::BodyState) +
-                              filling_->shafts.size() * sizeof(publish::ShaftState);
+    const std::size_t bytes =
+        sizeof(wire::Frame) + filling_->bodies.size() * sizeof(wire::BodyState) + filling_->shafts.size() * sizeof(wire::ShaftState);
     if (!writer_.has_room(bytes, Weight::Detail)) return writer_.drop(bytes);  // the frame stays here and is refilled
     (void)push(std::move(filling_), bytes, Weight::Detail);
 }
 
-void Recorder::collisions(publish::Batch<publish::CollisionRecord>&& batch)
+void Recorder::collisions(wire::Collisions&& batch)
 {
     const std::size_t bytes = size_of(batch);
     (void)push(std::move(batch), bytes, Weight::Detail);
 }
 
-void Recorder::events(publish::Batch<publish::EventRecord>&& batch)
+void Recorder::events(wire::Events&& batch)
 {
     const std::size_t bytes = size_of(batch);
     (void)push(std::move(batch), bytes, Weight::Essential);
 }
 
-void Recorder::metrics(publish::Metrics&& metrics)
+void Recorder::metrics(wire::Metrics&& metrics)
 {
     const std::size_t bytes = sizeof metrics + metrics.interactions.size() * 512;
     (void)push(std::move(metrics), bytes, Weight::Detail);
 }
 
-void Recorder::image(publish::Image&& image)
+void Recorder::image(wire::Image&& image)
 {
-    const std::size_t bytes = sizeof image + image.rgba.size();
+    const std::size_t bytes = sizeof image + image.data.size();
     (void)push(std::move(image), bytes, Weight::Detail);
 }
 
-void Recorder::journal(publish::JournalRecord&& entry)
+void Recorder::journal(wire::Journal&& entry)
 {
     std::size_t bytes = sizeof entry;
-    for (const publish::OperationText& op : entry.operations) bytes += sizeof op + op.blueprint.size();
+    for (const wire::Operation& op : entry.operations) bytes += sizeof op + op.blueprint.size();
     (void)push(std::move(entry), bytes, Weight::Vital);
 }
 
 void Recorder::hash(std::uint64_t run, Tick step, std::uint64_t hash) { push(hash_batch_.add(run, step, hash, publish::monotonic_now())); }
 
-void Recorder::push(std::optional<publish::HashRecord> record)
+void Recorder::push(std::optional<wire::Hashes> record)
 {
     if (!record) return;
-    const std::size_t bytes = sizeof *record + record->hashes.size() * sizeof(std::uint64_t);
+    const std::size_t bytes = sizeof *record + record->values.size() * sizeof(std::uint64_t);
     (void)push(*std::move(record), bytes, Weight::Vital);
 }
 
-void Recorder::snapshot(publish::SnapshotRecord&& snapshot)
+void Recorder::snapshot(wire::Snapshot&& snapshot)
 {
     const std::size_t bytes = sizeof snapshot + snapshot.data.size() + snapshot.blueprint.size();
     (void)push(std::move(snapshot), bytes, Weight::Essential);
 }
 
-void Recorder::status(const publish::Status& status)
+void Recorder::status(const wire::Server& status)
 {
     push(status.paused ? hash_batch_.flush() : hash_batch_.flush_old(publish::monotonic_now()));
-    (void)push(publish::Status(status), sizeof status, Weight::Detail);
+    (void)push(wire::Server(status), sizeof status, Weight::Detail);
 }
 
 bool Recorder::catalogue(publish::CatalogueChange&& change)
@@ -221,14 +221,14 @@ bool Recorder::catalogue(publish::CatalogueChange&& change)
     constexpr std::size_t kEntry = 1024;
     const std::size_t entries = change.objects.size() + change.shapes.size() + change.interactions.size() + change.types.size();
     std::size_t bytes = sizeof change + entries * kEntry;
-    for (const publish::ShapeEntry& s : change.shapes) bytes += s.geometry.vertices.size() * sizeof(Vec3) + s.geometry.triangles.size() * 4;
+    for (const wire::Shape& s : change.shapes) bytes += s.vertices.size() * sizeof(Vec3) + s.triangles.size() * 4;
     return push(std::move(change), bytes, Weight::Essential);
 }
 
-publish::RecordingStatus Recorder::progress() const
+wire::RecordingInfo Recorder::progress() const
 {
     const recording::WriteProgress p = writer_.progress();
-    publish::RecordingStatus out;
+    wire::RecordingInfo out;
     out.file = options_.file, out.bytes = p.bytes, out.messages = p.messages, out.dropped = p.dropped;
     if (p.trouble) out.trouble = p.trouble->reason;
     return out;

@@ -21,19 +21,19 @@ public:
     bool wants(publish::Stream stream) const override;
     std::optional<double> interval(publish::Stream stream) const override;
     void moment(std::uint64_t run, double time) override { run_ = run, time_ = time; }
-    publish::Frame& begin_frame() override;
+    wire::Frame& begin_frame() override;
     void end_frame() override;
-    void collisions(publish::Batch<publish::CollisionRecord>&& batch) override;
-    void events(publish::Batch<publish::EventRecord>&& batch) override;
-    void metrics(publish::Metrics&& metrics) override;
-    void image(publish::Image&& image) override;
-    void journal(publish::JournalRecord&& entry) override;
+    void collisions(wire::Collisions&& batch) override;
+    void events(wire::Events&& batch) override;
+    void metrics(wire::Metrics&& metrics) override;
+    void image(wire::Image&& image) override;
+    void journal(wire::Journal&& entry) override;
     void hash(std::uint64_t run, Tick step, std::uint64_t hash) override;
-    void snapshot(publish::SnapshotRecord&& snapshot) override;
-    void status(const publish::Status& status) override;
+    void snapshot(wire::Snapshot&& snapshot) override;
+    void status(const wire::Server& status) override;
     bool catalogue(publish::CatalogueChange&& change) override;
 
-    publish::RecordingStatus progress() const override;
+    wire::RecordingInfo progress() const override;
     Result<void> close() override;
 
 private:
@@ -41,7 +41,7 @@ private:
     using Weight = recording::Weight;
     Recorder(const RecordOptions& options, const recording::AsyncWriterOptions& file, recording::Writer writer);
     bool push(Entry::Body&& body, std::size_t bytes, Weight weight);
-    void push(std::optional<publish::HashRecord> record);
+    void push(std::optional<wire::Hashes> record);
 
     // Writer's thread --------------------------------------------------------------------------------------------------
     std::uint64_t write(recording::TopicFile& file, Entry& entry);
@@ -49,12 +49,12 @@ private:
     RecordOptions options_;
     TopicWriter topics_;
     recording::Timeline timeline_;
-    recording::Queue<std::unique_ptr<publish::Frame>> spare_;
+    recording::Queue<std::unique_ptr<wire::Frame>> spare_;
 
     // Used by the step thread only.
     std::uint64_t run_ = 0;
     double time_ = 0;
-    std::unique_ptr<publish::Frame> filling_;
+    std::unique_ptr<wire::Frame> filling_;
     publish::HashBatch hash_batch_;
 
     recording::AsyncWriter<Entry> writer_;  ///< last: its thread uses the above

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "plab/context.h"
 #include "plab/result.h"
 #include "publish/records.h"
 
@@ -30,14 +31,14 @@ public:
 
     /// In the order of the recording. A run can be replayed from the first of its snapshots on.
     virtual const std::vector<RecordedSnapshot>& snapshots() const = 0;
-    virtual Result<publish::SnapshotRecord> read(const RecordedSnapshot& snapshot) = 0;
+    virtual Result<wire::Snapshot> read(const RecordedSnapshot& snapshot) = 0;
     /// Requests that took effect in a run, in their order.
-    virtual Result<std::vector<publish::JournalRecord>> journal(std::uint64_t run) = 0;
+    virtual Result<std::vector<wire::Journal>> journal(std::uint64_t run) = 0;
     /// The next hashes of the run that was requested last; empty at its end.
     virtual Result<void> begin_hashes(std::uint64_t run) = 0;
-    virtual Result<std::optional<publish::HashRecord>> next_hashes() = 0;
+    virtual Result<std::optional<wire::Hashes>> next_hashes() = 0;
     /// The frame that was recorded after this step of the run, or the first one after a later step; empty if there is none.
-    virtual Result<std::optional<publish::Frame>> frame(std::uint64_t run, Tick step) = 0;
+    virtual Result<std::optional<wire::Frame>> frame(std::uint64_t run, Tick step) = 0;
     /// Ids by handle, as the catalogue named them in that run.
     virtual Result<std::vector<std::pair<std::uint32_t, std::string>>> objects(std::uint64_t run) = 0;
     /// Metadata "plab": version, scene file, ...; "" if the file lacks it.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "wire/wire_view.h"
-
 namespace plab::record
 {
 namespace
@@ -43,34 +41,35 @@ void TopicWriter::put(recording::TopicFile& file, Entry& entry, const Stamp& sta
     struct Visitor
     {
         TopicWriter* self;
-        const Entry* entry;
+        Entry* entry;
         const Stamp* stamp;
-        void operator()(const std::unique_ptr<publish::Frame>& frame) const { self->put_body(*frame, *stamp); }
-        void operator()(const publish::Batch<publish::CollisionRecord>& b) const { self->write(self->collisions_.of(b), *stamp); }
-        void operator()(const publish::Batch<publish::EventRecord>& b) const { self->write(self->events_.of(b), *stamp); }
-        void operator()(const publish::Metrics& m) const { self->write(self->metrics_.of(m), *stamp); }
-        void operator()(const publish::Image& i) const { self->write(self->image_.of(i), *stamp); }
-        void operator()(const publish::JournalRecord& j) const { self->write(self->journal_.of(j), *stamp); }
-        void operator()(const publish::HashRecord& h) const { self->write(self->hashes_.of(h), *stamp); }
-        void operator()(const publish::SnapshotRecord& s) const { self->write(self->snapshot_.of(s), *stamp); }
+        void operator()(const std::unique_ptr<wire::Frame>& frame) const { self->put_body(*frame, *stamp); }
+        void operator()(const wire::Collisions& b) const { self->write(self->collisions_.of(b), *stamp); }
+        void operator()(const wire::Events& b) const { self->write(self->events_.of(b), *stamp); }
+        void operator()(const wire::Metrics& m) const { self->write(self->metrics_.of(m), *stamp); }
+        void operator()(const wire::Image& i) const { self->write(self->image_.of(i), *stamp); }
+        void operator()(const wire::Journal& j) const { self->write(self->journal_.of(j), *stamp); }
+        void operator()(const wire::Hashes& h) const { self->write(self->hashes_.of(h), *stamp); }
+        void operator()(const wire::Snapshot& s) const { self->write(self->snapshot_.of(s), *stamp); }
         void operator()(const publish::CatalogueChange& c) const { self->put_body(c, *stamp, entry->run); }
-        void operator()(const publish::Status& s) const { self->write(self->server_.of(self->identity_, s, {}), *stamp); }
+        void operator()(wire::Server& s) const
+        {
+            wire::sign(s, self->identity_);
+            self->write(self->server_.of(s), *stamp);
+        }
     };
     std::visit(Visitor{this, &entry, &stamp}, entry.body);
 }
 
-void TopicWriter::put_body(const publish::Frame& frame, const Stamp& stamp)
-{
-    write(frame_.of(moved_ ? moved_->thin(frame) : frame), stamp);
-}
+void TopicWriter::put_body(const wire::Frame& frame, const Stamp& stamp) { write(frame_.of(moved_ ? moved_->thin(frame) : frame), stamp); }
 
-template <class T, class Sample, class Item, class Key>
-void TopicWriter::put_entries(Sample& sample, const std::vector<Item>& entries, Key key, const Stamp& stamp)
+template <class T, class Value>
+void TopicWriter::put_entries(wire::SampleView<T>& sample, const std::vector<Value>& entries, const Stamp& stamp)
 {
     std::set<std::string>& known = known_[wire::topic_of<T>().name];
-    for (const Item& entry : entries)
+    for (const Value& entry : entries)
     {
-        known.insert(key(entry));
+        known.insert(entry.component_id);
         write(sample.of(entry), stamp);
     }
 }
@@ -78,12 +77,13 @@ void TopicWriter::put_entries(Sample& sample, const std::vector<Item>& entries, 
 void TopicWriter::put_body(const publish::CatalogueChange& change, const Stamp& stamp, std::uint64_t run)
 {
     put_gone(change, stamp, run);
-    write(scene_.of(identity_.name, change.scene), stamp);
-    const auto component = [](const auto& entry) -> const std::string& { return entry.component; };
-    put_entries<plab_v2_SceneObject>(object_, change.objects, component, stamp);
-    put_entries<plab_v2_Shape>(shape_, change.shapes, component, stamp);
-    put_entries<plab_v2_Interaction>(interaction_, change.interactions, component, stamp);
-    for (const model::TypeSummary& type : change.types) write(type_.of(type), stamp);
+    plab_v2_Scene scene = scene_.of(change.scene);
+    scene.server_name = wire::text(identity_.name);
+    write(scene, stamp);
+    put_entries(object_, change.objects, stamp);
+    put_entries(shape_, change.shapes, stamp);
+    put_entries(interaction_, change.interactions, stamp);
+    for (const wire::Type& type : change.types) write(type_.of(type), stamp);
 }
 
 void TopicWriter::put_gone(const publish::CatalogueChange& change, const Stamp& stamp, std::uint64_t run)

@@ -7,12 +7,13 @@
 #include <set>
 #include <string>
 
+#include "idl/identity.h"
 #include "idl/recording/cdr.h"
 #include "idl/recording/timeline.h"
 #include "idl/recording/topic_file.h"
+#include "idl/samples.h"
 #include "record/entry.h"
 #include "record/moved.h"
-#include "wire/samples.h"
 
 namespace plab::record
 {
@@ -29,13 +30,13 @@ public:
     void put(recording::TopicFile& file, Entry& entry, const Stamp& stamp);
 
 private:
-    void put_body(const publish::Frame& frame, const Stamp& stamp);
+    void put_body(const wire::Frame& frame, const Stamp& stamp);
     void put_body(const publish::CatalogueChange& change, const Stamp& stamp, std::uint64_t run);
     template <class T>
     void write(const T& sample, const Stamp& stamp);
 
-    template <class T, class Sample, class Item, class Key>
-    void put_entries(Sample& sample, const std::vector<Item>& entries, Key key, const Stamp& stamp);
+    template <class T, class Value>
+    void put_entries(wire::SampleView<T>& sample, const std::vector<Value>& entries, const Stamp& stamp);
     void put_gone(const publish::CatalogueChange& change, const Stamp& stamp, std::uint64_t run);
     void say_gone(const std::string& topic, const std::string& key, const Stamp& stamp, std::uint64_t run);
 
@@ -46,20 +47,20 @@ private:
     std::map<std::string, std::set<std::string>> known_;  ///< catalogue: keys by topic
     std::optional<MovedFilter> moved_;
 
-    wire::ServerSample server_;
-    wire::SceneSample scene_;
-    wire::ObjectSample object_;
-    wire::ShapeSample shape_;
-    wire::InteractionSample interaction_;
-    wire::TypeSample type_;
-    wire::FrameSample frame_;
-    wire::CollisionsSample collisions_;
-    wire::EventsSample events_;
-    wire::MetricsSample metrics_;
-    wire::ImageSample image_;
-    wire::JournalSample journal_;
-    wire::HashesSample hashes_;
-    wire::SnapshotSample snapshot_;
+    wire::SampleView<plab_v2_Server> server_;
+    wire::SampleView<plab_v2_Scene> scene_;
+    wire::SampleView<plab_v2_SceneObject> object_;
+    wire::SampleView<plab_v2_Shape> shape_;
+    wire::SampleView<plab_v2_Interaction> interaction_;
+    wire::SampleView<plab_v2_Type> type_;
+    wire::SampleView<plab_v2_Frame> frame_;
+    wire::SampleView<plab_v2_Collisions> collisions_;
+    wire::SampleView<plab_v2_Events> events_;
+    wire::SampleView<plab_v2_Metrics> metrics_;
+    wire::SampleView<plab_v2_Image> image_;
+    wire::SampleView<plab_v2_Journal> journal_;
+    wire::SampleView<plab_v2_Hashes> hashes_;
+    wire::SampleView<plab_v2_Snapshot> snapshot_;
 };
 
 }  // namespace plab::record

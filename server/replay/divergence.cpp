@@ -24,8 +24,7 @@ bool same_bits(const T& a, const T& b)
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-void compare_body(const std::string& id, const publish::BodyState& was, const publish::BodyState& is,
-                  std::vector<simulation::Difference>& out)
+void compare_body(const std::string& id, const wire::BodyState& was, const wire::BodyState& is, std::vector<simulation::Difference>& out)
 {
     const auto compare = [&](const char* field, const auto& recorded, const auto& replayed)
     {
@@ -58,7 +57,7 @@ const record::RecordedSnapshot* snapshot_after(const record::RunLog& log, const 
     return next;
 }
 
-Result<void> compare_with_frame(record::RunLog& log, const publish::Frame& frame, const simulation::Simulation& s, Mismatch& mismatch)
+Result<void> compare_with_frame(record::RunLog& log, const wire::Frame& frame, const simulation::Simulation& s, Mismatch& mismatch)
 {
     mismatch.frame_step = frame.step, mismatch.recorded_revision = frame.revision;
     auto objects = log.objects(mismatch.run);
@@ -69,10 +68,10 @@ Result<void> compare_with_frame(record::RunLog& log, const publish::Frame& frame
         const std::uint32_t i = s.world().find(id);
         if (i == kNoIndex) continue;
         const world::Component& c = s.world().component(i);
-        for (const publish::BodyState& b : frame.bodies)
+        for (const wire::BodyState& b : frame.bodies)
             if (b.handle == handle && c.facet == Facet::Body)
                 compare_body(id, b, publish::state_of(host.bodies, c.host_index, handle), mismatch.in_frame);
-        for (const publish::ShaftState& shaft : frame.shafts)
+        for (const wire::ShaftState& shaft : frame.shafts)
         {
             if (shaft.handle != handle || c.facet != Facet::Shaft) continue;
             const auto compare = [&, &id = id](const char* field, double recorded, double replayed)

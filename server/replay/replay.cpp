@@ -35,7 +35,7 @@ public:
             if (*next) record_ = *std::move(*next);
         }
         if (over_ || step < record_.step) return std::optional<std::uint64_t>();
-        return std::optional(record_.hashes[static_cast<std::size_t>(step - record_.step)]);
+        return std::optional(record_.values[static_cast<std::size_t>(step - record_.step)]);
     }
     /// Whether anything is recorded of steps after this one.
     Result<bool> more_after(Tick step)
@@ -46,9 +46,9 @@ public:
     }
 
 private:
-    Tick end() const { return record_.step + static_cast<Tick>(record_.hashes.size()); }
+    Tick end() const { return record_.step + static_cast<Tick>(record_.values.size()); }
     record::RunLog* log_;
-    publish::HashRecord record_;
+    wire::Hashes record_;
     bool over_ = false;
 };
 
@@ -107,7 +107,7 @@ private:
     model::TypeSource* types_;
     const ReplayOptions* options_;
     Hashes hashes_;
-    std::vector<publish::JournalRecord> journal_;
+    std::vector<wire::Journal> journal_;
     std::size_t next_ = 0;
     /// The last journal entry of the previous runs; empty: the first number is not known.
     std::optional<JournalPlace> before_;
@@ -141,15 +141,15 @@ Result<void> Replay::read_journal(std::uint64_t run)
     journal_ = journal.take(), next_ = 0;
     look_for_gaps(run);
     // The run's first snapshot already includes a request that begins a run.
-    std::erase_if(journal_, [](const publish::JournalRecord& j) { return control::begins_a_run(j.operations); });
+    std::erase_if(journal_, [](const wire::Journal& j) { return control::begins_a_run(j.operations); });
     return {};
 }
 
 void Replay::look_for_gaps(std::uint64_t run)
 {
-    for (const publish::JournalRecord& entry : journal_)
+    for (const wire::Journal& entry : journal_)
     {
-        const JournalPlace here{entry.number, run, entry.step};
+        const JournalPlace here{entry.sequence_number, run, entry.step};
         if (before_)
             if (std::string gap = gap_between(*before_, here); !gap.empty()) report_.doubts.push_back(std::move(gap));
         before_ = here;
@@ -161,9 +161,9 @@ Result<void> Replay::ask_what_is_due()
 {
     for (; next_ < journal_.size() && journal_[next_].step <= s_->tick(); ++next_)
     {
-        const publish::JournalRecord& entry = journal_[next_];
+        const wire::Journal& entry = journal_[next_];
         if (entry.step < s_->tick()) continue;  // before the snapshot
-        publish::RequestText text;
+        wire::Request text;
         text.operations = entry.operations;
         auto wanted = control::wanted_of(text, *types_, s_->limits());
         if (!wanted) return wanted.errors();

@@ -99,7 +99,7 @@ struct Run
         if (!cause) return;
         // As in plabd: captured here, written by a thread of its own.
         if (encoding.valid()) collector.snapshot(encoding.get());
-        publish::SnapshotRecord record;
+        wire::Snapshot record;
         record.run = simulation->run(), record.step = simulation->tick(), record.time = simulation->time(), record.cause = *cause;
         encoding = std::async(std::launch::async,
                               [record, snapshot = simulation->capture()]() mutable
@@ -117,7 +117,7 @@ struct Run
     }
     std::unique_ptr<simulation::Simulation> simulation;
     publish::Collector collector;
-    std::future<publish::SnapshotRecord> encoding;
+    std::future<wire::Snapshot> encoding;
     bool watched;
 };
 
@@ -149,7 +149,7 @@ void compare(const std::string& label, const Plan& plan, const record::RecordOpt
         extra.push_back(b.back() - a.back());
     }
     (void)(*recorder)->close();
-    const publish::RecordingStatus status = (*recorder)->progress();
+    const wire::RecordingInfo status = (*recorder)->progress();
     const double bytes = static_cast<double>(status.bytes) / plan.objects / plan.seconds;
     std::printf("%-28s %8.1f us/step alone %+8.1f recorded  %+6.2f %%   %8.0f bytes/object/s   %llu dropped\n", label.c_str(),
                 median(a) * 1e6, median(extra) * 1e6, 100 * median(extra) / median(a), bytes,

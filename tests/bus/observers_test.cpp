@@ -127,8 +127,8 @@ TEST_CASE("a late observer of a paused server sees the scene and one frame")
     CHECK(known.now().types.size() > 20);
     // Known from the manifest, without loading its plugin.
     const link::Type& gravity = known.now().types.at("Field/Gravity");
-    CHECK_FALSE(gravity.loaded);
+    CHECK_FALSE(gravity.is_loaded);
     CHECK(gravity.fields.size() == 1);
     CHECK(gravity.roles.size() == 1);
-    CHECK(known.now().types.at("Script/Lua").loaded);
+    CHECK(known.now().types.at("Script/Lua").is_loaded);
 }

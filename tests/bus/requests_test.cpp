@@ -43,8 +43,8 @@ TEST_CASE("a swap takes effect at the step that it names, and the reply reports 
                 CHECK(reply.step == 100);
                 CHECK(reply.revision == 1);
                 REQUIRE(reply.swaps.size() == 1);
-                CHECK(reply.swaps[0].from == "Constraint/AngularVelocity/Graph");
-                CHECK(reply.swaps[0].to == "Constraint/AngularVelocity/Impulse");
+                CHECK(reply.swaps[0].from_type == "Constraint/AngularVelocity/Graph");
+                CHECK(reply.swaps[0].to_type == "Constraint/AngularVelocity/Impulse");
                 CHECK(reply.swaps[0].fields.size() > 3);
                 CHECK(reply.pause_ns > 0);
                 CHECK(reply.swaps[0].with_new.energy == doctest::Approx(reply.swaps[0].with_old.energy).epsilon(1e-3));
@@ -119,7 +119,7 @@ TEST_CASE("components are added and removed: the catalogue follows, and componen
                      {
                          const auto found = now.interactions.find(id);
                          return type.empty() ? found == now.interactions.end()
-                                             : found != now.interactions.end() && found->second.type == type;
+                                             : found != now.interactions.end() && found->second.type_name == type;
                      });
     };
     CHECK(type_is("contact.response", "Response/Impulse"));

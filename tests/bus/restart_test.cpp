@@ -112,7 +112,7 @@ std::string names_in(const link::CatalogueContents& snapshot)
     std::string out;
     for (const auto& [id, o] : snapshot.objects) out += id + " ";
     for (const auto& [id, s] : snapshot.shapes) out += id + " ";
-    for (const auto& [id, i] : snapshot.interactions) out += id + "=" + i.type + " ";
+    for (const auto& [id, i] : snapshot.interactions) out += id + "=" + i.type_name + " ";
     return out + std::to_string(snapshot.types.size());
 }
 
@@ -237,7 +237,7 @@ TEST_CASE("after a kill: the catalogue for new and for existing readers, and rep
     auto caller = link::Caller::make(session, Seconds(5));
     REQUIRE(caller.ok());
     REQUIRE(ask(*caller, {"swap", "gears", kSwapped}).done());
-    REQUIRE(shows(early, [](const link::CatalogueContents& s) { return s.interactions.at("gears").type == kSwapped; }));
+    REQUIRE(shows(early, [](const link::CatalogueContents& s) { return s.interactions.at("gears").type_name == kSwapped; }));
     const std::string before = names_in(early.now());
     (void)seconds_to_frame(session, *frames);
 

@@ -1,4 +1,4 @@
-/// Records as bytes and back: the fields in order, numbers with their memory layout, text and sequences with their length in
+/// Structs as bytes and back: their listed members in order, numbers with their memory layout, text and sequences with their length in
 /// front. Both programs belong to one build and run on one machine, so the bytes carry no type information.
 #pragma once
 
@@ -6,16 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
-#include "bus/channel/fields.h"
-#include "publish/records.h"
+#include "idl/values/values.h"
 
 namespace plab::bus
 {
@@ -30,9 +27,9 @@ inline constexpr bool kIsFlat<Vec3> = true;
 template <>
 inline constexpr bool kIsFlat<Quat> = true;
 template <>
-inline constexpr bool kIsFlat<publish::BodyState> = true;
+inline constexpr bool kIsFlat<wire::BodyState> = true;
 template <>
-inline constexpr bool kIsFlat<publish::ShaftState> = true;
+inline constexpr bool kIsFlat<wire::ShaftState> = true;
 template <class T, std::size_t N>
 inline constexpr bool kIsFlat<std::array<T, N>> = kIsFlat<T>;
 
@@ -53,10 +50,13 @@ public:
         else if constexpr (std::is_same_v<T, bool>)
             put(static_cast<std::uint8_t>(value ? 1 : 0));
         else
-            for_each_field(value, [this](const auto& field) { put(field); });
+            for_each_member([this](const char*, const auto& member) { this->put(member); }, value);
     }
-    void put(const std::string& text) { put_text(text); }
-    void put(const char* const& text) { put_text(text); }
+    void put(const std::string& text)
+    {
+        put(static_cast<std::uint64_t>(text.size()));
+        raw(text.data(), text.size());
+    }
     template <class T>
     void put(const std::vector<T>& values)
     {
@@ -66,24 +66,8 @@ public:
         else
             for (const T& value : values) put(value);
     }
-    template <class A, class B>
-    void put(const std::pair<A, B>& pair)
-    {
-        put(pair.first), put(pair.second);
-    }
-    template <class T>
-    void put(const std::optional<T>& value)
-    {
-        put(value.has_value());
-        if (value) put(*value);
-    }
 
 private:
-    void put_text(std::string_view text)
-    {
-        put(static_cast<std::uint64_t>(text.size()));
-        raw(text.data(), text.size());
-    }
     void raw(const void* data, std::size_t bytes)
     {
         if (bytes > 0 && bytes <= target_.size() && size_ <= target_.size() - bytes) std::memcpy(target_.data() + size_, data, bytes);
@@ -99,10 +83,7 @@ private:
 class Decoder
 {
 public:
-    /// `words` holds the text for `const char*` fields, which have few different values; without it, such a field is an error.
-    explicit Decoder(std::span<const std::byte> source, std::set<std::string, std::less<>>* words = nullptr) : rest_(source), words_(words)
-    {
-    }
+    explicit Decoder(std::span<const std::byte> source) : rest_(source) {}
 
     /// Every field was complete, and no bytes are left over.
     bool whole() const { return fine_ && rest_.empty(); }
@@ -121,20 +102,13 @@ public:
             value = byte != 0;
         }
         else
-            for_each_field(value, [this](auto& field) { get(field); });
+            for_each_member([this](const char*, auto& member) { this->get(member); }, value);
     }
     void get(std::string& text)
     {
         const std::size_t size = length(1);
         text.assign(reinterpret_cast<const char*>(rest_.data()), size);
         rest_ = rest_.subspan(size);
-    }
-    void get(const char*& text)
-    {
-        std::string word;
-        get(word);
-        fine_ = fine_ && words_ != nullptr;
-        text = fine_ ? words_->insert(std::move(word)).first->c_str() : "";
     }
     template <class T>
     void get(std::vector<T>& values)
@@ -151,19 +125,6 @@ public:
             values.clear();
             while (fine_ && count-- > 0) get(values.emplace_back());
         }
-    }
-    template <class A, class B>
-    void get(std::pair<A, B>& pair)
-    {
-        get(pair.first), get(pair.second);
-    }
-    template <class T>
-    void get(std::optional<T>& value)
-    {
-        bool there = false;
-        get(there);
-        value.reset();
-        if (there) get(value.emplace());
     }
 
 private:
@@ -184,7 +145,6 @@ private:
     }
 
     std::span<const std::byte> rest_;
-    std::set<std::string, std::less<>>* words_;
     bool fine_ = true;
 };
 

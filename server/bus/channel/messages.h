@@ -22,7 +22,7 @@ enum class Down : std::uint32_t
     Start,      ///< StartMessage; the first one
     Catalogue,  ///< publish::CatalogueChange
     Status,     ///< StatusMessage
-    Answer,     ///< AnswerMessage
+    Answer,     ///< wire::Reply
     End,        ///< no content; plab-bus announces the end of the server and ends
     Stream,     ///< Stream + s: one record of stream s
 };
@@ -46,30 +46,28 @@ struct StartMessage
     std::int32_t process = 0;     ///< process id of plabd
     std::int64_t started_ns = 0;  ///< start time of plabd, ns since 1970
 };
+PLAB_MEMBERS(StartMessage, name, version, network_interface, domain, process, started_ns)
 
 struct StatusMessage
 {
-    publish::Status status;
+    wire::Server status;
     std::array<std::uint64_t, kStreams> dropped{};  ///< records that the rings dropped, by stream
 };
-
-struct AnswerMessage
-{
-    publish::Answer answer;
-    bool repeated = false;
-};
+PLAB_MEMBERS(StatusMessage, status, dropped)
 
 struct WantsMessage
 {
     std::array<std::uint8_t, kStreams> wanted{};  ///< by stream; 0: it has no reader
     std::array<std::uint64_t, kStreams> joins{};  ///< number of readers that have joined since the start
 };
+PLAB_MEMBERS(WantsMessage, wanted, joins)
 
 struct RequestMessage
 {
-    publish::RequestText request;
+    wire::Request request;
     std::string wrong;  ///< "", or why the request was not copied completely
 };
+PLAB_MEMBERS(RequestMessage, request, wrong)
 
 /// Precedes each message.
 struct MessageHead

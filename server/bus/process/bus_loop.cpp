@@ -48,7 +48,7 @@ BusLoop::BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const B
       trouble_([](void* self, const char* line) { static_cast<BusLoop*>(self)->report(Up::Log, std::string(line)); }, this),
       catalogue_(start.name),
       presence_(identity_of(start)),
-      outbox_([this](const publish::Answer& answer, bool repeated) { return replies_.write(reply_sample_.of(answer, repeated)); }, trouble_)
+      outbox_([this](const wire::Reply& answer) { return replies_.write(reply_sample_.of(answer)); }, trouble_)
 {
 }
 
@@ -199,7 +199,7 @@ bool BusLoop::receive()
 
 bool BusLoop::handle(const MessageReader::Message& message)
 {
-    Decoder decoder(message.bytes, &words_);
+    Decoder decoder(message.bytes);
     const auto kind = static_cast<Down>(message.kind);
     if (kind == Down::Catalogue)
     {
@@ -219,9 +219,9 @@ bool BusLoop::handle(const MessageReader::Message& message)
     }
     else if (kind == Down::Answer)
     {
-        AnswerMessage answer;
+        wire::Reply answer;
         decoder.get(answer);
-        outbox_.send(answer.answer, answer.repeated, Clock::now());
+        outbox_.send(answer, Clock::now());
     }
     else if (kind == Down::End)
         is_over_ = true;
@@ -236,7 +236,7 @@ bool BusLoop::stream(std::uint32_t stream, std::span<const std::byte> bytes)
     each(
         [&](publish::Stream s, auto& out)
         {
-            if (static_cast<std::uint32_t>(s) == stream) fine = out.write(bytes, words_, trouble_);
+            if (static_cast<std::uint32_t>(s) == stream) fine = out.write(bytes, trouble_);
         });
     return fine;
 }
@@ -306,9 +306,9 @@ void BusLoop::follow_scene()
     look_at_readers();
 }
 
-std::vector<wire::Dropped> BusLoop::dropped() const
+std::vector<wire::DroppedSamples> BusLoop::dropped() const
 {
-    std::vector<wire::Dropped> out;
+    std::vector<wire::DroppedSamples> out;
     const_cast<BusLoop*>(this)->each(
         [&](publish::Stream s, auto& stream)
         {

@@ -16,7 +16,7 @@
 #include "bus/process/presence.h"
 #include "bus/process/stream.h"
 #include "idl/domain.h"
-#include "wire/samples.h"
+#include "idl/samples.h"
 
 namespace plab::bus
 {
@@ -48,7 +48,7 @@ private:
     void follow_scene();
     void each_second(Clock::time_point now);
     void report_dds();
-    std::vector<wire::Dropped> dropped() const;
+    std::vector<wire::DroppedSamples> dropped() const;
     void say_goodbye();
     template <class Function>
     void each(Function function);
@@ -62,7 +62,6 @@ private:
     int lifeline_;
     MessageReader reader_;
     MessageWriter writer_;
-    std::set<std::string, std::less<>> words_;
     Trouble trouble_;
     std::atomic<bool> matched_{true}, arrived_{true};  ///< set by DDS listeners, on threads of DDS
     bool is_over_ = false;
@@ -71,20 +70,20 @@ private:
     // Declared before all entities that depend on it; listeners ring until the participant is deleted.
     wire::Participant participant_;
     wire::Entity publisher_, subscriber_;
-    Stream<plab_v2_Frame, wire::FrameSample, publish::Frame> states_;
-    Stream<plab_v2_Collisions, wire::CollisionsSample, publish::Batch<publish::CollisionRecord>> collisions_;
-    Stream<plab_v2_Events, wire::EventsSample, publish::Batch<publish::EventRecord>> events_;
-    Stream<plab_v2_Metrics, wire::MetricsSample, publish::Metrics> metrics_;
-    Stream<plab_v2_Image, wire::ImageSample, publish::Image> images_;
-    Stream<plab_v2_Journal, wire::JournalSample, publish::JournalRecord> journal_;
-    Stream<plab_v2_Hashes, wire::HashesSample, publish::HashRecord> hashes_;
-    Stream<plab_v2_Snapshot, wire::SnapshotSample, publish::SnapshotRecord> snapshots_;
+    Stream<plab_v2_Frame, wire::Frame> states_;
+    Stream<plab_v2_Collisions, wire::Collisions> collisions_;
+    Stream<plab_v2_Events, wire::Events> events_;
+    Stream<plab_v2_Metrics, wire::Metrics> metrics_;
+    Stream<plab_v2_Image, wire::Image> images_;
+    Stream<plab_v2_Journal, wire::Journal> journal_;
+    Stream<plab_v2_Hashes, wire::Hashes> hashes_;
+    Stream<plab_v2_Snapshot, wire::Snapshot> snapshots_;
     CatalogueWriter catalogue_;
     Presence presence_;
     wire::Reader<plab_v2_Request> requests_;
     std::deque<RequestMessage> waiting_;  ///< taken from the reader in one pass, and not passed on yet
     wire::Writer<plab_v2_Reply> replies_;
-    wire::ReplySample reply_sample_;
+    wire::SampleView<plab_v2_Reply> reply_sample_;
     Outbox outbox_;
     std::array<std::uint64_t, kStreams> ring_dropped_{};
     Clock::time_point second_{};

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <set>
 
-#include "wire/wire_view.h"
-
 namespace plab::bus
 {
 
-template <class T, char* T::*Key, class Sample>
-Result<void> KeyedTopic<T, Key, Sample>::open(const wire::Entity& participant, const wire::Entity& publisher)
+template <class T, char* T::*Key, class Value, std::string Value::*KeyOf>
+Result<void> KeyedTopic<T, Key, Value, KeyOf>::open(const wire::Entity& participant, const wire::Entity& publisher)
 {
     auto writer = wire::Writer<T>::make(participant, publisher);
     if (!writer) return writer.errors();
@@ -17,26 +15,24 @@ Result<void> KeyedTopic<T, Key, Sample>::open(const wire::Entity& participant, c
     return {};
 }
 
-template <class T, char* T::*Key, class Sample>
-template <class Record>
-void KeyedTopic<T, Key, Sample>::put(const std::string& id, const std::string& type, const Record& record, Trouble& trouble)
+template <class T, char* T::*Key, class Value, std::string Value::*KeyOf>
+void KeyedTopic<T, Key, Value, KeyOf>::put(const Value& value, Trouble& trouble)
 {
-    type_of_[id] = type;
-    (void)trouble.check(wire::topic_of<T>().name, writer_.write(sample_.of(record)));
+    type_of_[value.*KeyOf] = value.type_name;
+    (void)trouble.check(wire::topic_of<T>().name, writer_.write(sample_.of(value)));
 }
 
-template <class T, char* T::*Key, class Sample>
-void KeyedTopic<T, Key, Sample>::dispose(const std::string& id, Trouble& trouble)
+template <class T, char* T::*Key, class Value, std::string Value::*KeyOf>
+void KeyedTopic<T, Key, Value, KeyOf>::dispose(const std::string& id, Trouble& trouble)
 {
     if (type_of_.erase(id) > 0) dispose_key(id, trouble);
 }
 
-template <class T, char* T::*Key, class Sample>
-template <class Record, class IdOf>
-void KeyedTopic<T, Key, Sample>::dispose_all_but(const std::vector<Record>& records, IdOf&& id_of, Trouble& trouble)
+template <class T, char* T::*Key, class Value, std::string Value::*KeyOf>
+void KeyedTopic<T, Key, Value, KeyOf>::dispose_all_but(const std::vector<Value>& values, Trouble& trouble)
 {
     std::set<std::string_view> stay;
-    for (const Record& record : records) stay.insert(id_of(record));
+    for (const Value& value : values) stay.insert(value.*KeyOf);
     for (auto entry = type_of_.begin(); entry != type_of_.end();)
     {
         if (stay.contains(entry->first))
@@ -49,14 +45,14 @@ void KeyedTopic<T, Key, Sample>::dispose_all_but(const std::vector<Record>& reco
     }
 }
 
-template <class T, char* T::*Key, class Sample>
-bool KeyedTopic<T, Key, Sample>::has_type_below(std::string_view prefix) const
+template <class T, char* T::*Key, class Value, std::string Value::*KeyOf>
+bool KeyedTopic<T, Key, Value, KeyOf>::has_type_below(std::string_view prefix) const
 {
     return std::any_of(type_of_.begin(), type_of_.end(), [&](const auto& entry) { return entry.second.starts_with(prefix); });
 }
 
-template <class T, char* T::*Key, class Sample>
-void KeyedTopic<T, Key, Sample>::dispose_key(const std::string& id, Trouble& trouble)
+template <class T, char* T::*Key, class Value, std::string Value::*KeyOf>
+void KeyedTopic<T, Key, Value, KeyOf>::dispose_key(const std::string& id, Trouble& trouble)
 {
     T key{};
     key.*Key = wire::text(id);
@@ -78,37 +74,36 @@ void CatalogueWriter::apply(const publish::CatalogueChange& change, Trouble& tro
 {
     dispose_what_is_gone(change, trouble);
     // An id belongs to one component: if it comes back as another kind, its entry in the former topic is disposed.
-    for (const publish::ShapeEntry& shape : change.shapes)
+    for (const wire::Shape& shape : change.shapes)
     {
-        objects_.dispose(shape.component, trouble), interactions_.dispose(shape.component, trouble);
-        shapes_.put(shape.component, shape.type, shape, trouble);
+        objects_.dispose(shape.component_id, trouble), interactions_.dispose(shape.component_id, trouble);
+        shapes_.put(shape, trouble);
     }
-    for (const publish::ObjectEntry& object : change.objects)
+    for (const wire::SceneObject& object : change.objects)
     {
-        shapes_.dispose(object.component, trouble), interactions_.dispose(object.component, trouble);
-        objects_.put(object.component, object.type, object, trouble);
+        shapes_.dispose(object.component_id, trouble), interactions_.dispose(object.component_id, trouble);
+        objects_.put(object, trouble);
     }
-    for (const publish::InteractionEntry& interaction : change.interactions)
+    for (const wire::Interaction& interaction : change.interactions)
     {
-        shapes_.dispose(interaction.component, trouble), objects_.dispose(interaction.component, trouble);
-        interactions_.put(interaction.component, interaction.type, interaction, trouble);
+        shapes_.dispose(interaction.component_id, trouble), objects_.dispose(interaction.component_id, trouble);
+        interactions_.put(interaction, trouble);
     }
-    for (const model::TypeSummary& type : change.types) types_.put(type.name, type.name, type, trouble);
+    for (const wire::Type& type : change.types) types_.put(type, trouble);
     // Last, so that a client that waits for a new run finds the run's parts there.
-    (void)trouble.check(wire::topic_of<plab_v2_Scene>().name, scene_.write(scene_sample_.of(server_, change.scene)));
+    plab_v2_Scene scene = scene_sample_.of(change.scene);
+    scene.server_name = wire::text(server_);
+    (void)trouble.check(wire::topic_of<plab_v2_Scene>().name, scene_.write(scene));
 }
 
 void CatalogueWriter::dispose_what_is_gone(const publish::CatalogueChange& change, Trouble& trouble)
 {
     if (change.everything)
     {
-        const auto component = [](const auto& record) -> std::string_view { return record.component; };
-        objects_.dispose_all_but(change.objects, component, trouble);
-        shapes_.dispose_all_but(change.shapes, component, trouble);
-        interactions_.dispose_all_but(change.interactions, component, trouble);
-        if (!change.types.empty())
-            types_.dispose_all_but(
-                change.types, [](const model::TypeSummary& type) -> std::string_view { return type.name; }, trouble);
+        objects_.dispose_all_but(change.objects, trouble);
+        shapes_.dispose_all_but(change.shapes, trouble);
+        interactions_.dispose_all_but(change.interactions, trouble);
+        if (!change.types.empty()) types_.dispose_all_but(change.types, trouble);
     }
     for (const std::string& id : change.gone)
         objects_.dispose(id, trouble), shapes_.dispose(id, trouble), interactions_.dispose(id, trouble);
@@ -119,8 +114,7 @@ void CatalogueWriter::dispose_all(Trouble& trouble)
     publish::CatalogueChange nothing;
     nothing.everything = true;
     dispose_what_is_gone(nothing, trouble);
-    types_.dispose_all_but(
-        std::vector<std::string>{}, [](const std::string& s) -> std::string_view { return s; }, trouble);
+    types_.dispose_all_but({}, trouble);
     plab_v2_Scene key{};
     key.server_name = wire::text(server_);
     (void)trouble.check(wire::topic_of<plab_v2_Scene>().name, scene_.dispose(key));

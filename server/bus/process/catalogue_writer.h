@@ -9,23 +9,22 @@
 
 #include "bus/process/trouble.h"
 #include "idl/entity.h"
-#include "wire/samples.h"
+#include "idl/samples.h"
+#include "publish/records.h"
 
 namespace plab::bus
 {
 
-/// One keyed topic: one instance per component. Key: the member of T that names it.
-template <class T, char* T::*Key, class Sample>
+/// One keyed topic: one instance per component. Key: the member of T that names it; KeyOf: the same of its value.
+template <class T, char* T::*Key, class Value, std::string Value::*KeyOf>
 class KeyedTopic
 {
 public:
     Result<void> open(const wire::Entity& participant, const wire::Entity& publisher);
-    template <class Record>
-    void put(const std::string& id, const std::string& type, const Record& record, Trouble& trouble);
+    void put(const Value& value, Trouble& trouble);
     void dispose(const std::string& id, Trouble& trouble);
-    /// Disposes of every instance that is not in `records`; id_of returns a record's id.
-    template <class Record, class IdOf>
-    void dispose_all_but(const std::vector<Record>& records, IdOf&& id_of, Trouble& trouble);
+    /// Disposes of every instance that is not in `values`.
+    void dispose_all_but(const std::vector<Value>& values, Trouble& trouble);
     bool has_type_below(std::string_view prefix) const;
     const wire::Entity& writer() const { return writer_.entity(); }
 
@@ -33,7 +32,7 @@ private:
     void dispose_key(const std::string& id, Trouble& trouble);
 
     wire::Writer<T> writer_;
-    Sample sample_;
+    wire::SampleView<T> sample_;
     std::map<std::string, std::string> type_of_;  // id -> type, of the existing interactions
 };
 
@@ -54,11 +53,11 @@ private:
 
     std::string server_;
     wire::Writer<plab_v2_Scene> scene_;
-    wire::SceneSample scene_sample_;
-    KeyedTopic<plab_v2_SceneObject, &plab_v2_SceneObject::component_id, wire::ObjectSample> objects_;
-    KeyedTopic<plab_v2_Shape, &plab_v2_Shape::component_id, wire::ShapeSample> shapes_;
-    KeyedTopic<plab_v2_Interaction, &plab_v2_Interaction::component_id, wire::InteractionSample> interactions_;
-    KeyedTopic<plab_v2_Type, &plab_v2_Type::type_name, wire::TypeSample> types_;
+    wire::SampleView<plab_v2_Scene> scene_sample_;
+    KeyedTopic<plab_v2_SceneObject, &plab_v2_SceneObject::component_id, wire::SceneObject, &wire::SceneObject::component_id> objects_;
+    KeyedTopic<plab_v2_Shape, &plab_v2_Shape::component_id, wire::Shape, &wire::Shape::component_id> shapes_;
+    KeyedTopic<plab_v2_Interaction, &plab_v2_Interaction::component_id, wire::Interaction, &wire::Interaction::component_id> interactions_;
+    KeyedTopic<plab_v2_Type, &plab_v2_Type::type_name, wire::Type, &wire::Type::type_name> types_;
 };
 
 }  // namespace plab::bus

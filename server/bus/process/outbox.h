@@ -15,13 +15,13 @@ class Outbox
 {
 public:
     using Clock = std::chrono::steady_clock;
-    using Write = std::function<dds_return_t(const publish::Answer& answer, bool repeated)>;
+    using Write = std::function<dds_return_t(const wire::Reply& answer)>;
     static constexpr std::chrono::seconds kPatience{2};
     static constexpr std::size_t kMost = 1024;  ///< largest number of replies that are retried
 
     Outbox(Write write, Trouble& trouble) : write_(std::move(write)), trouble_(&trouble) {}
 
-    void send(const publish::Answer& answer, bool repeated, Clock::time_point now);
+    void send(const wire::Reply& answer, Clock::time_point now);
     /// Retries the replies that failed, and drops those that have failed for too long. Their clients may ask again.
     void retry(Clock::time_point now);
     bool empty() const { return failed_.empty(); }
@@ -29,8 +29,7 @@ public:
 private:
     struct Failed
     {
-        publish::Answer answer;
-        bool repeated = false;
+        wire::Reply answer;
         Clock::time_point since;
     };
     Write write_;

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "wire/wire_view.h"
-
 namespace plab::bus
 {
 namespace
@@ -23,11 +21,18 @@ Result<void> Presence::open(const wire::Entity& participant, const wire::Entity&
     return {};
 }
 
-void Presence::send(Clock::time_point now, std::span<const wire::Dropped> dropped, Trouble& trouble)
+void Presence::set(wire::Server&& status)
+{
+    status_ = std::move(status), is_new_ = true;
+    wire::sign(*status_, identity_);
+}
+
+void Presence::send(Clock::time_point now, std::vector<wire::DroppedSamples> dropped, Trouble& trouble)
 {
     if (!status_ || (!std::exchange(is_new_, false) && now - written_ < kHeartbeat)) return;
     written_ = now;
-    (void)trouble.check(wire::topic_of<plab_v2_Server>().name, writer_.write(sample_.of(identity_, *status_, dropped)));
+    status_->dropped = std::move(dropped);
+    (void)trouble.check(wire::topic_of<plab_v2_Server>().name, writer_.write(sample_.of(*status_)));
 }
 
 Presence::Clock::duration Presence::due_in(Clock::time_point now) const

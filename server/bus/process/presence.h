@@ -6,7 +6,8 @@
 
 #include "bus/process/trouble.h"
 #include "idl/entity.h"
-#include "wire/samples.h"
+#include "idl/identity.h"
+#include "idl/samples.h"
 
 namespace plab::bus
 {
@@ -18,9 +19,9 @@ public:
     explicit Presence(wire::Identity identity) : identity_(std::move(identity)) {}
 
     Result<void> open(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber);
-    void set(publish::Status&& status) { status_ = std::move(status), is_new_ = true; }
+    void set(wire::Server&& status);
     /// Writes the status if it has changed, and repeats it when none was written for one second.
-    void send(Clock::time_point now, std::span<const wire::Dropped> dropped, Trouble& trouble);
+    void send(Clock::time_point now, std::vector<wire::DroppedSamples> dropped, Trouble& trouble);
     /// Time until send() is due if the status does not change.
     Clock::duration due_in(Clock::time_point now) const;
     /// Why this server has to end, if it must: the server that started first keeps the name.
@@ -32,8 +33,8 @@ private:
     wire::Identity identity_;
     wire::Writer<plab_v2_Server> writer_;
     wire::Reader<plab_v2_Server> reader_;
-    wire::ServerSample sample_;
-    std::optional<publish::Status> status_;
+    wire::SampleView<plab_v2_Server> sample_;
+    std::optional<wire::Server> status_;
     bool is_new_ = false;
     Clock::time_point written_{};
 };

@@ -29,9 +29,9 @@ private:
     std::string wrong_;
 };
 
-publish::OperationText read_operation(const plab_v2_Operation& operation, TextReader& reader)
+wire::Operation read_operation(const plab_v2_Operation& operation, TextReader& reader)
 {
-    publish::OperationText out;
+    wire::Operation out;
     out.verb = reader.copy(operation.verb, "a verb");
     out.target = reader.copy(operation.target, "a target");
     out.argument = reader.copy(operation.argument, "an argument");
@@ -40,7 +40,7 @@ publish::OperationText read_operation(const plab_v2_Operation& operation, TextRe
     for (std::uint32_t i = 0; i < operation.values._length && reader.ok(); ++i)
     {
         std::string name = reader.copy(operation.values._buffer[i].name, "a name");
-        out.values.emplace_back(std::move(name), reader.copy(operation.values._buffer[i].text, "a value"));
+        out.values.push_back({std::move(name), reader.copy(operation.values._buffer[i].text, "a value")});
     }
     return out;
 }
@@ -55,19 +55,19 @@ std::string wrong_outside(const plab_v2_Request& request)
 
 }  // namespace
 
-publish::ClientId client_of(const plab_v2_Request& request)
+wire::ClientId client_of(const plab_v2_Request& request)
 {
-    publish::ClientId client;
-    static_assert(sizeof(request.client) == std::tuple_size_v<publish::ClientId>);
+    wire::ClientId client;
+    static_assert(sizeof(request.client) == std::tuple_size_v<wire::ClientId>);
     std::copy(std::begin(request.client), std::end(request.client), client.begin());
     return client;
 }
 
-Result<publish::RequestText> read_request(const plab_v2_Request& request)
+Result<wire::Request> read_request(const plab_v2_Request& request)
 {
     if (std::string wrong = wrong_outside(request); !wrong.empty()) return reason(std::move(wrong));
     TextReader reader;
-    publish::RequestText out;
+    wire::Request out;
     out.client = client_of(request), out.number = request.number, out.at = request.at, out.revision = request.revision;
     for (std::uint32_t i = 0; i < request.operations._length && reader.ok(); ++i)
         out.operations.push_back(read_operation(request.operations._buffer[i], reader));

@@ -9,9 +9,9 @@ namespace plab::bus
 {
 
 /// Identifies the client.
-publish::ClientId client_of(const plab_v2_Request& request);
+wire::ClientId client_of(const plab_v2_Request& request);
 
 /// The request with its text copied, or the first error in it. Reads no more of an oversized request than the limit.
-Result<publish::RequestText> read_request(const plab_v2_Request& request);
+Result<wire::Request> read_request(const plab_v2_Request& request);
 
 }  // namespace plab::bus

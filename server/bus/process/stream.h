@@ -1,18 +1,16 @@
 /// One topic without keys or history for late joiners: writes the records of one stream.
 #pragma once
 
-#include <set>
-#include <string>
-
 #include "bus/channel/archive.h"
 #include "bus/process/trouble.h"
 #include "idl/entity.h"
+#include "idl/samples.h"
 
 namespace plab::bus
 {
 
-/// T: type on the wire. Sample: converts a Record to it.
-template <class T, class Sample, class Record>
+/// T: type on the wire. Record: its value.
+template <class T, class Record>
 class Stream
 {
 public:
@@ -39,10 +37,10 @@ public:
     bool wanted() const { return is_wanted_; }
     std::uint64_t joins() const { return joins_; }
     /// False if the bytes are not a record.
-    bool write(std::span<const std::byte> bytes, std::set<std::string, std::less<>>& words, Trouble& trouble)
+    bool write(std::span<const std::byte> bytes, Trouble& trouble)
     {
         if (!is_wanted_ || !writer_.entity().valid()) return true;
-        Decoder decoder(bytes, &words);
+        Decoder decoder(bytes);
         decoder.get(record_);
         if (decoder.whole()) (void)trouble.check(topic(), writer_.write(sample_.of(record_)));
         return decoder.whole();
@@ -52,7 +50,7 @@ public:
 
 private:
     Record record_;  ///< refilled each time, reusing its memory
-    Sample sample_;
+    wire::SampleView<T> sample_;
     wire::Writer<T> writer_;
     bool is_wanted_ = false;
     std::uint64_t joins_ = 0;

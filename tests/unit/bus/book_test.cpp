@@ -5,7 +5,6 @@
 #include "bus/request_check.h"
 #include "doctest/doctest.h"
 #include "idl/topics.h"
-#include "wire/wire_view.h"
 
 using namespace plab;
 using bus::RequestBook;
@@ -14,12 +13,12 @@ using Verdict = bus::RequestBook::Verdict;
 namespace
 {
 
-publish::ClientId client(std::uint16_t n) { return {1, static_cast<std::uint8_t>(n), static_cast<std::uint8_t>(n >> 8)}; }
+wire::ClientId client(std::uint16_t n) { return {1, static_cast<std::uint8_t>(n), static_cast<std::uint8_t>(n >> 8)}; }
 
-publish::Answer answer(const publish::ClientId& id, std::uint64_t number, Tick step = 0)
+wire::Reply answer(const wire::ClientId& id, std::uint64_t number, Tick step = 0)
 {
-    publish::Answer a;
-    a.client = id, a.number = number, a.reply.done = true, a.reply.step = step;
+    wire::Reply a;
+    a.client = id, a.number = number, a.outcome = "done", a.step = step;
     return a;
 }
 
@@ -30,7 +29,7 @@ RequestBook::Decision open(RequestBook& book, std::uint16_t client_number, std::
 
 constexpr RequestBook::Load kFar{.names_step = true}, kShutdown{.shutdown = true};
 
-std::string why(const RequestBook::Decision& decision) { return decision.answer.reply.errors.at(0).text(); }
+std::string why(const RequestBook::Decision& decision) { return decision.answer.reasons.at(0); }
 
 /// A request with one operation and one value, whose texts are the caller's.
 struct RawRequest
@@ -59,8 +58,8 @@ TEST_CASE("a request is new once: while it is carried out its answer is awaited,
     CHECK(book.waiting() == 1);
     const auto again = open(book, 1, 1);
     CHECK(again.verdict == Verdict::Answered);
-    CHECK(again.answer.reply.step == 77);
-    CHECK(again.answer.reply.done);
+    CHECK(again.answer.step == 77);
+    CHECK(again.answer.done());
     CHECK_FALSE(book.close(answer(client(1), 1)));  // answered already
     CHECK_FALSE(book.close(answer(client(9), 1)));  // never asked
 }
@@ -173,7 +172,7 @@ TEST_CASE("all requests that wait have a bounded number of bytes, some of them f
 
 TEST_CASE("a request counts for the size of its texts plus a fixed amount for each; shutdown may not be combined with others")
 {
-    publish::RequestText request;
+    publish::ReceivedRequest request;
     request.operations = {{"set", "ball", "", "", {{"mass", "2"}}}};
     CHECK(bus::bytes_of(request) == 3 + 4 + 4 + 1 + 6 * 32);
     CHECK_FALSE(bus::is_shutdown(request));
@@ -217,8 +216,8 @@ TEST_CASE("answers take a bounded amount of memory, however long they are")
         for (std::uint64_t n = 1; n <= 10; ++n)
         {
             CHECK(open(book, client_number, n).verdict == Verdict::New);
-            publish::Answer long_one = answer(client(client_number), n);
-            long_one.reply.errors.push_back(reason(std::string(5000, 'x')));
+            wire::Reply long_one = answer(client(client_number), n);
+            long_one.reasons.emplace_back(5000, 'x');
             CHECK(book.close(long_one));
             CHECK(book.answer_bytes() <= 100000);
         }
@@ -234,7 +233,7 @@ TEST_CASE("the form of a request is checked")
     REQUIRE(read.ok());
     REQUIRE(read->operations.size() == 1);
     CHECK(read->operations[0].target == "ball");
-    CHECK(read->operations[0].values == std::vector<std::pair<std::string, std::string>>{{"name", "1"}});
+    CHECK(read->operations[0].values == std::vector<wire::NamedText>{{"name", "1"}});
 
     RawRequest r;
     r.wire.client[0] = 0;
@@ -299,15 +298,15 @@ TEST_CASE("a reply that cannot be written is tried again, and after a while give
     dds_return_t code = DDS_RETCODE_OUT_OF_RESOURCES;
     std::vector<std::uint64_t> written;
     bus::Outbox outbox(
-        [&](const publish::Answer& a, bool)
+        [&](const wire::Reply& a)
         {
             if (code == DDS_RETCODE_OK) written.push_back(a.number);
             return code;
         },
         trouble);
     const auto begin = bus::Outbox::Clock::now();
-    outbox.send(answer(client(1), 1), false, begin);
-    outbox.send(answer(client(1), 2), false, begin);
+    outbox.send(answer(client(1), 1), begin);
+    outbox.send(answer(client(1), 2), begin);
     outbox.retry(begin + std::chrono::seconds(1));
     CHECK_FALSE(outbox.empty());
     code = DDS_RETCODE_OK;
@@ -318,7 +317,7 @@ TEST_CASE("a reply that cannot be written is tried again, and after a while give
     CHECK(log.empty());
 
     code = DDS_RETCODE_OUT_OF_RESOURCES;
-    outbox.send(answer(client(1), 3), false, begin);
+    outbox.send(answer(client(1), 3), begin);
     outbox.retry(begin + std::chrono::seconds(3));
     CHECK(outbox.empty());
     trouble.report();

@@ -12,28 +12,28 @@ namespace
 
 using Ids = std::set<std::string>;
 
-publish::ObjectEntry object(const std::string& id)
+wire::SceneObject object(const std::string& id)
 {
-    publish::ObjectEntry entry;
-    entry.component = id, entry.type = "Component", entry.motion = Motion::Dynamic, entry.mass = 2;
+    wire::SceneObject entry;
+    entry.component_id = id, entry.type_name = "Component", entry.shape_of = "body", entry.motion = "dynamic", entry.mass = 2;
     entry.shapes = {id + ".shape"};
     entry.parameters = {{"mass", "2", "kg", "param"}};
     return entry;
 }
 
-publish::ShapeEntry tetrahedron(const std::string& id)
+wire::Shape tetrahedron(const std::string& id)
 {
-    publish::ShapeEntry entry;
-    entry.component = id, entry.type = "Shape/Mesh", entry.geometry.kind = GeometryKind::Mesh;
-    entry.geometry.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    entry.geometry.triangles = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    wire::Shape entry;
+    entry.component_id = id, entry.type_name = "Shape/Mesh", entry.form = "mesh";
+    entry.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    entry.triangles = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
     return entry;
 }
 
-publish::InteractionEntry interaction(const std::string& id, const std::string& type)
+wire::Interaction interaction(const std::string& id, const std::string& type)
 {
-    publish::InteractionEntry entry;
-    entry.component = id, entry.type = type, entry.roles = {{"driver", {"a"}}, {"driven", {"b", "c"}}};
+    wire::Interaction entry;
+    entry.component_id = id, entry.type_name = type, entry.roles = {{"driver", {"a"}}, {"driven", {"b", "c"}}};
     return entry;
 }
 
@@ -45,8 +45,8 @@ publish::CatalogueChange everything()
     change.objects = {object("a"), object("b")};
     change.shapes = {tetrahedron("a.shape")};
     change.interactions = {interaction("gear", "G/A")};
-    model::TypeSummary type;
-    type.name = "G/A", type.roles = {{"driver", "body", "", 1, 1}}, type.fields.resize(2);
+    wire::Type type;
+    type.type_name = "G/A", type.roles = {{"driver", "body", 1, 1, ""}}, type.fields.resize(2);
     change.types = {type};
     return change;
 }
@@ -201,8 +201,8 @@ TEST_CASE("the server announces itself at least once a second")
     TestBus bus;
     const link::Session session = bus.session();
     auto reader = reader_of<plab_v2_Server>(session);
-    publish::Status status;
-    status.scene_file = "s.xml", status.step = 12, status.slipping = true;
+    wire::Server status;
+    status.scene_file = "s.xml", status.step = 12, status.overload = "slip";
     bus->status(status);
     int samples = 0;
     const auto count = [&](const plab_v2_Server& s, const dds_sample_info_t& info)

@@ -46,34 +46,30 @@ RequestMessage some_request()
 
 TEST_CASE("records are read back as they were written")
 {
-    publish::Batch<publish::EventRecord> events;
-    events.run = 3, events.first = 9;
+    wire::Events events;
+    events.run = 3, events.sequence_number = 9;
     events.entries.resize(2);
-    events.entries[1].kind = "script.print", events.entries[1].values = {1, 2.5}, events.entries[1].severity = Severity::Failure;
+    events.entries[1].kind = "script.print", events.entries[1].values = {1, 2.5}, events.entries[1].severity = "failure";
     const auto bytes = bytes_of(events);
-    publish::Batch<publish::EventRecord> back;
+    wire::Events back;
     Decoder decoder(bytes);
     decoder.get(back);
     REQUIRE(decoder.whole());
-    CHECK(back.first == 9);
+    CHECK(back.sequence_number == 9);
     REQUIRE(back.entries.size() == 2);
     CHECK(back.entries[1].kind == "script.print");
-    CHECK(back.entries[1].severity == Severity::Failure);
+    CHECK(back.entries[1].severity == "failure");
     CHECK(back.entries[1].values == std::vector<double>{1, 2.5});
 
-    publish::CollisionRecord collision;
+    wire::CollisionInfo collision;
     collision.kind = "rest", collision.depth = 0.5;
-    std::set<std::string, std::less<>> words;
     const auto collision_bytes = bytes_of(collision);
-    publish::CollisionRecord collision_back;
-    Decoder with_words(collision_bytes, &words);
-    with_words.get(collision_back);
-    CHECK(with_words.whole());
-    CHECK(std::string(collision_back.kind) == "rest");
+    wire::CollisionInfo collision_back;
+    Decoder collision_decoder(collision_bytes);
+    collision_decoder.get(collision_back);
+    CHECK(collision_decoder.whole());
+    CHECK(collision_back.kind == "rest");
     CHECK(collision_back.depth == 0.5);
-    Decoder without(collision_bytes);
-    without.get(collision_back);
-    CHECK_FALSE(without.whole());
 }
 
 TEST_CASE("for any bytes, nothing beyond them is read, and a request takes no more memory than a multiple of its bytes")
@@ -178,9 +174,9 @@ TEST_CASE("a request is checked again, whatever plab-bus reports about it")
     RequestDesk desk;
     std::uint64_t strays = 0;
     CHECK(desk.receive(some_request(), 1).is_new);
-    publish::RequestText request;
+    publish::ReceivedRequest request;
     REQUIRE(desk.take(request));
-    CHECK(request.operations[0].values[0].second == "2 kg");
+    CHECK(request.operations[0].values[0].text == "2 kg");
     std::uint64_t number = 100;
     const auto why = [&](auto&& change)
     {
@@ -189,7 +185,7 @@ TEST_CASE("a request is checked again, whatever plab-bus reports about it")
         change(m);
         CHECK_FALSE(desk.receive(std::move(m), 1).is_new);
         const auto answer = desk.next_answer(strays);
-        return answer ? answer->answer.reply.errors.at(0).reason : std::string("no answer");
+        return answer ? answer->reasons.at(0) : std::string("no answer");
     };
     CHECK(why([](auto& m) { m.request.operations.clear(); }) == "the request has no operation");
     CHECK(why([](auto& m) { m.request.operations.resize(257); }).find("257 operations") != std::string::npos);
@@ -202,15 +198,15 @@ TEST_CASE("a request is checked again, whatever plab-bus reports about it")
     CHECK(why([](auto& m) { m.wrong = "too long"; }) == "too long");
     CHECK(why([](auto& m) { m.request.number = 7; }) == "no answer");  // it is already waiting
     CHECK_FALSE(desk.take(request));
-    publish::Answer answer;
-    answer.client = {1, 2, 3}, answer.number = 7, answer.reply.done = true;
+    wire::Reply answer;
+    answer.client = {1, 2, 3}, answer.number = 7, answer.outcome = "done";
     desk.answer(std::move(answer));
-    CHECK(desk.next_answer(strays)->answer.reply.done);
+    CHECK(desk.next_answer(strays)->done());
     CHECK_FALSE(desk.receive(some_request(), 2).is_new);  // the reply was lost: the request comes again and is not carried out again
     const auto again = desk.next_answer(strays);
     REQUIRE(again.has_value());
     CHECK(again->repeated);
-    CHECK(again->answer.reply.done);
+    CHECK(again->done());
 }
 
 TEST_CASE("a desk whose answers are not fetched is full until they are fetched")
@@ -238,16 +234,16 @@ TEST_CASE("the catalogue that is kept is the one that was sent")
     CHECK(mirror.empty());
     publish::CatalogueChange all, more;
     all.everything = true;
-    for (const char* id : {"a", "b", "c"}) all.objects.emplace_back().component = id;
-    all.types.emplace_back().name = "T";
+    for (const char* id : {"a", "b", "c"}) all.objects.emplace_back().component_id = id;
+    all.types.emplace_back().type_name = "T";
     mirror.apply(all);
-    more.gone = {"b"}, more.interactions.emplace_back().component = "c";
-    more.types.emplace_back().name = "U";
+    more.gone = {"b"}, more.interactions.emplace_back().component_id = "c";
+    more.types.emplace_back().type_name = "U";
     mirror.apply(more);
     const publish::CatalogueChange kept = mirror.everything();
     CHECK(kept.everything);
     REQUIRE(kept.objects.size() == 1);
-    CHECK(kept.objects[0].component == "a");
+    CHECK(kept.objects[0].component_id == "a");
     REQUIRE(kept.interactions.size() == 1);
     CHECK(kept.types.size() == 2);
     publish::CatalogueChange next;

@@ -1,7 +1,6 @@
 // One server for each name.
 #include "idl/identity.h"
 #include "support.h"
-#include "wire/wire_view.h"
 
 using namespace plab;
 using namespace plab::test;

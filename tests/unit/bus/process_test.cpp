@@ -21,8 +21,8 @@ std::vector<double> push_many(TestBus& bus, std::uint64_t& number, int count)
     {
         const auto begin = std::chrono::steady_clock::now();
         push_frame(*bus.operator->(), ++number, 1000);
-        publish::Batch<publish::EventRecord> batch;
-        batch.first = number;
+        wire::Events batch;
+        batch.sequence_number = number;
         batch.entries.resize(1);
         bus->events(std::move(batch));
         us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());

@@ -2,7 +2,6 @@
 #include <map>
 
 #include "support.h"
-#include "wire/wire_view.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -20,22 +19,20 @@ link::Caller caller_of(const link::Session& session)
 link::Request a_pause() { return {{{"pause"}}, std::nullopt, std::nullopt}; }
 
 /// Waits for the next request.
-publish::RequestText next(TestBus& bus)
+publish::ReceivedRequest next(TestBus& bus)
 {
-    publish::RequestText request;
+    publish::ReceivedRequest request;
     REQUIRE(eventually([&] { return bus->take(request); }));
     return request;
 }
 
-void answer(TestBus& bus, const publish::RequestText& request, Tick step)
+void answer(TestBus& bus, const publish::ReceivedRequest& request, Tick step)
 {
-    publish::Answer a;
-    a.client = request.client, a.number = request.number, a.reply.done = true, a.reply.step = step, a.reply.revision = 4;
-    simulation::SwapReport swap;
-    swap.id = "gear", swap.from = "G/A", swap.to = "G/B",
-    swap.fields = {{"x", simulation::FieldTransfer::Kept}, {"y", simulation::FieldTransfer::Lost}};
+    wire::Reply a;
+    a.client = request.client, a.number = request.number, a.outcome = "done", a.step = step, a.revision = 4;
+    wire::SwapReport swap{"gear", "G/A", "G/B", {{"x", "kept"}, {"y", "lost"}}, 0, {}, {}};
     swap.with_new.momentum = {1, 2, 3};
-    a.reply.swaps = {swap};
+    a.swaps = {swap};
     bus->answer(std::move(a));
 }
 
@@ -98,7 +95,7 @@ TEST_CASE("a request arrives as it was sent, and so does its reply")
     link::Request request{{{"set", "ball", "", "", {{"mass", "2 kg"}, {"x", "1"}}}, {"add", "", "", "<plab/>"}}, 90, 7};
     const int before = bus.wakes();
     REQUIRE(caller.send(request).ok());
-    const publish::RequestText got = next(bus);
+    const publish::ReceivedRequest got = next(bus);
     CHECK(eventually([&] { return bus.wakes() > before; }));  // it is handed over first
     CHECK(got.number == 1);
     CHECK(got.at == 90);
@@ -107,7 +104,7 @@ TEST_CASE("a request arrives as it was sent, and so does its reply")
     REQUIRE(got.operations.size() == 2);
     CHECK(got.operations[0].verb == "set");
     CHECK(got.operations[0].target == "ball");
-    CHECK(got.operations[0].values == std::vector<std::pair<std::string, std::string>>{{"mass", "2 kg"}, {"x", "1"}});
+    CHECK(got.operations[0].values == std::vector<wire::NamedText>{{"mass", "2 kg"}, {"x", "1"}});
     CHECK(got.operations[1].blueprint == "<plab/>");
     answer(bus, got, 90);
     const auto [number, r] = reply(caller);
@@ -117,9 +114,9 @@ TEST_CASE("a request arrives as it was sent, and so does its reply")
     CHECK(r.step == 90);
     CHECK(r.revision == 4);
     REQUIRE(r.swaps.size() == 1);
-    CHECK(r.swaps[0].to == "G/B");
+    CHECK(r.swaps[0].to_type == "G/B");
     REQUIRE(r.swaps[0].fields.size() == 2);
-    CHECK(r.swaps[0].fields[1].transfer == "lost");
+    CHECK(r.swaps[0].fields[1].fate == "lost");
     CHECK(r.swaps[0].with_new.momentum[2] == 3);
 }
 
@@ -131,8 +128,8 @@ TEST_CASE("a repeated request is handed out once; its answer is repeated")
     const auto number = caller.send(a_pause());
     REQUIRE(number.ok());
     for (int i = 0; i < 3; ++i) REQUIRE(caller.send_again(a_pause(), *number).ok());
-    const publish::RequestText got = next(bus);
-    publish::RequestText other;
+    const publish::ReceivedRequest got = next(bus);
+    publish::ReceivedRequest other;
     std::this_thread::sleep_for(100ms);
     CHECK_FALSE(bus->take(other));
     answer(bus, got, 5);
@@ -157,7 +154,7 @@ TEST_CASE("call() repeats the request until there is an answer, and it is carrie
     std::thread loop(
         [&]
         {
-            publish::RequestText request;
+            publish::ReceivedRequest request;
             const auto slow = std::chrono::steady_clock::now() + 2500ms;
             while (!stop)
             {
@@ -184,10 +181,10 @@ TEST_CASE("clients do not see each other's replies")
     const link::Session session = bus.session(), elsewhere = bus.session();
     link::Caller a = caller_of(session), b = caller_of(elsewhere);
     REQUIRE(a.send(a_pause()).ok());
-    const publish::RequestText of_a = next(bus);
+    const publish::ReceivedRequest of_a = next(bus);
     REQUIRE(b.send(a_pause()).ok());
     REQUIRE(b.send(a_pause()).ok());
-    const publish::RequestText first = next(bus), second = next(bus);
+    const publish::ReceivedRequest first = next(bus), second = next(bus);
     answer(bus, second, 22), answer(bus, of_a, 10), answer(bus, first, 21);
     std::map<std::uint64_t, Tick> to_a, to_b;
     CHECK(eventually(
@@ -225,7 +222,7 @@ TEST_CASE("malformed requests are refused with a reason and never reach the step
     CHECK(rogue.refused(request).find("not UTF-8") != std::string::npos);
     operation.target = wire::text(big), ++request.number;
     CHECK(rogue.refused(request).find("more than 4194304 bytes") != std::string::npos);
-    publish::RequestText none;
+    publish::ReceivedRequest none;
     CHECK_FALSE(bus->take(none));
     // A well-behaved client is still served.
     link::Caller caller = caller_of(session);
@@ -254,7 +251,7 @@ TEST_CASE("requests beyond the number that may wait are refused; none that was a
         }));
     for (const auto& [n, outcome] : outcomes) CHECK(outcome == "refused");
     std::uint64_t expected = 0;
-    publish::RequestText request;
+    publish::ReceivedRequest request;
     while (bus->take(request))
     {
         CHECK(request.number == ++expected);
@@ -279,7 +276,7 @@ TEST_CASE("clients whose requests never become due do not lock out the others")
     const link::Request far{{{"pause"}}, std::int64_t{1} << 60, std::nullopt};
     std::vector<link::Caller> greedy;
     std::size_t taken = 0;
-    publish::RequestText request;
+    publish::ReceivedRequest request;
     const auto fill = [&](const link::Request& what, std::size_t count)
     {
         for (std::size_t i = 0; i < count; ++i)
@@ -308,7 +305,7 @@ TEST_CASE("clients whose requests never become due do not lock out the others")
     for (link::Caller* asking : {&caller, &greedy.front()})
     {
         REQUIRE(asking->send({{{"shutdown"}}, std::nullopt, std::nullopt}).ok());
-        const publish::RequestText got = next(bus);
+        const publish::ReceivedRequest got = next(bus);
         CHECK(got.operations[0].verb == "shutdown");
         answer(bus, got, 2);
         CHECK(reply(*asking).second.done());
@@ -322,7 +319,7 @@ TEST_CASE("large requests that never become due do not lock out the others")
     link::Caller greedy = caller_of(session), caller = caller_of(session);
     const link::Request large{{{"add", "", "", std::string(wire::kMostRequestBytes - 1000, 'x')}}, 1 << 30, std::nullopt};
     constexpr std::size_t kFit = (wire::kMostWaitingBytes - wire::kBytesKeptForNextStep) / wire::kMostRequestBytes;
-    publish::RequestText request;
+    publish::ReceivedRequest request;
     for (std::size_t i = 0; i < kFit; ++i)
     {
         REQUIRE(greedy.send(large).ok());
@@ -345,12 +342,12 @@ TEST_CASE("a client that has received the reply finds the effect of the request 
     for (int i = 0; i < 20; ++i)
     {
         REQUIRE(caller.send(a_pause()).ok());
-        const publish::RequestText request = next(bus);
-        publish::Batch<publish::EventRecord> work;  // keeps the bus thread busy, so that it finds the next two together
+        const publish::ReceivedRequest request = next(bus);
+        wire::Events work;  // keeps the bus thread busy, so that it finds the next two together
         work.entries.resize(20000);
         bus->events(std::move(work));
         publish::CatalogueChange change;
-        for (int k = 0; k < 200; ++k) change.objects.emplace_back().component = "o" + std::to_string(i) + "-" + std::to_string(k);
+        for (int k = 0; k < 200; ++k) change.objects.emplace_back().component_id = "o" + std::to_string(i) + "-" + std::to_string(k);
         REQUIRE(bus->catalogue(std::move(change)));
         answer(bus, request, i);
         // Without a pause: the reply must not come even a moment earlier.

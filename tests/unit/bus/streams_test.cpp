@@ -27,8 +27,8 @@ publish::CatalogueChange scene_with(const std::string& type)
 {
     publish::CatalogueChange change;
     change.everything = true;
-    publish::InteractionEntry entry;
-    entry.component = "part", entry.type = type;
+    wire::Interaction entry;
+    entry.component_id = "part", entry.type_name = type;
     change.interactions.push_back(entry);
     return change;
 }
@@ -135,8 +135,8 @@ TEST_CASE("a reader that never takes samples delays nobody")
     {
         const auto begin = std::chrono::steady_clock::now();
         push_frame(*bus.operator->(), i, 100);
-        publish::Batch<publish::EventRecord> batch;
-        batch.first = i;
+        wire::Events batch;
+        batch.sequence_number = i;
         batch.entries.resize(1);
         bus->events(std::move(batch));
         us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
@@ -153,10 +153,10 @@ TEST_CASE("events arrive with all their parts")
     const link::Session session = bus.session();
     auto reader = reader_of<plab_v2_Events>(session);
     REQUIRE(eventually([&] { return bus->wants(publish::Stream::Events); }));
-    publish::Batch<publish::EventRecord> batch;
-    batch.run = 2, batch.first = 41, batch.step = 8;
-    batch.entries.push_back({"script.print", Severity::Warning, 0.5, "script", "a", "b", "h\xc3\xa9", {1.5, 2.5}});
-    batch.entries.push_back({"x.y", Severity::Failure, 0.6, "", "", "", "", {}});
+    wire::Events batch;
+    batch.run = 2, batch.sequence_number = 41, batch.step = 8;
+    batch.entries.push_back({"script.print", "warning", 0.5, "script", "a", "b", "h\xc3\xa9", {1.5, 2.5}});
+    batch.entries.push_back({"x.y", "failure", 0.6, "", "", "", "", {}});
     bus->events(std::move(batch));
     REQUIRE(session.wait(reader, 5s));
     (void)reader.take(
@@ -181,8 +181,8 @@ TEST_CASE("metrics arrive, each interaction with its own outputs")
     const link::Session session = bus.session();
     auto reader = reader_of<plab_v2_Metrics>(session);
     REQUIRE(eventually([&] { return bus->wants(publish::Stream::Metrics); }));
-    publish::Metrics metrics;
-    metrics.kinetic = 1, metrics.stored = 2, metrics.work = 3, metrics.of_requests = 4, metrics.unexplained = 5;
+    wire::Metrics metrics;
+    metrics.ledger = {1, 2, 3, 4, 5};
     metrics.interactions.push_back({"gear", "G/A", "G/B", 10, 1e-3, 7, false, {{"torque", "1", "N m", "output"}}});
     metrics.interactions.push_back({"spring", "S", "S", 20, 0, 8, true, {{"f", "2", "N", "output"}, {"g", "3", "N", "output"}}});
     bus->metrics(std::move(metrics));
@@ -215,7 +215,7 @@ TEST_CASE("collisions and images have a writer only while the scene can produce 
     REQUIRE(bus->catalogue(scene_with("Camera/OSMesa")));
     CHECK(eventually([&] { return bus->wants(publish::Stream::Images); }));
     CHECK(eventually([&] { return !bus->wants(publish::Stream::Collisions) && collisions.writers() == 0; }));
-    bus->image({"eye", 1, 2, 0.5, 2, 1, {1, 2, 3, 4, 5, 6, 7, 255}});
+    bus->image({"eye", 1, 2, 0.5, 2, 1, "rgba8", {1, 2, 3, 4, 5, 6, 7, 255}});
     REQUIRE(session.wait(images, 5s));
     (void)images.take(
         [&](const plab_v2_Image& i, const dds_sample_info_t&)

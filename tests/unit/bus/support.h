@@ -101,8 +101,8 @@ wire::Reader<T> reader_of(const link::Session& session)
 /// One frame with `bodies` bodies, handed over as the collector does.
 inline void push_frame(bus::Bus& bus, std::uint64_t number, std::size_t bodies)
 {
-    publish::Frame& frame = bus.begin_frame();
-    frame.run = 3, frame.revision = 5, frame.number = number, frame.step = static_cast<Tick>(number) * 4;
+    wire::Frame& frame = bus.begin_frame();
+    frame.run = 3, frame.revision = 5, frame.sequence_number = number, frame.step = static_cast<Tick>(number) * 4;
     frame.time = 0.25 * static_cast<double>(number), frame.stamp_ns = 77;
     frame.bodies.resize(bodies);
     for (std::size_t i = 0; i < bodies; ++i)

@@ -115,8 +115,8 @@ int write(const std::string& name, std::size_t bodies, double rate, double secon
     for (auto next = begin; Clock::now() < end; ++number)
     {
         const auto start = Clock::now();
-        publish::Frame& frame = bus.begin_frame();
-        frame.number = number + 1, frame.stamp_ns = now_ns();
+        wire::Frame& frame = bus.begin_frame();
+        frame.sequence_number = number + 1, frame.stamp_ns = now_ns();
         frame.bodies.resize(bodies);
         bus.end_frame();
         push_us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
@@ -165,13 +165,13 @@ int answer(const std::string& name, double seconds)
     if (!opened) return fail(opened.error());
     bus::Bus& bus = **opened;
     const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-    publish::RequestText request;
+    publish::ReceivedRequest request;
     while (Clock::now() < end)
     {
         while (bus.take(request))
         {
-            publish::Answer a;
-            a.client = request.client, a.number = request.number, a.reply.done = true;
+            wire::Reply a;
+            a.client = request.client, a.number = request.number, a.outcome = "done";
             bus.answer(std::move(a));
         }
         std::this_thread::sleep_for(50us);

@@ -25,9 +25,9 @@ TEST_CASE("a catalogue knows when it is complete, and follows the server")
     CHECK(now.types.size() == 6);
     CHECK(now.shapes.at("balloon").size.x == 0.15);
     CHECK(now.objects.at("red").color == Vec3{0.9, 0.1, 0.1});
-    CHECK_FALSE(now.objects.at("a_fan_with_a_very_long_name").color);
+    CHECK_FALSE(link::color_of(now.objects.at("a_fan_with_a_very_long_name")));
     REQUIRE(catalogue->find_object(7) != nullptr);
-    CHECK(catalogue->find_object(7)->id == "red");
+    CHECK(catalogue->find_object(7)->component_id == "red");
     CHECK(catalogue->find_object(8) == nullptr);
     const std::uint64_t version = catalogue->version();
     const std::int64_t step = now.server->step;

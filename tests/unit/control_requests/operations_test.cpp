@@ -8,21 +8,21 @@
 #include "plugins/library.h"
 
 using namespace plab;
-using publish::OperationText;
+using wire::Operation;
 
 namespace
 {
 
-Result<control::Wanted> wanted(std::vector<OperationText> operations)
+Result<control::Wanted> wanted(std::vector<wire::Operation> operations)
 {
     plugins::PluginLibrary library;
-    publish::RequestText text;
+    wire::Request text;
     text.number = 1, text.operations = std::move(operations);
     return control::wanted_of(text, library);
 }
 
 template <class T>
-T only(const OperationText& op)
+T only(const wire::Operation& op)
 {
     const auto out = wanted({op});
     REQUIRE_MESSAGE(out.ok(), out.error().text());
@@ -30,7 +30,7 @@ T only(const OperationText& op)
     return std::get<T>(out->request.operations.front());
 }
 
-std::string refusal(const OperationText& op)
+std::string refusal(const wire::Operation& op)
 {
     const auto out = wanted({op});
     REQUIRE_FALSE(out.ok());
@@ -115,7 +115,7 @@ TEST_CASE("errors of a blueprint keep their position, all of them are reported, 
     CHECK(out.errors()[1].text().rfind("operation 2 (step)", 0) == 0);
     CHECK(wanted({{"shutdown", "", "", "", {}}, {"pause", "", "", "", {}}}).ok() == false);
     plugins::PluginLibrary library;
-    publish::RequestText later;
+    wire::Request later;
     later.at = 5, later.operations = {{"shutdown", "", "", "", {}}};
     CHECK_FALSE(control::wanted_of(later, library).ok());
 }
@@ -123,7 +123,7 @@ TEST_CASE("errors of a blueprint keep their position, all of them are reported, 
 TEST_CASE("the step and the revision that a request names")
 {
     plugins::PluginLibrary library;
-    publish::RequestText text;
+    wire::Request text;
     text.at = 0, text.revision = 3;
     text.operations = {{"pause", "", "", "", {}}};
     const auto out = control::wanted_of(text, library);
@@ -148,7 +148,7 @@ TEST_CASE("a sign does not name an earlier time, and names of snapshots follow t
 TEST_CASE("trial and energy set how a request is checked, cancel names a request; none of them is an operation")
 {
     using Budget = simulation::TrialChoice::Budget;
-    const OperationText swap{"swap", "gears.*", "Constraint/X", "", {}};
+    const wire::Operation swap{"swap", "gears.*", "Constraint/X", "", {}};
     const auto trial = [&](const std::string& text)
     {
         const auto out = wanted({swap, {"trial", "", text, "", {}}});

@@ -89,7 +89,7 @@ TEST_CASE("a jump publishes the catalogue of that time; backwards it is a new ru
                               watcher.look();
                               const auto& all = catalogue->now().interactions;
                               const auto found = all.find("contact.response");
-                              return found != all.end() && found->second.type == type && found->second.run == run;
+                              return found != all.end() && found->second.type_name == type && found->second.run == run;
                           });
     };
     CHECK(shows("Response/Impulse", 1));

@@ -55,18 +55,18 @@ TEST_CASE("at first everything, as the scene has it")
     const auto* red = find_entry(all.objects, "red");
     REQUIRE(red);
     CHECK(red->name == "the red one");
-    CHECK(red->type == "State/RigidBody");
-    CHECK(red->motion == Motion::Dynamic);
+    CHECK(red->type_name == "State/RigidBody");
+    CHECK(red->motion == "dynamic");
     CHECK(red->mass == 2);
     CHECK(red->color == Vec3{1, 0, 0});
     CHECK(red->shapes == std::vector<std::string>{"ball"});
     CHECK(parameter(red->parameters, "mass") == "2");
-    CHECK(find_entry(all.objects, "floor")->motion == Motion::Static);
+    CHECK(find_entry(all.objects, "floor")->motion == "static");
     const auto* wheel = find_entry(all.objects, "wheel");
-    CHECK(wheel->is_shaft);
+    CHECK(wheel->shape_of == "shaft");
     CHECK(wheel->mass == 0.5);
-    CHECK(distance(rotate(wheel->pose.q, {0, 0, 1}), {1, 0, 0}) < 1e-12);
-    CHECK(distance(wheel->pose.p, {0, 0, 2}) < 1e-12);
+    CHECK(distance(rotate(wheel->orientation, {0, 0, 1}), {1, 0, 0}) < 1e-12);
+    CHECK(distance(wheel->position, {0, 0, 2}) < 1e-12);
 
     const auto* contact = find_entry(all.interactions, "contact");
     REQUIRE(contact);
@@ -77,7 +77,7 @@ TEST_CASE("at first everything, as the scene has it")
     CHECK(contact->roles[0].role == "between");
     CHECK(contact->roles[0].members == std::vector<std::string>{"floor", "green", "red"});
     CHECK(parameter(find_entry(all.interactions, "contact.response")->parameters, "restitution") == "0.5");
-    CHECK(find_entry(all.shapes, "ball")->geometry.size.x == 0.1);
+    CHECK(find_entry(all.shapes, "ball")->size.x == 0.1);
 
     run.step(20);
     CHECK(run.watcher.changes.size() == 1);
@@ -104,14 +104,14 @@ TEST_CASE("a set, a swap, an addition, a removal: only the components concerned"
     {
         run.ask(simulation::SetOperation{"ball", "radius", std::string("0.2")});
         CHECK(ids_in(changes[2]) == Ids{"ball", "red", "green"});
-        CHECK(changes[2].shapes[0].geometry.size.x == 0.2);
+        CHECK(changes[2].shapes[0].size.x == 0.2);
     }
     SUBCASE("a swap changes type and since")
     {
         run.ask(simulation::SwapOperation{"contact.resolution", "Resolution/LocalBisection", {}});
         REQUIRE(changes.size() == 3);
         CHECK(ids_in(changes[2]) == Ids{"contact.resolution"});
-        CHECK(changes[2].interactions[0].type == "Resolution/LocalBisection");
+        CHECK(changes[2].interactions[0].type_name == "Resolution/LocalBisection");
         CHECK(changes[2].interactions[0].since == 3);
         run.step();
         run.ask(simulation::SetOperation{"gravity", "acceleration", std::string("0 0 -9")});
@@ -205,7 +205,7 @@ TEST_CASE("a type whose plugin is loaded later is published as loaded")
     const auto loaded = [&](const std::string& name)
     {
         for (const auto& t : watcher.changes.back().types)
-            if (t.name == name) return t.loaded;
+            if (t.type_name == name) return t.is_loaded;
         return false;
     };
     CHECK(loaded("State/Shaft"));

@@ -8,8 +8,8 @@
 
 using plab::Tick;
 using plab::publish::HashBatch;
-using plab::publish::HashRecord;
 using plab::publish::Nanoseconds;
+using plab::wire::Hashes;
 
 namespace
 {
@@ -34,11 +34,11 @@ Trajectory trajectory_of(Nanoseconds interval, int steps)
         const auto record = batch.add(1, step, static_cast<std::uint64_t>(step), now);
         if (!record) continue;
         CHECK(record->step == due);
-        CHECK(record->first == static_cast<std::uint64_t>(due));
-        CHECK(record->hashes.front() == static_cast<std::uint64_t>(due));
+        CHECK(record->sequence_number == static_cast<std::uint64_t>(due));
+        CHECK(record->values.front() == static_cast<std::uint64_t>(due));
         out.oldest = std::max(out.oldest, (step - due) * interval);
-        out.largest = std::max(out.largest, record->hashes.size());
-        ++out.records, due = record->step + static_cast<Tick>(record->hashes.size());
+        out.largest = std::max(out.largest, record->values.size());
+        ++out.records, due = record->step + static_cast<Tick>(record->values.size());
         // The next hash to be handed over is that of the next step.
         CHECK(due == step + 1);
     }
@@ -68,7 +68,7 @@ TEST_CASE("a hash that does not follow the last one begins a record")
     const auto gap = batch.add(1, 5, 9, 2);
     REQUIRE(gap);
     CHECK(gap->step == 1);
-    CHECK(gap->hashes.size() == 2);
+    CHECK(gap->values.size() == 2);
     const auto run = batch.add(2, 6, 10, 3);
     REQUIRE(run);
     CHECK(run->step == 5);

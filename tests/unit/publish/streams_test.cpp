@@ -32,7 +32,7 @@ std::uint64_t check_numbers(const Batches& batches, std::uint64_t next)
 {
     for (const auto& batch : batches)
     {
-        CHECK(batch.first == next);
+        CHECK(batch.sequence_number == next);
         CHECK(!batch.entries.empty());
         next += batch.entries.size();
     }
@@ -76,7 +76,7 @@ TEST_CASE("a frame holds the poses of bodies in the frames that the scene's auth
     run.step(10);
     const auto& frame = run.watcher.frame;
     CHECK(run.watcher.frames == 10);
-    CHECK(frame.number == 10);
+    CHECK(frame.sequence_number == 10);
     CHECK(frame.step == 10);
     CHECK(frame.run == scene.simulation().run());
     CHECK(frame.time == scene.simulation().time());
@@ -124,7 +124,7 @@ TEST_CASE("frames: at their interval, while paused, for newcomers, and for no ot
     run.watcher.wanted.insert(Stream::States);
     run.collector.idle(scene.simulation());
     CHECK(run.watcher.frames == 6);
-    CHECK(run.watcher.frame.number == 6);
+    CHECK(run.watcher.frame.sequence_number == 6);
 }
 
 TEST_CASE("collisions carry point, normal, impulse and depth, and have a stream of their own")
@@ -169,11 +169,11 @@ TEST_CASE("numbers continue while there are no readers")
     run.watcher.wanted = {Stream::Collisions, Stream::Events};
     run.step(240);
     CHECK(check_numbers(run.watcher.collision_batches, missed + 1) == run.collector.last_collision() + 1);
-    run.collector.note(scene.simulation(), {"request.swap", Severity::Info, 0, "contact", "", "", "kept all", {1.5}});
-    run.collector.note(scene.simulation(), {"request.set", Severity::Info, 0, "gravity", "", "", "", {}});
+    run.collector.note(scene.simulation(), {"request.swap", "info", 0, "contact", "", "", "kept all", {1.5}});
+    run.collector.note(scene.simulation(), {"request.set", "info", 0, "gravity", "", "", "", {}});
     REQUIRE(run.watcher.event_batches.size() == 2);
-    CHECK(run.watcher.event_batches[0].first == 1);
-    CHECK(run.watcher.event_batches[1].first == 2);
+    CHECK(run.watcher.event_batches[0].sequence_number == 1);
+    CHECK(run.watcher.event_batches[1].sequence_number == 2);
     CHECK(run.watcher.event_batches[0].entries[0].time == scene.simulation().time());
     CHECK(run.watcher.event_batches[0].entries[0].values == std::vector<double>{1.5});
     CHECK(run.collector.last_event() == 2);
@@ -186,16 +186,16 @@ TEST_CASE("metrics: figures of the run, and the work by component")
     run.step(100);
     run.ask(simulation::PushOperation{"ball", {0, 0, 2}, {}});
     run.step(1);
-    const publish::Metrics& m = run.watcher.samples.back();
+    const wire::Metrics& m = run.watcher.samples.back();
     const simulation::Totals totals = scene.simulation().totals();
     CHECK(m.step == 101);
-    CHECK(m.kinetic == totals.kinetic);
-    CHECK(m.stored == totals.stored);
-    CHECK(m.work == totals.work);
-    CHECK(m.of_requests == scene.simulation().stepper().requests_work());
-    CHECK(m.of_requests != 0);
-    CHECK(m.unexplained == doctest::Approx(totals.kinetic - totals.work));
-    CHECK(std::fabs(m.unexplained) < 1e-9);
+    CHECK(m.ledger.kinetic == totals.kinetic);
+    CHECK(m.ledger.stored == totals.stored);
+    CHECK(m.ledger.work == totals.work);
+    CHECK(m.ledger.of_requests == scene.simulation().stepper().requests_work());
+    CHECK(m.ledger.of_requests != 0);
+    CHECK(m.ledger.unexplained == doctest::Approx(totals.kinetic - totals.work));
+    CHECK(std::fabs(m.ledger.unexplained) < 1e-9);
     CHECK(m.step_ns > 0);
     const auto* contact = find_entry(m.interactions, "contact");
     REQUIRE(contact);
@@ -287,7 +287,7 @@ TEST_CASE("status: on change and once a second")
 {
     Scene scene(kDrop);
     Watched run(scene);
-    publish::Status status;
+    wire::Server status;
     status.scene_file = "a scene whose name is too long for the small string optimisation.xml";
     for (int i = 0; i < 100; ++i)
     {
@@ -303,7 +303,7 @@ TEST_CASE("status: on change and once a second")
     status.requests_done = 1;
     run.collector.status(status);
     CHECK(run.watcher.statuses.size() == 3);
-    run.collector.note(scene.simulation(), {"request.pause", Severity::Info, 0, "", "", "", "", {}});
+    run.collector.note(scene.simulation(), {"request.pause", "info", 0, "", "", "", "", {}});
     std::this_thread::sleep_for(std::chrono::milliseconds(1050));
     run.collector.status(status);
     REQUIRE(run.watcher.statuses.size() == 4);
@@ -322,7 +322,7 @@ TEST_CASE("a warm step allocates nothing: unwatched, and with frames")
         run.step(5);
         CHECK(run.watcher.frame.bodies.size() == (wanted.empty() ? 0u : 100u));
         const simulation::Changes none;
-        publish::Status status;
+        wire::Server status;
         status.scene_file = "a scene whose name is too long for the small string optimisation.xml";
         run.collector.status(status);
         const long before = plab_test_allocations;
@@ -348,10 +348,10 @@ TEST_CASE("frames are numbered for each observer: one that receives every tenth 
         run.step();
         if (i == 50) run.watcher.wanted.erase(Stream::States);
         if (i == 60) run.watcher.wanted.insert(Stream::States);
-        CHECK(run.watcher.frame.number == run.watcher.frames);
-        CHECK(seldom.frame.number == seldom.frames);
-        CHECK(seldom.frame.number - last <= 1);
-        last = seldom.frame.number;
+        CHECK(run.watcher.frame.sequence_number == run.watcher.frames);
+        CHECK(seldom.frame.sequence_number == seldom.frames);
+        CHECK(seldom.frame.sequence_number - last <= 1);
+        last = seldom.frame.sequence_number;
     }
     CHECK(run.watcher.frames > 80);
     CHECK(seldom.frames < 20);
@@ -382,12 +382,12 @@ TEST_CASE("metrics right after a rewind or a restore are marked unknown, instead
     for (const simulation::Snapshot* to : {&kept, &later})
     {
         REQUIRE(scene.simulation().restore(*to).ok());
-        const publish::Metrics after = sampler.sample(scene.simulation(), 3'000'000'000);
+        const wire::Metrics after = sampler.sample(scene.simulation(), 3'000'000'000);
         CHECK(after.step_ns == 0);
         CHECK(after.real_time_factor == 0);
-        for (const publish::InteractionMetrics& m : after.interactions) CHECK(m.cost_ns == 0);
+        for (const wire::InteractionMetrics& m : after.interactions) CHECK(m.cost_ns == 0);
         scene.step(100);
-        const publish::Metrics known = sampler.sample(scene.simulation(), 4'000'000'000);
+        const wire::Metrics known = sampler.sample(scene.simulation(), 4'000'000'000);
         CHECK(known.step_ns > 0);
         CHECK(known.real_time_factor == doctest::Approx(honest).epsilon(1e-9));
     }
@@ -400,13 +400,13 @@ TEST_CASE("metrics describe their figures: quartiles, number of steps, component
       <component id="mesh" type="Constraint/AngularVelocity/Assign" driver="a" driven="b" velocity_factor="2"/>)");
     scene.step(20);
     publish::Sampler sampler(0.5);
-    publish::Metrics metrics;
+    wire::Metrics metrics;
     for (int i = 1; i < 8; ++i) metrics = sampler.sample(scene.simulation(), static_cast<publish::Nanoseconds>(i) << 40);
-    const auto account = [&](const std::string& id, const std::string& name) -> const publish::Parameter*
+    const auto account = [&](const std::string& id, const std::string& name) -> const wire::Parameter*
     {
-        for (const publish::InteractionMetrics& m : metrics.interactions)
-            for (const publish::Parameter& p : m.outputs)
-                if (m.component == id && p.kind == "account" && p.name == name) return &p;
+        for (const wire::InteractionMetrics& m : metrics.interactions)
+            for (const wire::Parameter& p : m.outputs)
+                if (m.component_id == id && p.kind == "account" && p.name == name) return &p;
         return nullptr;
     };
     REQUIRE(account("mesh", "error"));

@@ -15,21 +15,21 @@ class Watcher final : public publish::Observer
 public:
     bool wants(publish::Stream stream) const override { return wanted.contains(stream); }
     std::uint64_t joins(publish::Stream) const override { return joined; }
-    publish::Frame& begin_frame() override { return frame; }
+    wire::Frame& begin_frame() override { return frame; }
     void end_frame() override { ++frames; }
-    void collisions(publish::Batch<publish::CollisionRecord>&& batch) override { collision_batches.push_back(std::move(batch)); }
-    void events(publish::Batch<publish::EventRecord>&& batch) override { event_batches.push_back(std::move(batch)); }
-    void metrics(publish::Metrics&& metrics) override { samples.push_back(std::move(metrics)); }
-    void image(publish::Image&&) override {}
+    void collisions(wire::Collisions&& batch) override { collision_batches.push_back(std::move(batch)); }
+    void events(wire::Events&& batch) override { event_batches.push_back(std::move(batch)); }
+    void metrics(wire::Metrics&& metrics) override { samples.push_back(std::move(metrics)); }
+    void image(wire::Image&&) override {}
     std::optional<double> interval(publish::Stream stream) const override
     {
         const auto found = intervals.find(stream);
         return found == intervals.end() ? std::nullopt : std::optional(found->second);
     }
-    void journal(publish::JournalRecord&& entry) override { journals.push_back(std::move(entry)); }
+    void journal(wire::Journal&& entry) override { journals.push_back(std::move(entry)); }
     void hash(std::uint64_t, Tick step, std::uint64_t hash) override { hashes[step] = hash; }
-    void snapshot(publish::SnapshotRecord&& snapshot) override { snapshots.push_back(std::move(snapshot)); }
-    void status(const publish::Status& status) override { statuses.push_back(status); }
+    void snapshot(wire::Snapshot&& snapshot) override { snapshots.push_back(std::move(snapshot)); }
+    void status(const wire::Server& status) override { statuses.push_back(status); }
     bool catalogue(publish::CatalogueChange&& change) override
     {
         if (!has_room) return false;
@@ -42,16 +42,16 @@ public:
     bool has_room = true;
     std::map<publish::Stream, double> intervals;
 
-    publish::Frame frame;  ///< the last one
+    wire::Frame frame;  ///< the last one
     std::size_t frames = 0;
-    std::vector<publish::Batch<publish::CollisionRecord>> collision_batches;
-    std::vector<publish::Batch<publish::EventRecord>> event_batches;
-    std::vector<publish::Metrics> samples;
-    std::vector<publish::Status> statuses;
+    std::vector<wire::Collisions> collision_batches;
+    std::vector<wire::Events> event_batches;
+    std::vector<wire::Metrics> samples;
+    std::vector<wire::Server> statuses;
     std::vector<publish::CatalogueChange> changes;
-    std::vector<publish::JournalRecord> journals;
+    std::vector<wire::Journal> journals;
     std::map<Tick, std::uint64_t> hashes;
-    std::vector<publish::SnapshotRecord> snapshots;
+    std::vector<wire::Snapshot> snapshots;
 };
 
 /// Intervals longer than any test, so that everything sent was requested.
@@ -99,13 +99,13 @@ template <class Entry>
 const Entry* find_entry(const std::vector<Entry>& entries, const std::string& component)
 {
     for (const Entry& e : entries)
-        if (e.component == component) return &e;
+        if (e.component_id == component) return &e;
     return nullptr;
 }
 
-inline std::string parameter(const std::vector<publish::Parameter>& parameters, const std::string& name)
+inline std::string parameter(const std::vector<wire::Parameter>& parameters, const std::string& name)
 {
-    for (const publish::Parameter& p : parameters)
+    for (const wire::Parameter& p : parameters)
         if (p.name == name) return p.text;
     return "none";
 }
@@ -114,9 +114,9 @@ inline std::string parameter(const std::vector<publish::Parameter>& parameters, 
 inline std::set<std::string> ids_in(const publish::CatalogueChange& change)
 {
     std::set<std::string> out;
-    for (const auto& e : change.objects) out.insert(e.component);
-    for (const auto& e : change.shapes) out.insert(e.component);
-    for (const auto& e : change.interactions) out.insert(e.component);
+    for (const auto& e : change.objects) out.insert(e.component_id);
+    for (const auto& e : change.shapes) out.insert(e.component_id);
+    for (const auto& e : change.interactions) out.insert(e.component_id);
     return out;
 }
 

@@ -8,9 +8,9 @@ namespace plab::test
 namespace
 {
 
-publish::Frame frame_of(double time, double x0, double x1)
+wire::Frame frame_of(double time, double x0, double x1)
 {
-    publish::Frame frame;
+    wire::Frame frame;
     frame.run = 1, frame.time = time;
     frame.bodies.resize(2);
     frame.bodies[0].handle = 1, frame.bodies[0].position.x = x0;
@@ -25,7 +25,7 @@ TEST_CASE("objects that do not move are left out, until a full frame is due")
 {
     record::MovedFilter filter(1.0);
     CHECK(filter.thin(frame_of(0, 0, 0)).bodies.size() == 2);
-    const publish::Frame second = filter.thin(frame_of(0.1, 0, 0.25));
+    const wire::Frame second = filter.thin(frame_of(0.1, 0, 0.25));
     REQUIRE(second.bodies.size() == 1);
     CHECK(second.bodies[0].handle == 2);
     CHECK(second.bodies[0].position.x == 0.25);
@@ -42,13 +42,13 @@ TEST_CASE("a new run, a new revision or another number of bodies begins with a f
 {
     record::MovedFilter filter(10.0);
     (void)filter.thin(frame_of(0, 0, 0));
-    publish::Frame run = frame_of(0.1, 0, 0);
+    wire::Frame run = frame_of(0.1, 0, 0);
     run.run = 2;
     CHECK(filter.thin(run).bodies.size() == 2);
-    publish::Frame revision = run;
+    wire::Frame revision = run;
     revision.revision = 5, revision.time = 0.2;
     CHECK(filter.thin(revision).bodies.size() == 2);
-    publish::Frame fewer = revision;
+    wire::Frame fewer = revision;
     fewer.bodies.pop_back(), fewer.time = 0.3;
     CHECK(filter.thin(fewer).bodies.size() == 1);
 }

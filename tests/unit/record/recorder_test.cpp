@@ -57,7 +57,7 @@ public:
         collector.collect(s, s.take_changes(), stepped);
         if (const auto cause = collector.wants_snapshot(s))
         {
-            publish::SnapshotRecord record;
+            wire::Snapshot record;
             const simulation::Snapshot snapshot = s.capture();
             record.run = s.run(), record.step = s.tick(), record.time = s.time(), record.cause = *cause;
             record.state_hash = snapshot->state_hash, record.data = simulation::encode(snapshot).take();
@@ -73,15 +73,15 @@ public:
             publish(true);
         }
     }
-    void ask(publish::OperationText operation)
+    void ask(wire::Operation operation)
     {
-        publish::RequestText text;
+        wire::Request text;
         text.operations = {operation};
         auto wanted = control::wanted_of(text, library());
         REQUIRE(wanted);
         REQUIRE(scene.simulation().carry_out_now(wanted->request).done);
         publish(false);
-        publish::JournalRecord entry;
+        wire::Journal entry;
         entry.run = scene.simulation().run(), entry.step = scene.simulation().tick(), entry.time = scene.simulation().time();
         entry.origin = "client", entry.operations = {std::move(operation)};
         collector.journal(std::move(entry));
@@ -129,7 +129,7 @@ TEST_CASE("a recording holds hashes, journal, snapshots, frames and origin, and 
     REQUIRE(journal);
     REQUIRE(journal->size() == 1);
     CHECK(journal->front().step == 30);
-    CHECK(journal->front().operations.front().values.front().second == "2 kg");
+    CHECK(journal->front().operations.front().values.front().text == "2 kg");
     CHECK((*log)->snapshots().size() == 5);  // at 0, 0.25, 0.5, 0.75, 1 s
     const auto frame = (*log)->frame(number, 100);
     REQUIRE(frame);
@@ -194,7 +194,7 @@ TEST_CASE("when the writer cannot keep up, frames are dropped and counted, and t
     }
     run.ask({"set", "ball", "", "", {{"mass", "2 kg"}}});
     REQUIRE(run.recorder->close());
-    const publish::RecordingStatus status = run.recorder->progress();
+    const wire::RecordingInfo status = run.recorder->progress();
     CHECK(status.dropped > 0);
     auto reader = recording::Reader::open(options.file);
     REQUIRE(reader);
@@ -233,7 +233,7 @@ TEST_CASE("a full disk stops the recording and is reported; the simulation is no
     (void)run.recorder->close();
     REQUIRE(setrlimit(RLIMIT_FSIZE, &before) == 0);
     CHECK(run.scene.hash() == alone.hash());
-    const publish::RecordingStatus status = run.recorder->progress();
+    const wire::RecordingInfo status = run.recorder->progress();
     CHECK(status.dropped > 0);
     CHECK(status.bytes <= 128 * 1024);
     REQUIRE(!lines.empty());

@@ -19,11 +19,11 @@ class MemoryLog final : public record::RunLog
 {
 public:
     const std::vector<record::RecordedSnapshot>& snapshots() const override { return places; }
-    Result<publish::SnapshotRecord> read(const record::RecordedSnapshot& s) override { return records.at(s.place); }
-    Result<std::vector<publish::JournalRecord>> journal(std::uint64_t run) override
+    Result<wire::Snapshot> read(const record::RecordedSnapshot& s) override { return records.at(s.place); }
+    Result<std::vector<wire::Journal>> journal(std::uint64_t run) override
     {
-        std::vector<publish::JournalRecord> out;
-        for (const publish::JournalRecord& j : entries)
+        std::vector<wire::Journal> out;
+        for (const wire::Journal& j : entries)
             if (j.run == run) out.push_back(j);
         return out;
     }
@@ -32,13 +32,13 @@ public:
         asked = run, next = 0;
         return {};
     }
-    Result<std::optional<publish::HashRecord>> next_hashes() override
+    Result<std::optional<wire::Hashes>> next_hashes() override
     {
         while (next < hashes.size() && hashes[next].run != asked) ++next;
-        if (next >= hashes.size()) return std::optional<publish::HashRecord>();
+        if (next >= hashes.size()) return std::optional<wire::Hashes>();
         return std::optional(hashes[next++]);
     }
-    Result<std::optional<publish::Frame>> frame(std::uint64_t run, Tick step) override
+    Result<std::optional<wire::Frame>> frame(std::uint64_t run, Tick step) override
     {
         const auto found = frames.lower_bound({run, step});
         return found == frames.end() || found->first.first != run ? std::nullopt : std::optional(found->second);
@@ -56,10 +56,10 @@ public:
 
     std::map<std::string, std::string> about;
     std::vector<record::RecordedSnapshot> places;
-    std::vector<publish::SnapshotRecord> records;
-    std::vector<publish::JournalRecord> entries;
-    std::vector<publish::HashRecord> hashes;
-    std::map<std::pair<std::uint64_t, Tick>, publish::Frame> frames;
+    std::vector<wire::Snapshot> records;
+    std::vector<wire::Journal> entries;
+    std::vector<wire::Hashes> hashes;
+    std::map<std::pair<std::uint64_t, Tick>, wire::Frame> frames;
     std::uint64_t asked = 0;
     std::size_t next = 0;
 };
@@ -78,21 +78,21 @@ public:
         const simulation::Simulation& s = scene.simulation();
         auto bytes = simulation::encode(s.capture());
         REQUIRE(bytes);
-        publish::SnapshotRecord record;
+        wire::Snapshot record;
         record.run = s.run(), record.step = s.tick(), record.time = s.time(), record.cause = cause, record.data = bytes.take();
         log.places.push_back({s.run(), s.tick(), s.time(), "", cause, log.records.size()});
         log.records.push_back(std::move(record));
     }
-    void ask(std::vector<publish::OperationText> operations)
+    void ask(std::vector<wire::Operation> operations)
     {
-        publish::RequestText text;
+        wire::Request text;
         text.operations = operations;
         auto wanted = control::wanted_of(text, library());
         REQUIRE(wanted);
         REQUIRE(scene.simulation().carry_out_now(wanted->request).done);
-        publish::JournalRecord entry;
+        wire::Journal entry;
         entry.run = scene.simulation().run(), entry.step = scene.simulation().tick(), entry.operations = std::move(operations);
-        entry.number = log.entries.size() + 1;
+        entry.sequence_number = log.entries.size() + 1;
         log.entries.push_back(std::move(entry));
     }
     void step(int n)
@@ -101,10 +101,10 @@ public:
         for (int i = 0; i < n; ++i)
         {
             scene.step();
-            publish::HashRecord record;
-            record.run = s.run(), record.step = s.tick(), record.hashes = {s.state_hash()};
+            wire::Hashes record;
+            record.run = s.run(), record.step = s.tick(), record.values = {s.state_hash()};
             log.hashes.push_back(record);
-            publish::Frame frame;
+            wire::Frame frame;
             const std::uint32_t ball = s.world().find("ball");
             frame.run = s.run(), frame.step = s.tick();
             if (ball != kNoIndex) frame.bodies = {publish::state_of(s.world().host().bodies, s.world().component(ball).host_index, 1)};
@@ -227,12 +227,12 @@ TEST_CASE("a gap in the numbers of the journal is reported, also between two run
     recorded.keep_snapshot("begin");
     recorded.step(5);
     CHECK(made_again(recorded.log).doubts.empty());
-    recorded.log.entries[1].number = 4;
+    recorded.log.entries[1].sequence_number = 4;
     const replay::ReplayReport between = made_again(recorded.log);
     REQUIRE(between.doubts.size() == 1);
     CHECK(between.doubts[0].find("entries 2 to 3 are missing, after step 5 of run") != std::string::npos);
     // Only for plabd's own recordings it is known that there was nothing before the first entry.
-    recorded.log.entries[0].number = 3;
+    recorded.log.entries[0].sequence_number = 3;
     CHECK(made_again(recorded.log).doubts.empty());
     recorded.log.about["recorder"] = "plabd";
     CHECK(made_again(recorded.log).doubts.size() == 1);
@@ -246,7 +246,7 @@ TEST_CASE("one wrong bit in a recorded hash is found")
 {
     RecordedScene recorded(kBall);
     recorded.step(10);
-    recorded.log.hashes[6].hashes[0] ^= 1;
+    recorded.log.hashes[6].values[0] ^= 1;
     const replay::ReplayReport report = made_again(recorded.log);
     REQUIRE(report.mismatch);
     CHECK(report.mismatch->step == 7);

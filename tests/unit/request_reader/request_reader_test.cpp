@@ -12,12 +12,12 @@
 using namespace plab;
 using namespace std::chrono_literals;
 using daemon::RequestReader;
-using publish::OperationText;
+using wire::Operation;
 
 namespace
 {
 
-OperationText operation(std::string verb, std::string target = "", std::string argument = "", std::string blueprint = "")
+wire::Operation operation(std::string verb, std::string target = "", std::string argument = "", std::string blueprint = "")
 {
     return {std::move(verb), std::move(target), std::move(argument), std::move(blueprint), {}};
 }
@@ -26,15 +26,15 @@ OperationText operation(std::string verb, std::string target = "", std::string a
 class FakeBus
 {
 public:
-    void send(OperationText operation)
+    void send(wire::Operation operation)
     {
-        publish::RequestText text;
+        publish::ReceivedRequest text;
         text.operations = {std::move(operation)};
         const std::lock_guard lock(mutex_);
         text.number = ++last_;
         waiting_.push_back(std::move(text));
     }
-    bool take(publish::RequestText& out)
+    bool take(publish::ReceivedRequest& out)
     {
         std::this_thread::sleep_for(delay);
         const std::lock_guard lock(mutex_);
@@ -48,7 +48,7 @@ public:
 
 private:
     std::mutex mutex_;
-    std::deque<publish::RequestText> waiting_;
+    std::deque<publish::ReceivedRequest> waiting_;
     std::uint64_t last_ = 0;
 };
 
@@ -76,7 +76,7 @@ TEST_CASE("requests are read in the order in which they arrived, and refused one
     FakeBus bus;
     plugins::PluginLibrary library;
     std::atomic<int> ready = 0;
-    RequestReader reader([&](publish::RequestText& text) { return bus.take(text); }, library, {}, [&] { ++ready; });
+    RequestReader reader([&](publish::ReceivedRequest& text) { return bus.take(text); }, library, {}, [&] { ++ready; });
     RequestReader::ReadRequest next;
     CHECK_FALSE(reader.take(next));
     bus.send(operation("pause")), bus.send(operation("dance")), bus.send(operation("shutdown"));
@@ -101,7 +101,7 @@ TEST_CASE("when a request can be taken, the plugins of the types that it names a
 {
     FakeBus bus;
     plugins::PluginLibrary library;
-    RequestReader reader([&](publish::RequestText& text) { return bus.take(text); }, library, {}, [] {});
+    RequestReader reader([&](publish::ReceivedRequest& text) { return bus.take(text); }, library, {}, [] {});
     CHECK(library.loaded().empty());
     bus.send(operation("swap", "contact.response", "Penalty"));
     reader.notify();
@@ -122,7 +122,7 @@ TEST_CASE("an addition is compiled for the scene that the requests before it lea
 {
     FakeBus bus;
     plugins::PluginLibrary library;
-    RequestReader reader([&](publish::RequestText& text) { return bus.take(text); }, library, {}, [] {});
+    RequestReader reader([&](publish::ReceivedRequest& text) { return bus.take(text); }, library, {}, [] {});
     const auto first = std::make_shared<const model::SceneSpec>(), second = std::make_shared<const model::SceneSpec>();
     reader.show(first);
     bus.send(operation("remove", "old")), bus.send(operation("add", "", "", "<component id=\"a\" type=\"Shape/Sphere\" radius=\"1\"/>"));
@@ -145,7 +145,7 @@ TEST_CASE("an addition does not wait forever for the requests before it, and not
 {
     FakeBus bus;
     plugins::PluginLibrary library;
-    RequestReader reader([&](publish::RequestText& text) { return bus.take(text); }, library, {}, [] {});
+    RequestReader reader([&](publish::ReceivedRequest& text) { return bus.take(text); }, library, {}, [] {});
     const auto scene = std::make_shared<const model::SceneSpec>();
     reader.show(scene);
     for (int i = 0; i < 3; ++i) bus.send(operation("add", "", "", "<component id=\"a\" type=\"Shape/Sphere\" radius=\"1\"/>"));
@@ -167,7 +167,7 @@ TEST_CASE("finish waits until all requests that have arrived are read, but not l
     FakeBus bus;
     plugins::PluginLibrary library;
     bus.delay = 50ms;
-    RequestReader reader([&](publish::RequestText& text) { return bus.take(text); }, library, {}, [] {});
+    RequestReader reader([&](publish::ReceivedRequest& text) { return bus.take(text); }, library, {}, [] {});
     bus.send(operation("pause")), bus.send(operation("resume"));
     reader.finish(5s);
     RequestReader::ReadRequest next;

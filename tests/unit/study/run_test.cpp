@@ -77,21 +77,22 @@ TEST_CASE("the figures of a study are those that the server publishes live")
     simulation::Simulation s(library(), 1);
     REQUIRE(s.load(spec).ok());
     publish::Sampler sampler(0);
-    const publish::Metrics start = sampler.sample(s, 1);
+    const wire::Metrics start = sampler.sample(s, 1);
     for (int half = 1; half <= 2; ++half)
     {
         for (int n = 0; n < 50; ++n) s.step();
-        const publish::Metrics live = sampler.sample(s, 1 + half);
+        const wire::Metrics live = sampler.sample(s, 1 + half);
         const auto at = static_cast<std::size_t>(half);
-        CHECK(record.energy.energy[at] == live.kinetic + live.stored);
-        double unstored = live.of_requests;
-        for (const publish::InteractionMetrics& m : live.interactions) unstored += m.component == "air" ? m.work : 0;
+        CHECK(record.energy.energy[at] == live.ledger.kinetic + live.ledger.stored);
+        double unstored = live.ledger.of_requests;
+        for (const wire::InteractionMetrics& m : live.interactions) unstored += m.component_id == "air" ? m.work : 0;
         CHECK(unstored < 0);
         CHECK(record.energy.drift[at] ==
-              doctest::Approx(live.kinetic + live.stored - start.kinetic - start.stored - unstored).epsilon(1e-9));
-        for (const publish::InteractionMetrics& m : live.interactions)
+              doctest::Approx(live.ledger.kinetic + live.ledger.stored - start.ledger.kinetic - start.ledger.stored - unstored)
+                  .epsilon(1e-9));
+        for (const wire::InteractionMetrics& m : live.interactions)
             for (const PartFigures& part : record.parts)
-                if (part.id == m.component && half == 2)
+                if (part.id == m.component_id && half == 2)
                 {
                     CHECK(part.resolved == m.resolved);
                     CHECK(part.error >= m.error);
@@ -113,7 +114,7 @@ model::SceneSpec compiled_file(const std::string& file)
 /// What an observer of the metrics accumulates over a run.
 struct Live
 {
-    std::vector<publish::Metrics> samples;
+    std::vector<wire::Metrics> samples;
     double deepest = 0, residual = 0, violation = 0;
     std::uint64_t evaluations = 0;
     std::map<std::string, int> events;
@@ -129,12 +130,12 @@ Live watch(const model::SceneSpec& spec, int steps, int every)
     for (int n = 1; n <= steps; ++n)
     {
         s.step();
-        const publish::Metrics m = sampler.sample(s, 1 + n);
+        const wire::Metrics m = sampler.sample(s, 1 + n);
         out.deepest = std::max(out.deepest, m.deepest), out.residual = std::max(out.residual, m.residual);
         out.evaluations += s.stepper().report().evaluations;
         for (const Event& e : s.events()) ++out.events[e.kind];
         if (n % every != 0) continue;
-        for (const publish::InteractionMetrics& i : m.interactions)
+        for (const wire::InteractionMetrics& i : m.interactions)
             if (i.requested.starts_with("Constraint/")) out.violation = std::max(out.violation, i.error);
         out.samples.push_back(m);
     }
@@ -166,9 +167,9 @@ TEST_CASE("live metrics and a study agree on energy, momenta, violation, evaluat
         double momentum = 0, spin = 0;
         for (std::size_t k = 0; k < live.samples.size(); ++k)
         {
-            const publish::Metrics &m = live.samples[k], &start = live.samples.front();
-            CHECK(record.energy.energy[k] == m.kinetic + m.stored);
-            if (run.by_work) CHECK(record.energy.drift[k] == doctest::Approx(m.unexplained).epsilon(1e-9));
+            const wire::Metrics &m = live.samples[k], &start = live.samples.front();
+            CHECK(record.energy.energy[k] == m.ledger.kinetic + m.ledger.stored);
+            if (run.by_work) CHECK(record.energy.drift[k] == doctest::Approx(m.ledger.unexplained).epsilon(1e-9));
             momentum = std::max(momentum, length(m.momentum - start.momentum));
             spin = std::max(spin, length(m.angular_momentum - start.angular_momentum));
         }
@@ -180,9 +181,9 @@ TEST_CASE("live metrics and a study agree on energy, momenta, violation, evaluat
         CHECK(record.evaluations == live.evaluations);
         CHECK(record.events == live.events);
         CHECK(record.evaluations > 0);
-        for (const publish::InteractionMetrics& m : live.samples.back().interactions)
+        for (const wire::InteractionMetrics& m : live.samples.back().interactions)
             for (const PartFigures& part : record.parts)
-                if (part.id == m.component) CHECK(part.requested == m.requested);
+                if (part.id == m.component_id) CHECK(part.requested == m.requested);
     }
 }
 

@@ -25,7 +25,7 @@ std::vector<view::Moment> all_of(view::Source& source)
     return out;
 }
 
-const std::string& response_of(const view::Moment& moment) { return moment.scene->interactions.at("contact.response").type; }
+const std::string& response_of(const view::Moment& moment) { return moment.scene->interactions.at("contact.response").type_name; }
 
 }  // namespace
 

@@ -20,14 +20,14 @@ doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-12
 link::Object body(const std::string& id, std::uint32_t handle, const std::string& motion, const std::string& shape)
 {
     link::Object o;
-    o.id = id, o.handle = handle, o.run = 1, o.motion = motion, o.position = {0, 0, 9}, o.shapes = {shape};
+    o.component_id = id, o.handle = handle, o.run = 1, o.motion = motion, o.position = {0, 0, 9}, o.shapes = {shape};
     return o;
 }
 
 link::Interaction interaction(const std::string& id, const std::string& type, std::int64_t since = 0)
 {
     link::Interaction i;
-    i.id = id, i.type = type, i.since = since, i.run = 1;
+    i.component_id = id, i.type_name = type, i.since = since, i.run = 1;
     return i;
 }
 
@@ -42,7 +42,7 @@ link::CatalogueContents sample()
     s.objects["ball"] = body("ball", 1, "dynamic", "round");
     s.objects["floor"] = body("floor", 7, "static", "flat");
     link::Object wheel = body("wheel", 2, "dynamic", "");
-    wheel.is_shaft = true, wheel.shapes.clear(), wheel.mass = 0.01, wheel.position = {0, 5, 0};
+    wheel.shape_of = "shaft", wheel.shapes.clear(), wheel.mass = 0.01, wheel.position = {0, 5, 0};
     wheel.orientation = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};  // z of the axle along x
     s.objects["wheel"] = wheel;
     s.interactions["contact"] = interaction("contact", "CDetection/ODE");
@@ -97,7 +97,7 @@ TEST_CASE("capsules and cylinders have shapes of their own; a compound is drawn 
     CHECK(find_form(model_of(snapshot).draw(at(0)), render::Form::Capsule) != nullptr);
     snapshot.shapes["round"].form = "compound";
     snapshot.shapes["round"].vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    snapshot.shapes["round"].triangles = {{0, 1, 2}};
+    snapshot.shapes["round"].triangles = {0, 1, 2};
     SceneModel model = model_of(snapshot);
     const render::Drawing& drawing = model.draw(at(0));
     REQUIRE(find_form(drawing, render::Form::Mesh) != nullptr);
@@ -164,7 +164,7 @@ TEST_CASE("meshes are passed on once, and again only when one changes")
                                 {},
                                 {},
                                 {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+                                {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}};
     snapshot.objects["ball"].shapes = {"round", "tetra"};
     SceneModel model = model_of(snapshot);
     const std::uint64_t revision = model.draw(at(0)).meshes_revision;
@@ -172,7 +172,7 @@ TEST_CASE("meshes are passed on once, and again only when one changes")
     REQUIRE(drawing.meshes.size() == 1);
     CHECK(drawing.meshes[0].triangles == std::vector<std::uint32_t>{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3});
     REQUIRE(find_form(drawing, render::Form::Mesh) != nullptr);
-    snapshot.interactions["contact"].type = "CDetection/Other";
+    snapshot.interactions["contact"].type_name = "CDetection/Other";
     model.use(std::make_shared<link::CatalogueContents>(snapshot));
     CHECK(model.draw(at(0)).meshes_revision == revision);
     snapshot.shapes["tetra"].vertices[3].z = 2;
@@ -206,7 +206,7 @@ TEST_CASE("of many interactions the most expensive ones are shown, and the numbe
         const std::string id = "i" + std::to_string(i);
         snapshot.interactions[id] = interaction(id, "Field/Gravity");
         link::InteractionMetrics metrics;
-        metrics.component = id, metrics.cost_ns = i % 2 == 0 ? i : 0;
+        metrics.component_id = id, metrics.cost_ns = i % 2 == 0 ? i : 0;
         snapshot.metrics->interactions.push_back(metrics);
     }
     Captions captions;
