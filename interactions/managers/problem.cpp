@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plab/contact_mobility.h"
 #include "plab/symmetric.h"
 
 namespace plab::managers
@@ -34,17 +35,8 @@ void set_inertia(Mover& mover, Anchor& anchor, const Bodies& bodies)
 
 void add_mobility(Point& p, const Mover& m, const Vec3& r)
 {
-    const Vec3 lever[3] = {cross(r, p.t1), cross(r, p.t2), cross(r, p.n)};
-    for (int i = 0; i < 3; ++i)
-    {
-        const Vec3 spin = m.inverse_inertia * lever[i];
-        for (int j = i; j < 3; ++j)
-        {
-            p.K(i, j) += dot(lever[j], spin);
-            p.K(j, i) = p.K(i, j);
-        }
-        p.K(i, i) += m.inverse_mass;
-    }
+    add_turning_mobility(p.K, m.inverse_inertia, r, p.t1, p.t2, p.n);
+    for (int i = 0; i < 3; ++i) p.K(i, i) += m.inverse_mass;
 }
 
 }  // namespace

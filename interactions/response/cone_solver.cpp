@@ -167,4 +167,16 @@ ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double t
     return out;
 }
 
+double energy_gained(std::span<const ConeContact> contacts, std::span<const Vec3> before, const Bodies& bodies)
+{
+    double gain = 0, size = 0;
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+    {
+        const ConeContact& c = contacts[k];
+        gain += 0.5 * dot(c.impulse, before[k] + c.point->velocity(bodies));
+        size += length(c.impulse) * length(before[k]);
+    }
+    return gain > 1e-12 * size ? gain : 0.0;
+}
+
 }  // namespace plab::response

@@ -40,4 +40,7 @@ Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, con
 ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double tolerance, int max_sweeps,
                        const Interruption* interruption = nullptr);
 
+/// J: the energy that the impulses have added beyond rounding, the sum of j . (u + u') / 2. `before`: u of each contact without them.
+double energy_gained(std::span<const ConeContact> contacts, std::span<const Vec3> before, const Bodies& bodies);
+
 }  // namespace plab::response

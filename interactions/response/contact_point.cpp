@@ -1,5 +1,7 @@
 #include "contact_point.h"
 
+#include "plab/contact_mobility.h"
+
 namespace plab::response
 {
 
@@ -16,23 +18,12 @@ ContactPoint::ContactPoint(const Contact& contact, const Bodies& bodies)
     central_ = turning <= 1e-20 * inverse_mass_;
 }
 
-/// K += -[r] I^-1 [r]. The mass is added last, so that the rotational part is known separately.
+/// The masses are added last, so that the rotational part is known separately.
 void ContactPoint::add_body(const Bodies& bodies, std::uint32_t body)
 {
     if (!bodies.dynamic(body)) return;
     inverse_mass_ += bodies.inverse_mass[body];
-    const Mat3 inverse_inertia = bodies.inverse_inertia_W(body);
-    const Vec3 r = point_ - bodies.position[body];
-    const Vec3 lever[3] = {cross(r, t1_), cross(r, t2_), cross(r, n_)};
-    for (int i = 0; i < 3; ++i)
-    {
-        const Vec3 spin = inverse_inertia * lever[i];
-        for (int j = i; j < 3; ++j)
-        {
-            K_(i, j) += dot(lever[j], spin);
-            K_(j, i) = K_(i, j);
-        }
-    }
+    add_turning_mobility(K_, bodies.inverse_inertia_W(body), point_ - bodies.position[body], t1_, t2_, n_);
 }
 
 Vec3 ContactPoint::velocity(const Bodies& bodies) const

@@ -29,7 +29,6 @@ private:
     void group();
     double closing_speed(std::uint32_t contact) const { return -work_.points[contact].velocity(bodies_).z; }
     double closing_speed(const Patch& patch) const;
-    bool rests(const Contact& contact, double speed) const;
     void choose(std::uint32_t fastest, double speed);
     bool touch_one_body(const Patch& p, const Patch& q) const;
     void hit(bool plastic);
@@ -51,16 +50,10 @@ private:
 
 void ImpactSequence::prepare()
 {
-    work_.points.clear(), work_.order.clear();
+    for (Contact& c : contacts_) c.impulse = {};
+    work_.gather(contacts_, bodies_);
     double speed = 0;
-    for (std::uint32_t i = 0; i < contacts_.size(); ++i)
-    {
-        contacts_[i].impulse = {};
-        work_.points.emplace_back(contacts_[i], bodies_);
-        if (!work_.points.back().moves()) continue;
-        work_.order.push_back(i);
-        speed = std::max(speed, length(work_.points.back().velocity(bodies_)));
-    }
+    for (const std::uint32_t i : work_.order) speed = std::max(speed, length(work_.points[i].velocity(bodies_)));
     threshold_ = std::max(settings_.tolerance, 0x1p-46 * speed);
 }
 
@@ -86,17 +79,6 @@ double ImpactSequence::closing_speed(const Patch& patch) const
     double fastest = -HUGE_VAL;
     for (std::uint32_t k = patch.first; k < patch.end; ++k) fastest = std::max(fastest, closing_speed(work_.order[k]));
     return fastest;
-}
-
-/// Whether a contact that separates at `speed` rests: the height v^2 / 2a is below rest_height, or below what its position can
-/// resolve.
-bool ImpactSequence::rests(const Contact& contact, double speed) const
-{
-    if (speed < 0) return false;
-    const double pressing = -contact.normal_acceleration;
-    if (!(pressing > 0)) return speed <= settings_.rest_speed;
-    const double height = std::max(settings_.rest_height, 0x1p-48 * length(contact.point));
-    return speed * speed <= 2 * pressing * height;
 }
 
 bool ImpactSequence::touch_one_body(const Patch& p, const Patch& q) const
@@ -137,7 +119,7 @@ double ImpactSequence::restitution_of(const Patch& patch, bool plastic) const
     {
         const Contact& c = contacts_[work_.order[k]];
         restitution = std::min(restitution, c.restitution);
-        if (rests(c, c.restitution * closing)) restitution = 0;
+        if (rests(c, c.restitution * closing, settings_.bounce)) restitution = 0;
     }
     return restitution;
 }
@@ -212,15 +194,7 @@ double ImpactSequence::try_at_once(double share)
     }
     const int sweeps = solve_cones(work_.cones, bodies_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps;
     spent_ += sweeps, visits_ += static_cast<std::int64_t>(work_.cones.size()) * sweeps;
-    double gain = 0, size = 0;
-    for (std::size_t k = 0; k < work_.cones.size(); ++k)
-    {
-        const ConeContact& c = work_.cones[k];
-        const double work = 0.5 * dot(c.impulse, work_.before[k] + c.point->velocity(bodies_));
-        gain += work;
-        size += length(c.impulse) * length(work_.before[k]);
-    }
-    return gain > 1e-12 * size ? gain : 0.0;
+    return energy_gained(work_.cones, work_.before, bodies_);
 }
 
 void ImpactSequence::run(Impact& impact)
@@ -255,7 +229,8 @@ void ImpactSequence::run(Impact& impact)
     {
         const double closing = closing_speed(i);
         impact.residual = std::max(impact.residual, closing);
-        contacts_[i].resting = closing <= still && (rests(contacts_[i], std::max(0.0, -closing)) || (plastic && -closing <= still));
+        contacts_[i].resting =
+            closing <= still && (rests(contacts_[i], std::max(0.0, -closing), settings_.bounce) || (plastic && -closing <= still));
     }
     impact.converged = impact.residual <= threshold_;
     impact.visits = visits_;

@@ -34,8 +34,10 @@ void ImpulseRows::describe(Schema& s)
 void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bodies, Impact& impact)
 {
     Workspace& work = rows.workspace[row];
-    const ImpactSettings settings{rows.rest_height[row], rows.rest_speed[row], rows.tolerance[row],
-                                  static_cast<int>(std::min<std::int64_t>(rows.max_iterations[row], 1'000'000)), context.interruption};
+    const ImpactSettings settings{{rows.rest_height[row], rows.rest_speed[row]},
+                                  rows.tolerance[row],
+                                  static_cast<int>(std::min<std::int64_t>(rows.max_iterations[row], 1'000'000)),
+                                  context.interruption};
     if (impact.mode == ImpactMode::Impact)
         respond_impact(settings, work, bodies, impact);
     else
@@ -45,9 +47,7 @@ void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bod
         const Vec3 u = work.points[i].velocity(bodies);
         impact.contacts[i].slip = std::hypot(u.x, u.y);
     }
-    if (rows.step[row] != context.tick) rows.residual[row] = 0, rows.iterations[row] = 0, rows.step[row] = context.tick;
-    rows.residual[row] = std::max(rows.residual[row], impact.residual);
-    rows.iterations[row] += impact.iterations;
+    add_to_outputs(rows, row, context.tick, impact);
 }
 
 }  // namespace plab::response

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
-#include "cone_solver.h"
 #include "plab/collision.h"
 #include "plab/context.h"
 #include "plab/schema.h"
+#include "workspace.h"
 
 namespace plab::response
 {
@@ -18,38 +17,6 @@ struct NoneRows
     void describe(Schema&) {}
 };
 /// Phase::Respond. Contacts are marked as resting, without impulse, so that they are not located again.
-
-/// The contacts between two bodies, which are answered together.
-struct Patch
-{
-    std::uint32_t first = 0, end = 0;  ///< range in Workspace::order
-    std::uint64_t id = 0;              ///< smallest contact id
-};
-
-/// A contact that takes part in an impact at several points; and a body's state before that impact.
-struct HitContact
-{
-    std::uint32_t contact = 0;
-    double restitution = 0;
-};
-struct HitBody
-{
-    std::uint32_t body = 0;
-    Vec3 velocity, spin, momentum;
-};
-
-/// Working memory of one response, kept from call to call to avoid allocations.
-struct Workspace
-{
-    std::vector<std::uint32_t> order;  ///< contacts by pair of bodies, then id
-    std::vector<Patch> patches;        ///< by id
-    std::vector<ContactPoint> points;  ///< per contact
-    std::vector<ConeContact> cones;
-    std::vector<Vec3> before;             ///< m/s, contact velocities before an impact
-    std::vector<std::uint32_t> together;  ///< patches that are hit simultaneously
-    std::vector<HitContact> hit;          ///< contacts of those patches
-    std::vector<HitBody> saved;           ///< bodies of those patches, before the impact
-};
 
 struct ImpulseRows
 {
@@ -72,7 +39,8 @@ void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bod
 /// When a bounce is suppressed, and how many iterations are allowed.
 struct ImpactSettings
 {
-    double rest_height = 0, rest_speed = 0, tolerance = 0;
+    BounceLimit bounce;
+    double tolerance = 0;  ///< m/s
     int max_iterations = 0;
     const Interruption* interruption = nullptr;  ///< checked in each sweep
 };

@@ -50,8 +50,8 @@ void touch(const StepContext& context, Row row, SurfaceColumns& surface, const B
         const SurfaceForce t = surface_force(k, damping, c.friction * std::max(n.force, 0.0), c.stretch, slip);
 
         const Vec3 force = c.normal * n.force + t.force;
-        for (const auto& [who, f] : {std::pair(c.a, -force), std::pair(c.b, force)})
-            if (bodies.dynamic(who.index)) wrenches.add_force_at(who, f, c.point);
+        for (const auto& [body, f] : {std::pair(c.a, -force), std::pair(c.b, force)})
+            if (bodies.dynamic(body.index)) wrenches.add_force_at(body, f, c.point);
         c.impulse = force * impact.dt, c.stretch = t.stretch, c.slip = length(slip);
         total.stored += n.stored + t.stored, total.force += n.force;
         total.penetration = std::max(total.penetration, c.depth);

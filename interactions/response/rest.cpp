@@ -1,23 +1,9 @@
-#include <algorithm>
-
 #include "impulse.h"
 
 namespace plab::response
 {
 namespace
 {
-
-/// J, beyond rounding: the energy that the impulses have added, the sum of j . (u + u') / 2.
-double energy_gained(std::span<const ConeContact> cones, std::span<const Vec3> before, const Bodies& bodies)
-{
-    double gain = 0, size = 0;
-    for (std::size_t k = 0; k < cones.size(); ++k)
-    {
-        gain += 0.5 * dot(cones[k].impulse, before[k] + cones[k].point->velocity(bodies));
-        size += length(cones[k].impulse) * length(before[k]);
-    }
-    return gain > 1e-12 * size ? gain : 0.0;
-}
 
 void take_back(std::span<ConeContact> cones, Bodies& bodies)
 {
@@ -46,14 +32,9 @@ ConeResult solve_without_gain(const ImpactSettings& settings, Workspace& work, B
 void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact)
 {
     const auto contacts = impact.contacts;
-    work.points.clear(), work.cones.clear(), work.order.clear(), work.before.clear();
-    for (std::uint32_t i = 0; i < contacts.size(); ++i)
-    {
-        work.points.emplace_back(contacts[i], bodies);
-        if (work.points.back().moves()) work.order.push_back(i);
-    }
-    std::sort(work.order.begin(), work.order.end(), [&](auto i, auto j) { return contacts[i].id < contacts[j].id; });
-    for (const std::uint32_t i : work.order) work.before.push_back(work.points[i].velocity(bodies));
+    work.gather(contacts, bodies);
+    work.sort_by_id(contacts, bodies);
+    work.cones.clear();
     for (const std::uint32_t i : work.order)
     {
         const Contact& c = contacts[i];

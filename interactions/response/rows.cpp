@@ -13,24 +13,10 @@ constexpr int kMostSweeps = 20000, kLeastSweeps = 20;
 /// Upper bound on the number of contacts visited in one impact; a closing speed that then remains is reported as the residual.
 constexpr std::int64_t kMostVisits = 1'000'000;
 
-struct Bounce
-{
-    double rest_height = 0, rest_speed = 0;
-};
-
-/// Whether a contact that separates at `speed` rests: it would rise less than its position can resolve.
-bool rests(const Contact& c, double speed, const Bounce& bounce)
-{
-    const double pressing = -c.normal_acceleration;
-    if (!(pressing > 0)) return speed <= bounce.rest_speed;
-    const double height = std::max(bounce.rest_height, 0x1p-48 * length(c.point));
-    return speed * speed <= 2 * pressing * height;
-}
-
 /// Answers all contacts simultaneously, with the fraction `share` of the restitution. Returns the energy gained beyond rounding,
 /// J; `visits` grows by the number of contacts visited.
-double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bodies, const Bounce& bounce, double share, double tolerance,
-                  ConeResult& result, std::int64_t& visits)
+double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bodies, const BounceLimit& bounce, double share,
+                  double tolerance, ConeResult& result, std::int64_t& visits)
 {
     work.cones.clear();
     for (std::size_t k = 0; k < work.order.size(); ++k)
@@ -44,14 +30,7 @@ double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bo
     const std::int64_t most = std::clamp<std::int64_t>(kMostVisits / std::max<std::int64_t>(1, hit), kLeastSweeps, kMostSweeps);
     result = solve_cones(work.cones, bodies, tolerance, static_cast<int>(most));
     visits += hit * result.sweeps;
-    double gain = 0, size = 0;
-    for (std::size_t k = 0; k < work.cones.size(); ++k)
-    {
-        const ConeContact& c = work.cones[k];
-        gain += 0.5 * dot(c.impulse, work.before[k] + c.point->velocity(bodies));
-        size += length(c.impulse) * length(work.before[k]);
-    }
-    return gain > 1e-12 * size ? gain : 0.0;
+    return energy_gained(work.cones, work.before, bodies);
 }
 
 /// Restores the velocities by applying the opposite impulses.
@@ -96,22 +75,13 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
 {
     constexpr int kTrials = 6;
     Workspace& work = rows.workspace[row];
-    const Bounce bounce{rows.rest_height[row], rows.rest_speed[row]};
+    const BounceLimit bounce{rows.rest_height[row], rows.rest_speed[row]};
     const auto contacts = impact.contacts;
-    work.points.clear(), work.order.clear(), work.before.clear();
+    for (Contact& c : contacts) c.impulse = {};
+    work.gather(contacts, bodies);
+    work.sort_by_id(contacts, bodies);
     double speed = 0;
-    for (std::uint32_t i = 0; i < contacts.size(); ++i)
-    {
-        contacts[i].impulse = {};
-        work.points.emplace_back(contacts[i], bodies);
-        if (work.points.back().moves()) work.order.push_back(i);
-    }
-    std::sort(work.order.begin(), work.order.end(), [&](auto i, auto j) { return contacts[i].id < contacts[j].id; });
-    for (const std::uint32_t i : work.order)
-    {
-        work.before.push_back(work.points[i].velocity(bodies));
-        speed = std::max(speed, length(work.before.back()));
-    }
+    for (const Vec3& u : work.before) speed = std::max(speed, length(u));
     const double tolerance = kRowTolerance * speed;
     // With friction, Newton's restitution may return more energy than there was; then less is returned, and finally none.
     ConeResult result;
@@ -133,9 +103,7 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
         c.resting = rests(c, std::max(0.0, u.z), bounce);
     }
     impact.iterations += result.sweeps, impact.residual = std::max(0.0, result.residual), impact.converged = result.converged;
-    if (rows.step[row] != context.tick) rows.residual[row] = 0, rows.iterations[row] = 0, rows.step[row] = context.tick;
-    rows.residual[row] = std::max(rows.residual[row], impact.residual);
-    rows.iterations[row] += impact.iterations;
+    add_to_outputs(rows, row, context.tick, impact);
 }
 
 }  // namespace plab::response

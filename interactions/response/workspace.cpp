@@ -1,0 +1,32 @@
+#include "workspace.h"
+
+namespace plab::response
+{
+
+bool rests(const Contact& contact, double speed, const BounceLimit& limit)
+{
+    if (speed < 0) return false;
+    const double pressing = -contact.normal_acceleration;
+    if (!(pressing > 0)) return speed <= limit.rest_speed;
+    const double height = std::max(limit.rest_height, 0x1p-48 * length(contact.point));
+    return speed * speed <= 2 * pressing * height;
+}
+
+void Workspace::gather(std::span<const Contact> contacts, const Bodies& bodies)
+{
+    points.clear(), order.clear();
+    for (std::uint32_t i = 0; i < contacts.size(); ++i)
+    {
+        points.emplace_back(contacts[i], bodies);
+        if (points.back().moves()) order.push_back(i);
+    }
+}
+
+void Workspace::sort_by_id(std::span<const Contact> contacts, const Bodies& bodies)
+{
+    std::sort(order.begin(), order.end(), [&](auto i, auto j) { return contacts[i].id < contacts[j].id; });
+    before.clear();
+    for (const std::uint32_t i : order) before.push_back(points[i].velocity(bodies));
+}
+
+}  // namespace plab::response

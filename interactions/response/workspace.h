@@ -1,0 +1,72 @@
+/// What the responses that apply impulses have in common: their working memory, when a bounce is suppressed, and the outputs of a step.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cone_solver.h"
+#include "plab/collision.h"
+#include "plab/column.h"
+
+namespace plab::response
+{
+
+/// A rebound below these is suppressed: see README, "When a bounce is suppressed".
+struct BounceLimit
+{
+    double rest_height = 0;  ///< m, where the bodies are pressed together
+    double rest_speed = 0;   ///< m/s, where they are not
+};
+
+/// Whether a contact that separates at `speed` rests: the height v^2 / 2a is below rest_height, or below what its position can resolve.
+bool rests(const Contact& contact, double speed, const BounceLimit& limit);
+
+/// The contacts between two bodies, which are answered together.
+struct Patch
+{
+    std::uint32_t first = 0, end = 0;  ///< range in Workspace::order
+    std::uint64_t id = 0;              ///< smallest contact id
+};
+
+/// A contact that takes part in an impact at several points; and a body's state before that impact.
+struct HitContact
+{
+    std::uint32_t contact = 0;
+    double restitution = 0;
+};
+struct HitBody
+{
+    std::uint32_t body = 0;
+    Vec3 velocity, spin, momentum;
+};
+
+/// Working memory of one response, kept from call to call to avoid allocations.
+struct Workspace
+{
+    std::vector<std::uint32_t> order;  ///< contacts by pair of bodies, then id
+    std::vector<Patch> patches;        ///< by id
+    std::vector<ContactPoint> points;  ///< per contact
+    std::vector<ConeContact> cones;
+    std::vector<Vec3> before;             ///< m/s, contact velocities before an impact
+    std::vector<std::uint32_t> together;  ///< patches that are hit simultaneously
+    std::vector<HitContact> hit;          ///< contacts of those patches
+    std::vector<HitBody> saved;           ///< bodies of those patches, before the impact
+
+    /// Sets `points`, and `order` to the contacts whose bodies can move, in the order of `contacts`.
+    void gather(std::span<const Contact> contacts, const Bodies& bodies);
+    /// Sorts `order` by id, and sets `before` to the present velocities in that order.
+    void sort_by_id(std::span<const Contact> contacts, const Bodies& bodies);
+};
+
+/// Adds an answered impact to the outputs of its step, which begin again at zero in each step.
+template <class Table>
+void add_to_outputs(Table& rows, Row row, Tick tick, const Impact& impact)
+{
+    if (rows.step[row] != tick) rows.residual[row] = 0, rows.iterations[row] = 0, rows.step[row] = tick;
+    rows.residual[row] = std::max(rows.residual[row], impact.residual);
+    rows.iterations[row] += impact.iterations;
+}
+
+}  // namespace plab::response
