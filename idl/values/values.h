@@ -374,6 +374,13 @@ struct Snapshot
 };
 PLAB_MEMBERS(Snapshot, run, revision, step, time, name, cause, state_hash, blueprint, data)
 
+struct Gone
+{
+    std::uint64_t run = 0;
+    std::string topic_name, component_id;
+};
+PLAB_MEMBERS(Gone, run, topic_name, component_id)
+
 struct Image
 {
     std::string camera;

@@ -68,7 +68,8 @@ inline link::Catalogue catalogue(const link::Session& session)
 template <class Condition>
 bool shows(link::Catalogue& catalogue, Condition condition)
 {
-    for (int i = 0; i < 50 && !condition(catalogue.now()); ++i) (void)catalogue.wait(Seconds(0.1));
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+    while (!condition(catalogue.now()) && std::chrono::steady_clock::now() < end) (void)catalogue.wait(Seconds(0.1));
     return condition(catalogue.now());
 }
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <set>
 
-#include "control/recordings/schema.h"
 #include "control/recordings/tables.h"
+#include "idl/samples.h"
 #include "link/json_text.h"
 #include "link/names.h"
 #include "program/text_out.h"
@@ -16,6 +16,8 @@ namespace
 {
 
 namespace fs = std::filesystem;
+
+const std::string kVersion = "plab::v2";
 
 /// "plab/states" as part of a file name: "states".
 std::string file_stem(const std::string& topic)
@@ -130,31 +132,64 @@ private:
     CsvRow rows_;
 };
 
-/// Types of the channels' messages, by the file's own schemas.
-class ChannelTypes
+/// The value (idl/values/values.h) of each type of the wire.
+template <class Sample>
+struct ValueOf;
+#define PLAB_VALUE_OF(Name)        \
+    template <>                    \
+    struct ValueOf<plab_v2_##Name> \
+    {                              \
+        using Type = wire::Name;   \
+    }
+PLAB_VALUE_OF(Server);
+PLAB_VALUE_OF(Scene);
+PLAB_VALUE_OF(SceneObject);
+PLAB_VALUE_OF(Shape);
+PLAB_VALUE_OF(Interaction);
+PLAB_VALUE_OF(Type);
+PLAB_VALUE_OF(Frame);
+PLAB_VALUE_OF(Collisions);
+PLAB_VALUE_OF(Events);
+PLAB_VALUE_OF(Metrics);
+PLAB_VALUE_OF(Request);
+PLAB_VALUE_OF(Reply);
+PLAB_VALUE_OF(Image);
+PLAB_VALUE_OF(Journal);
+PLAB_VALUE_OF(Hashes);
+PLAB_VALUE_OF(Snapshot);
+PLAB_VALUE_OF(Gone);
+#undef PLAB_VALUE_OF
+
+template <class T>
+void write_json(link::JsonWriter& json, const T& value)
 {
-public:
-    explicit ChannelTypes(const recording::Reader& reader) : reader_(&reader) {}
-
-    Result<std::string> json_of(const recording::Channel& channel, recording::ByteView data)
+    if constexpr (Described<T>)
     {
-        auto known = types_.find(channel.id);
-        if (known == types_.end()) known = types_.emplace(channel.id, find(channel)).first;
-        if (!known->second) return known->second.errors();
-        return link::json_of(**known->second, std::as_bytes(data));
+        json.open('{');
+        for_each_member([&](const char* name, const auto& member) { write_json(json.key(name), member); }, value);
+        json.close('}');
     }
-
-private:
-    Result<link::DynamicTypePtr> find(const recording::Channel& channel) const
+    else if constexpr (requires { json.value(value); })
+        json.value(value);
+    else
     {
-        if (channel.message_encoding != "cdr") return reason("its messages are '" + channel.message_encoding + "', not cdr");
-        const recording::Schema* const schema = reader_->schema_of(channel);
-        if (schema == nullptr) return reason("it has no schema");
-        return type_of(*schema);
+        json.open('[');
+        for (const auto& element : value) write_json(json, element);
+        json.close(']');
     }
+}
 
-    const recording::Reader* reader_;
-    std::map<recording::ChannelId, Result<link::DynamicTypePtr>> types_;
+/// A message with all its members, by their names in plab.idl.
+struct MessageJson
+{
+    std::string operator()(std::monostate) const { return {}; }
+    template <class Sample>
+    std::string operator()(const Sample* sample) const
+    {
+        link::JsonWriter json;
+        write_json(json, wire::value_of<typename ValueOf<Sample>::Type>(*sample));
+        return json.take();
+    }
 };
 
 std::vector<std::string> all_but_large(const Log& log)
@@ -197,28 +232,21 @@ Result<Exported> export_json(const Log& log, const ExportOptions& options)
     auto file = program::TextOut::open(options.out);
     if (!file) return file.errors();
     Exported out;
-    ChannelTypes types(log.reader());
-    recording::Cursor cursor = log.reader().messages(Log::query(*topics, options.span));
-    while (!topics->empty() && !file->is_over())
+    Stream stream = log.stream(*topics, options.span);
+    for (const Entry* entry = topics->empty() ? nullptr : stream.next(); entry != nullptr && !file->is_over(); entry = stream.next())
     {
-        auto found = cursor.next();
-        if (found && !*found) break;
-        if (!found)
+        const std::string& topic = entry->channel->topic;
+        const std::string message = std::visit(MessageJson{}, entry->content);
+        if (message.empty())
         {
-            out.troubles.add(found.error().text());
+            out.troubles.add(topic + ": its messages are not of a type of this version of the wire (" + kVersion + ")");
             continue;
         }
-        const recording::Found& here = **found;
-        auto message = types.json_of(*here.channel, here.message.data);
-        if (!message)
-        {
-            out.troubles.add(here.channel->topic + ": " + message.error().text());
-            continue;
-        }
-        ++out.messages[here.channel->topic];
-        file->write(R"({"topic":)" + link::json_text(here.channel->topic) + R"(,"log_time":)" + std::to_string(here.message.log_time) +
-                    R"(,"publish_time":)" + std::to_string(here.message.publish_time) + R"(,"message":)" + *message + "}\n");
+        ++out.messages[topic];
+        file->write(R"({"topic":)" + link::json_text(topic) + R"(,"log_time":)" + std::to_string(entry->log_time) + R"(,"publish_time":)" +
+                    std::to_string(entry->publish_time) + R"(,"message":)" + message + "}\n");
     }
+    out.troubles.merge(stream.troubles());
     if (log.is_interrupted()) return reason("interrupted");
     if (auto done = file->finish(); !done) return done.errors();
     out.files = {options.out};

@@ -24,8 +24,8 @@ struct Exported
 /// file, or all topics that have a table to a folder.
 Result<Exported> export_csv(const Log& log, const ExportOptions& options);
 
-/// One line per message: {"topic", "log_time" (ns), "publish_time" (ns since 1970), "message"}, decoded with the schemas of the
-/// file itself. Without topics: all but plab/images and plab/snapshots, which are large and useless as text.
+/// One line per message: {"topic", "log_time" (ns), "publish_time" (ns since 1970), "message"}, all members by their names in
+/// plab.idl; messages of other types than those of this version of the wire count as trouble. Without topics: all but plab/images and plab/snapshots, which are large and useless as text.
 Result<Exported> export_json(const Log& log, const ExportOptions& options);
 
 }  // namespace plab::recordings
