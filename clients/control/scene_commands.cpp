@@ -86,7 +86,7 @@ Exit run_swap(Context& c, const SwapOptions& o)
     {
         auto given = split_at_equal(text, "NAME=VALUE");
         if (!given) return c.fail(Exit::Usage, "--param: " + given.error().text());
-        swap.values.emplace_back(given->name, given->value);
+        swap.values.push_back({given->name, given->value});
     }
     std::vector<link::Operation> operations;
     for (const std::string& id : o.ids)
@@ -185,7 +185,7 @@ Exit run_set(Context& c, const SetOptions& o)
         const std::size_t dot = split_of(g.name, ids);
         const std::string id = g.name.substr(0, dot);
         if (operations.empty() || operations.back().target != id) operations.push_back({"set", id});
-        operations.back().values.emplace_back(g.name.substr(dot + 1), std::move(g.value));
+        operations.back().values.push_back({g.name.substr(dot + 1), std::move(g.value)});
     }
     return send(c, std::move(operations), o.timing);
 }
@@ -222,8 +222,8 @@ void add_push(const Command& app, Context& context)
                                         [o](Context& c)
                                         {
                                             link::Operation push{"push", o->id};
-                                            push.values.emplace_back("impulse", o->impulse);
-                                            if (o->point) push.values.emplace_back("point", *o->point);
+                                            push.values.push_back({"impulse", o->impulse});
+                                            if (o->point) push.values.push_back({"point", *o->point});
                                             return send(c, {std::move(push)}, o->timing);
                                         });
     command.add_option("id", o->id, "a body or a shaft").required().type_name("ID");

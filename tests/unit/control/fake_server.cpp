@@ -247,8 +247,7 @@ void FakeServer::answer(const plab_v2_Request& request)
     {
         const plab_v2_Operation& op = request.operations._buffer[i];
         Asked::Part& part = asked.parts.emplace_back(Asked::Part{op.verb, op.target, op.argument, op.blueprint, {}});
-        for (std::uint32_t v = 0; v < op.values._length; ++v)
-            part.values.emplace_back(op.values._buffer[v].name, op.values._buffer[v].text);
+        for (std::uint32_t v = 0; v < op.values._length; ++v) part.values.push_back({op.values._buffer[v].name, op.values._buffer[v].text});
     }
     const std::string verb = asked.parts.front().verb;
     const bool is_silent = asked.parts.front().target == "silent";
