@@ -22,8 +22,8 @@ double slip_mobility(const Mat3& K)
 void set_inertia(Mover& mover, Anchor& anchor, const Bodies& bodies)
 {
     const std::uint32_t b = anchor.host;
-    anchor.isotropic = is_isotropic(bodies.inertia_B[b]);
-    if (anchor.isotropic)
+    mover.isotropic = is_isotropic(bodies.inertia_B[b]);
+    if (mover.isotropic)
     {
         mover.inverse_inertia = bodies.inverse_inertia_B[b], anchor.inertia = bodies.inertia_B[b];
         return;
@@ -61,16 +61,21 @@ void Problem::set_mobility(Line& line) const
 
 void Problem::turn_with(const Bodies& bodies)
 {
+    turn_movers_with(bodies);
+    for (Point& p : points)
+        if (!is_isotropic_at(p.a) || !is_isotropic_at(p.b)) set_mobility(p);
+}
+
+void Problem::turn_movers_with(const Bodies& bodies)
+{
     for (std::size_t i = 0; i < movers.size(); ++i)
     {
         if (anchors[i].shaft) continue;
-        if (!anchors[i].isotropic) set_inertia(movers[i], anchors[i], bodies);
+        if (!movers[i].isotropic) set_inertia(movers[i], anchors[i], bodies);
         // The momentum is constant while a body turns freely; the spin without impulses is what the impulses have not
         // contributed to it.
         anchors[i].w = bodies.angular_velocity[anchors[i].host] - movers[i].inverse_inertia * anchors[i].written;
     }
-    for (Point& p : points)
-        if (!is_isotropic_at(p.a) || !is_isotropic_at(p.b)) set_mobility(p);
     for (Line& line : lines) set_mobility(line);
 }
 
@@ -118,8 +123,7 @@ void Problem::add_point(const Contact& c, const Bodies& bodies)
     p.t1 = any_perpendicular(p.n), p.t2 = cross(p.n, p.t1);
     p.r_a = c.point - bodies.position[c.a.index], p.r_b = c.point - bodies.position[c.b.index];
     p.friction = c.friction;
-    set_mobility(p);
-    if (!(p.K(2, 2) > 0)) return;
+    if (!p.mobile()) return;
     // The normal may have turned since, and the friction may have changed: the initial impulse is projected onto the cone.
     p.impulse = to_contact(p, c.impulse);
     p.impulse.z = std::max(0.0, p.impulse.z);
@@ -149,12 +153,28 @@ void Problem::add_line(const ConstraintRow& row, std::uint32_t index)
 
 void Problem::load(const Island& island, const Bodies& bodies, const Shafts& shafts)
 {
+    load_geometry(island, bodies, shafts);
+    for (Point& p : points) set_mobility(p);
+    // A method may turn to sweeps in any step; this step would be the first to allocate.
+    if (points.size() <= kSweptInOrder) single.reserve(points.size());
+}
+
+void Problem::load_geometry(const Island& island, const Bodies& bodies, const Shafts& shafts)
+{
     movers.clear(), anchors.clear(), points.clear(), lines.clear();
     contacts_ = island.contacts, rows_ = island.rows;
     interruption = island.interruption;
     add_bodies(island, bodies);
     add_shafts(island, shafts);
-    for (const Contact& c : island.contacts) add_point(c, bodies);
+    carried_.clear();
+    for (const Contact& c : island.contacts)
+    {
+        add_point(c, bodies);
+        const Point& p = points.back();
+        const bool moves_a = p.a == kNoIndex && bodies.motion[c.a.index] != Motion::Static;
+        const bool moves_b = p.b == kNoIndex && bodies.motion[c.b.index] != Motion::Static;
+        if (moves_a || moves_b) carried_.push_back(static_cast<std::uint32_t>(points.size() - 1));
+    }
     for (std::uint32_t i = 0; i < island.rows.size(); ++i) add_line(island.rows[i], i);
     // Only these entries were written, so the maps are empty again for the next island at little cost.
     for (const std::uint32_t b : island.bodies) mover_of_body_[b] = kNoIndex;
@@ -171,7 +191,7 @@ void Problem::read_speeds(const Bodies& bodies, const Shafts& shafts)
         else
             m.v = bodies.velocity[m.host], m.w = bodies.angular_velocity[m.host];
     }
-    for (std::size_t i = 0; i < points.size(); ++i)
+    for (const std::uint32_t i : carried_)
     {
         Point& p = points[i];
         Vec3 given;
@@ -221,22 +241,37 @@ void Problem::scale_impulses(double share)
     for (Line& line : lines) line.impulse *= share;
 }
 
-void Problem::apply_impulses()
+void Problem::sum_line_impulses()
 {
-    for (Anchor& m : anchors) m.push = m.turn = {};
-    for (const Point& p : points)
-    {
-        const Vec3 j = to_world(p, p.impulse);
-        if (p.a != kNoIndex) anchors[p.a].push -= j, anchors[p.a].turn -= cross(p.r_a, j);
-        if (p.b != kNoIndex) anchors[p.b].push += j, anchors[p.b].turn += cross(p.r_b, j);
-    }
+    sums.assign(movers.size(), {});
     for (const Line& line : lines)
         for (std::uint32_t k = 0; k < line.count; ++k)
         {
-            Anchor& m = anchors[line.mover[k]];
+            Momentum& m = sums[line.mover[k]];
             m.push += line.linear[k] * line.impulse, m.turn += line.angular[k] * line.impulse;
         }
+}
+
+void Problem::apply_impulses()
+{
+    sum_line_impulses();
+    for (const Point& p : points)
+    {
+        const Vec3 j = to_world(p, p.impulse);
+        if (p.a != kNoIndex) sums[p.a].push -= j, sums[p.a].turn -= cross(p.r_a, j);
+        if (p.b != kNoIndex) sums[p.b].push += j, sums[p.b].turn += cross(p.r_b, j);
+    }
     apply_same_impulses();
+}
+
+void Problem::sum_by_velocities()
+{
+    for (std::size_t i = 0; i < movers.size(); ++i)
+    {
+        const Anchor& anchor = anchors[i];
+        sums[i].push = (movers[i].v - anchor.v) * anchor.mass;
+        sums[i].turn = anchor.inertia * (movers[i].w - anchor.w);
+    }
 }
 
 void Problem::apply_same_impulses()
@@ -245,8 +280,8 @@ void Problem::apply_same_impulses()
     {
         const Anchor& anchor = anchors[i];
         Mover& m = movers[i];
-        m.v = anchor.v + anchor.push * m.inverse_mass;
-        m.w = anchor.w + m.inverse_inertia * anchor.turn;
+        m.v = anchor.v + sums[i].push * m.inverse_mass;
+        m.w = anchor.w + m.inverse_inertia * sums[i].turn;
     }
 }
 
@@ -262,9 +297,10 @@ void Problem::write_speeds(Bodies& bodies, Shafts& shafts)
         }
         // The angular momentum is the state: it changes by the impulses themselves.
         bodies.velocity[m.host] = movers[i].v;
-        if (m.turn == m.written) continue;
-        bodies.add_angular_impulse(m.host, m.turn - m.written);
-        m.written = m.turn;
+        const Vec3& turn = sums[i].turn;
+        if (turn == m.written) continue;
+        bodies.add_angular_impulse(m.host, turn - m.written);
+        m.written = turn;
     }
 }
 

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "contact_packets.h"
 #include "plab/island.h"
 #include "plab/tables.h"
 
@@ -23,10 +24,11 @@ namespace plab::managers
 /// What the innermost loops need of a body, or of a shaft (which uses w.x alone).
 struct Mover
 {
-    Vec3 v;  ///< m/s
-    Vec3 w;  ///< rad/s, in W; a shaft: x only
+    PaddedVec3 v;  ///< m/s
+    PaddedVec3 w;  ///< rad/s, in W; a shaft: x only
     double inverse_mass = 0;
-    Mat3 inverse_inertia;  ///< in W; a shaft: only element (0,0)
+    bool isotropic = false;  ///< the same inertia in all axes: it does not change when the body turns
+    Mat3 inverse_inertia;    ///< in W; a shaft: only element (0,0)
 };
 
 /// The remaining data of a mover, kept apart so that the inner loops touch less memory.
@@ -34,12 +36,17 @@ struct Anchor
 {
     std::uint32_t host = kNoIndex;  ///< row in Bodies or Shafts
     bool shaft = false;
-    bool isotropic = false;  ///< the same inertia in all axes: it does not change when the body turns
     double mass = 1;
-    Mat3 inertia;     ///< W
-    Vec3 v, w;        ///< velocities without the impulses of this solve
-    Vec3 push, turn;  ///< N s, N m s: sum of the impulses on this mover
-    Vec3 written;     ///< N m s: the part of `turn` that has been written to the table already
+    Mat3 inertia;  ///< W
+    Vec3 v, w;     ///< velocities without the impulses of this solve
+    Vec3 written;  ///< N m s: the part of Momentum::turn that has been written to the table already
+};
+
+/// The sum of the impulses on a mover.
+struct Momentum
+{
+    PaddedVec3 push;  ///< N s
+    PaddedVec3 turn;  ///< N m s
 };
 
 struct Point
@@ -55,7 +62,11 @@ struct Point
     Vec3 impulse;      ///< N s, in contact coordinates
 
     bool frictional() const { return friction > 0; }
+    bool mobile() const { return a != kNoIndex || b != kNoIndex; }
 };
+
+/// The points of an island with more of them are coloured and swept four pairs at a time (contact_packets.h).
+inline constexpr std::size_t kSweptInOrder = 64;
 
 /// A row of a joint, limit or motor: sum of linear . v + angular . w + given = target, or >= target if it is one-sided.
 struct Line
@@ -76,11 +87,15 @@ class Problem
 public:
     /// Sets geometry, masses and initial impulses (warm start). Targets and velocities are still to be set.
     void load(const Island& island, const Bodies& bodies, const Shafts& shafts);
+    /// The same but for the mobilities of the points, K.
+    void load_geometry(const Island& island, const Bodies& bodies, const Shafts& shafts);
     /// Updates inertias, mobilities and the spins without impulses to the present attitudes, after bodies have turned freely. Balls and
     /// cubes have the same inertia at all attitudes.
     /// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with
     /// another of its points, so the point must not turn with it.
     void turn_with(const Bodies& bodies);
+    /// The same for the movers and rows alone: the points keep their mobilities.
+    void turn_movers_with(const Bodies& bodies);
     /// Reads the velocities without impulses, and the given parts of u, from the tables.
     void read_speeds(const Bodies& bodies, const Shafts& shafts);
     /// Sets all velocities and given parts to zero, for a solve in displacements instead of velocities.
@@ -88,12 +103,17 @@ public:
     /// Sets the impulses of all points and lines to zero.
     void clear_impulses();
     void scale_impulses(double share);
+    /// Sets the sums of the movers' impulses to those of the lines alone.
+    void sum_line_impulses();
     /// Sets the movers' velocities to those without impulses plus the effect of the present impulses, summed in a fixed order so
     /// that the result is reproducible.
     void apply_impulses();
-    /// The same where no impulse and no point has changed since the last call of apply_impulses(): its sums are used again.
+    /// The same with the sums that there are: where no impulse and no point has changed since the last call of apply_impulses().
     void apply_same_impulses();
-    /// Writes the velocities to the tables; call apply_impulses first.
+    /// Takes the sums from the movers' velocities, which sweeps have changed impulse by impulse: m (v - v0), I (w - w0). They equal those
+    /// of apply_impulses() but for rounding, without a walk over all points.
+    void sum_by_velocities();
+    /// Writes the velocities and the sums of the impulses to the tables.
     void write_speeds(Bodies& bodies, Shafts& shafts);
 
     Vec3 relative_velocity(const Point& p) const;  ///< u, m/s
@@ -103,14 +123,20 @@ public:
     /// m/s: how far from the contact law rounding may leave the result: a fraction of the largest speed, or of the speed that
     /// the largest impulse alone would give. The rounding errors of `terms` summands are taken to add up like a random walk.
     double rounding(double terms = 1) const;
+    /// The points that touch a body which is not a mover and may move all the same (kinematic): their `given` may differ from 0.
+    std::span<const std::uint32_t> carried() const { return carried_; }
     /// Whether the step has been interrupted; sweeps and factorisations then end early.
     bool interrupted() const { return interruption && interruption->due(); }
 
     std::vector<Mover> movers;
     std::vector<Anchor> anchors;  ///< parallel to movers
+    std::vector<Momentum> sums;   ///< parallel to movers: of the impulses that have been applied
     std::vector<Point> points;    ///< parallel to Island::contacts
     std::vector<Line> lines;      ///< parallel to Island::rows; rows without movers have count 0
     const Interruption* interruption = nullptr;
+    /// Working memory of sweeps over the points.
+    PacketList<1> single;
+    PacketList<4> fours;
 
 private:
     void add_bodies(const Island& island, const Bodies& bodies);
@@ -120,10 +146,10 @@ private:
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);
     std::uint32_t mover_of(Ref participant) const;
-    bool is_isotropic_at(std::uint32_t mover) const { return mover == kNoIndex || anchors[mover].isotropic; }
+    bool is_isotropic_at(std::uint32_t mover) const { return mover == kNoIndex || movers[mover].isotropic; }
 
     std::vector<std::uint32_t> mover_of_body_, mover_of_shaft_;  ///< by row in Bodies or Shafts
-    std::vector<Vec3> contact_points_;
+    std::vector<std::uint32_t> carried_;
     std::span<const Contact> contacts_;
     std::span<const ConstraintRow> rows_;
 };

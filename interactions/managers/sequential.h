@@ -18,9 +18,10 @@ namespace plab::managers
 
 struct Sweeping
 {
-    int most = 10;          ///< maximum number of sweeps
-    double tolerance = 0;   ///< m/s: stops when no impulse changes the velocity of its own point or row by more
-    double relaxation = 1;  ///< omega, 0..2
+    int most = 10;              ///< maximum number of sweeps
+    double tolerance = 0;       ///< m/s: stops when no impulse changes the velocity of its own point or row by more; 0: never
+    double relaxation = 1;      ///< omega, 0..2
+    double friction_scale = 1;  ///< 0: without friction
 };
 struct Swept
 {
@@ -31,15 +32,17 @@ struct Swept
 
 /// The movers' velocities must include the effect of the present impulses (Problem::apply_impulses), and do so afterwards.
 Swept sweep(Problem& problem, const Sweeping& how);
-/// The same, but if the result has gained kinetic energy, starts again from zero impulses. Contacts without restitution cannot
-/// add energy, but the initial guess may; sweeps that start from zero only remove energy.
+/// The same with the points of `list` in place of those of `problem`.
+template <int W>
+Swept sweep(Problem& problem, PacketList<W>& list, const Sweeping& how);
+/// The same as sweep(problem), but if the result has gained kinetic energy, starts again from zero impulses. Contacts without
+/// restitution cannot add energy, but the initial guess may; sweeps that start from zero only remove energy.
 Swept sweep_without_gain(Problem& problem, const Sweeping& how);
 /// Whether the motion of other bodies, restitution or a motor may add energy.
 bool is_driven(const Problem& problem);
+bool is_driven(const Line& line);
 /// Whether the present impulses raise the kinetic energy beyond rounding although nothing (restitution, a motor, a kinematic
 /// body) is entitled to add any.
 bool makes_energy(const Problem& problem);
-/// One sweep; returns the largest change of velocity that an impulse caused at its own point or row, m/s.
-double sweep_once(Problem& problem, double relaxation, bool backwards);
 
 }  // namespace plab::managers

@@ -11,11 +11,6 @@ namespace plab::managers
 namespace
 {
 
-struct Softness
-{
-    double bias_rate = 0, mass_scale = 1, impulse_scale = 0;
-};
-
 Softness soften(double hertz, double damping_ratio, double h)
 {
     constexpr double kTwoPi = 6.283185307179586;
@@ -24,20 +19,23 @@ Softness soften(double hertz, double damping_ratio, double h)
     return {omega / a, c / (1 + c), 1 / (1 + c)};
 }
 
+template <int W>
 class SoftIsland
 {
 public:
-    SoftIsland(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory)
+    SoftIsland(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory, PacketList<W>& contacts,
+               std::vector<SoftPoint<W>>& soft)
         : island_(island),
           bodies_(bodies),
           shafts_(shafts),
           choices_(choices),
           memory_(memory),
           problem_(memory.step.problem),
+          contacts_(contacts),
+          soft_(soft),
           h_(island.h / choices.substeps),
-          rate_(1 / h_),
-          soft_(soften(std::min(choices.hertz, 0.25 * rate_), choices.damping_ratio, h_)),
-          against_fixed_(soften(std::min(2 * choices.hertz, 0.25 * rate_), choices.damping_ratio, h_))
+          sweep_{soften(std::min(choices.hertz, 0.25 / h_), choices.damping_ratio, h_),
+                 soften(std::min(2 * choices.hertz, 0.25 / h_), choices.damping_ratio, h_), choices.push_speed, 1 / h_}
     {
     }
 
@@ -49,11 +47,12 @@ public:
         {
             kick();
             most_ = kinetic_energy_without(problem_);
-            sweep_points(true), sweep_lines(true);
+            sweep_soft(contacts_, std::span<Mover>(problem_.movers), sweep_, std::span<SoftPoint<W>>(soft_));
+            sweep_lines(true);
             write();
             if (bounces_) count_travel();
             move();
-            for (int i = 0; i < choices_.relax_iterations; ++i) sweep_lines(false), sweep_points(false);
+            for (int i = 0; i < choices_.relax_iterations; ++i) relax();
             write();
             out.iterations += 1 + choices_.relax_iterations + remove_gained_energy();
             gather();
@@ -66,20 +65,23 @@ public:
 private:
     void start();
     void kick();
+    void apply();
     void write();
     void move();
+    void turn();
+    void relax();
     bool gains() const;
     int step_hard();
     bool scale_down();
-    void sweep_points(bool soft);
     void sweep_lines(bool soft);
     int remove_gained_energy();
     void gather();
     void note_kicks(bool before);
     void count_travel();
     void note_limits();
+    void clear_impulses();
+    void scale_impulses(double share);
     double bounce(double share);
-    void bounce_points(double share);
     void bounce_with_limits(double share);
     void give_back();
     void finish(Verdict& out);
@@ -90,26 +92,37 @@ private:
     const SoftChoices& choices_;
     SoftMemory& memory_;
     Problem& problem_;
-    double h_, rate_;
-    Softness soft_, against_fixed_;
+    PacketList<W>& contacts_;  ///< the contact points; those of problem_ serve to load it and to report
+    std::vector<SoftPoint<W>>& soft_;
+    double h_;
+    SoftSweep sweep_;
     bool bounces_ = false;
     bool applied_ = false;  ///< the impulses have been applied in an earlier sub-step of this step
+    bool driven_ = false;   ///< the motion of other bodies may add energy at a contact
     double most_ = 0;       ///< J: kinetic energy after the sub-step's kick, which contacts must not exceed
     bool limits_bounce_ = false;
     double allowed_ = 0;  ///< J: kinetic energy at the start of the step plus the work of the forces since
 };
 
-void SoftIsland::start()
+template <int W>
+void SoftIsland<W>::start()
 {
-    problem_.load(island_, bodies_, shafts_);
+    problem_.load_geometry(island_, bodies_, shafts_);
     problem_.scale_impulses(1.0 / choices_.substeps);
-    memory_.depth.clear();
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.depth.push_back(island_.contacts[i].depth);
-    memory_.greatest.assign(problem_.points.size(), 0.0);
-    memory_.sum.assign(problem_.points.size(), Vec3{});
+    contacts_.load(problem_.points, problem_.movers.size());
+    set_mobility(contacts_, std::span<const Mover>(problem_.movers));
+    soft_.assign(contacts_.points().size(), {});
+    memory_.meeting.clear();
+    for (std::uint32_t i = 0; i < contacts_.size(); ++i)
+    {
+        const Contact& c = island_.contacts[i];
+        const auto place = contacts_.place(i);
+        set_lane(soft_[place.point].depth, place.lane, c.depth);
+        if (c.approach > 0) memory_.meeting.push_back(i);
+        driven_ = driven_ || c.turning > 0;
+        bounces_ = bounces_ || (c.approach > 0 && c.restitution > 0);
+    }
     memory_.line_sum.assign(problem_.lines.size(), 0.0);
-    bounces_ =
-        std::any_of(island_.contacts.begin(), island_.contacts.end(), [](const Contact& c) { return c.approach > 0 && c.restitution > 0; });
     note_limits();
     bounces_ = bounces_ || limits_bounce_;
     if (!bounces_) return;
@@ -119,7 +132,8 @@ void SoftIsland::start()
 }
 
 /// Notes the closing speeds at limits with restitution.
-void SoftIsland::note_limits()
+template <int W>
+void SoftIsland<W>::note_limits()
 {
     memory_.line_closing.assign(problem_.lines.size(), 0.0), memory_.line_greatest.assign(problem_.lines.size(), 0.0);
     const auto may_bounce = [&](const Line& line)
@@ -139,7 +153,8 @@ void SoftIsland::note_limits()
 }
 
 /// Called before and after a kick: notes the change of the momenta.
-void SoftIsland::note_kicks(bool before)
+template <int W>
+void SoftIsland<W>::note_kicks(bool before)
 {
     problem_.read_speeds(bodies_, shafts_);
     for (std::size_t i = 0; i < problem_.anchors.size(); ++i)
@@ -155,79 +170,85 @@ void SoftIsland::note_kicks(bool before)
 }
 
 /// Forces do work along the path that the bodies take, including the part due to position correction.
-void SoftIsland::count_travel()
+template <int W>
+void SoftIsland<W>::count_travel()
 {
     for (std::size_t i = 0; i < problem_.movers.size(); ++i)
         allowed_ += dot(memory_.kicks[i].push, problem_.movers[i].v) + dot(memory_.kicks[i].turn, problem_.movers[i].w);
 }
 
-void SoftIsland::kick()
+template <int W>
+void SoftIsland<W>::kick()
 {
     if (bounces_) note_kicks(true);
     island_.motion->kick(h_);
     if (!island_.rows.empty()) island_.motion->refresh_rows();
     problem_.read_speeds(bodies_, shafts_);
     if (bounces_) note_kicks(false);
-    // The impulse that stopped an impact is no estimate for the impulses after it.
+    for (const std::uint32_t i : problem_.carried())
+    {
+        contacts_.set_given(i, problem_.points[i].given);
+        driven_ = driven_ || problem_.points[i].given != Vec3{};
+    }
     bool changes = !applied_ || !problem_.lines.empty();  // targets limit the impulses of lines
-    for (std::size_t i = 0; i < problem_.points.size(); ++i)
-        if (island_.contacts[i].approach > 0 && problem_.points[i].impulse != Vec3{}) problem_.points[i].impulse = {}, changes = true;
-    set_targets(problem_, island_, h_, 0);
+    // The impulse that stopped an impact is no estimate for the impulses after it.
+    for (const std::uint32_t i : memory_.meeting)
+        if (contacts_.impulse(i) != Vec3{}) contacts_.set_impulse(i, {}), changes = true;
+    set_line_targets(problem_, island_, h_);
     if (changes)
-        problem_.apply_impulses();
+        apply();
     else
         problem_.apply_same_impulses();
     applied_ = true;
 }
 
-void SoftIsland::write()
+template <int W>
+void SoftIsland<W>::apply()
 {
-    problem_.apply_impulses();
+    problem_.sum_line_impulses();
+    sum_impulses(contacts_, std::span<Momentum>(problem_.sums));
+    problem_.apply_same_impulses();
+}
+
+template <int W>
+void SoftIsland<W>::write()
+{
+    problem_.sum_by_velocities();
     problem_.write_speeds(bodies_, shafts_);
 }
 
 /// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with another
 /// of its points, and a point that turned with the body would appear to rise.
-void SoftIsland::move()
+template <int W>
+void SoftIsland<W>::move()
 {
-    memory_.depth_before = memory_.depth;
-    memory_.moved_with.clear(), memory_.lines_moved_with.clear();
-    for (const Point& p : problem_.points) memory_.moved_with.push_back(p.impulse);
+    for (std::size_t i = 0; i < soft_.size(); ++i)
+        soft_[i].depth_before = soft_[i].depth, soft_[i].moved_with = contacts_.points()[i].impulse;
+    memory_.lines_moved_with.clear();
     for (const Line& line : problem_.lines) memory_.lines_moved_with.push_back(line.impulse);
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.depth[i] -= h_ * problem_.relative_velocity(problem_.points[i]).z;
+    advance_depths(contacts_, std::span<Mover>(problem_.movers), h_, std::span<SoftPoint<W>>(soft_));
     island_.motion->move(h_);
-    problem_.turn_with(bodies_);
+    turn();
     problem_.apply_same_impulses();  // those that write() applied
 }
 
-void SoftIsland::sweep_points(bool soft)
+/// After a move: the inertias and mobilities of the present attitudes.
+template <int W>
+void SoftIsland<W>::turn()
 {
-    for (std::size_t i = 0; i < problem_.points.size(); ++i)
-    {
-        Point& p = problem_.points[i];
-        if (!(p.K(2, 2) > 0)) continue;
-        const Softness& how = p.a == kNoIndex || p.b == kNoIndex ? against_fixed_ : soft_;
-        const double depth = memory_.depth[i];
-        double bias = 0, mass_scale = 1, impulse_scale = 0;
-        if (depth < 0)
-            bias = -depth * rate_;
-        else if (soft)
-            bias = -std::min(how.bias_rate * depth, choices_.push_speed), mass_scale = how.mass_scale, impulse_scale = how.impulse_scale;
-        const Vec3 u = problem_.relative_velocity(p), before = p.impulse;
-        p.impulse.z = std::max(0.0, before.z - mass_scale * (u.z + bias) / p.K(2, 2) - impulse_scale * before.z);
-        if (p.frictional())
-        {
-            const double change = p.impulse.z - before.z, k = 1 / p.slip_mobility;
-            const Vec3 held = within_disc({before.x - k * (u.x + p.K(0, 2) * change), before.y - k * (u.y + p.K(1, 2) * change), 0},
-                                          p.friction * p.impulse.z);
-            p.impulse.x = held.x, p.impulse.y = held.y;
-        }
-        memory_.greatest[i] = std::max(memory_.greatest[i], p.impulse.z);
-        if (p.impulse != before) problem_.push(p, p.impulse - before);
-    }
+    problem_.turn_movers_with(bodies_);
+    refresh_mobility(contacts_, std::span<const Mover>(problem_.movers));
 }
 
-void SoftIsland::sweep_lines(bool soft)
+template <int W>
+void SoftIsland<W>::relax()
+{
+    sweep_lines(false);
+    (void)sweep_hard(contacts_, std::span<Mover>(problem_.movers), {.measures = false});
+}
+
+template <int W>
+void SoftIsland<W>::sweep_lines(bool soft)
 {
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
@@ -235,8 +256,8 @@ void SoftIsland::sweep_lines(bool soft)
         if (line.count == 0) continue;
         const ConstraintRow& row = island_.rows[line.row];
         const bool pulled = soft && row.kind != RowKind::Rate && (row.kind == RowKind::Equality || row.error < 0);
-        const double bias = pulled ? soft_.bias_rate * row.error : 0.0, before = line.impulse;
-        const double share = pulled ? soft_.mass_scale : 1.0, leak = pulled ? soft_.impulse_scale : 0.0;
+        const double bias = pulled ? sweep_.between.bias_rate * row.error : 0.0, before = line.impulse;
+        const double share = pulled ? sweep_.between.mass_scale : 1.0, leak = pulled ? sweep_.between.impulse_scale : 0.0;
         line.impulse =
             std::clamp(before - share * (problem_.rate(line) - line.target + bias) / line.mobility - leak * before, line.least, line.most);
         problem_.push(line, line.impulse - before);
@@ -244,18 +265,45 @@ void SoftIsland::sweep_lines(bool soft)
     }
 }
 
-void SoftIsland::gather()
+template <int W>
+void SoftIsland<W>::gather()
 {
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.sum[i] += problem_.points[i].impulse;
+    for (std::size_t i = 0; i < soft_.size(); ++i)
+    {
+        const LaneVec<W>& j = contacts_.points()[i].impulse;
+        soft_[i].sum = soft_[i].sum + j;
+        soft_[i].greatest = larger(soft_[i].greatest, j.z);
+    }
     for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
 }
 
-bool SoftIsland::gains() const { return !is_driven(problem_) && kinetic_energy(problem_) > most_ * (1 + 1e-9); }
+template <int W>
+bool SoftIsland<W>::gains() const
+{
+    if (driven_ || std::any_of(problem_.lines.begin(), problem_.lines.end(), [](const Line& line) { return is_driven(line); }))
+        return false;
+    return kinetic_energy(problem_) > most_ * (1 + 1e-9);
+}
+
+template <int W>
+void SoftIsland<W>::clear_impulses()
+{
+    contacts_.clear_impulses();
+    for (Line& line : problem_.lines) line.impulse = 0;
+}
+
+template <int W>
+void SoftIsland<W>::scale_impulses(double share)
+{
+    contacts_.scale_impulses(share);
+    for (Line& line : problem_.lines) line.impulse *= share;
+}
 
 /// Scales the impulses to remove a gain of energy. If v0 are the velocities without impulses and dv their change, the fraction s
 /// of the impulses gives the energy 1/2 |v0 + s dv|^2. Keeps the largest s without a gain. Returns false if even s = 0 has too
 /// much energy, as the bodies have turned since the kick.
-bool SoftIsland::scale_down()
+template <int W>
+bool SoftIsland<W>::scale_down()
 {
     double linear = 0, square = 0;
     for (std::size_t i = 0; i < problem_.movers.size(); ++i)
@@ -268,29 +316,34 @@ bool SoftIsland::scale_down()
     const double room = most_ - kinetic_energy_without(problem_), discriminant = linear * linear + 2 * square * room;
     const double share = (-linear + std::sqrt(discriminant)) / square;
     if (!(share >= 0)) return false;
-    problem_.scale_impulses(std::min(share, 1.0));
-    problem_.apply_impulses();
+    scale_impulses(std::min(share, 1.0));
+    apply();
     return true;
 }
 
 /// Repeats the sub-step from its start without position correction: sweeps that only remove energy, and a motion that conserves
 /// it.
-int SoftIsland::step_hard()
+template <int W>
+int SoftIsland<W>::step_hard()
 {
     constexpr int kSweeps = 4;
     // Moves back with the velocities of the move.
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].impulse = memory_.moved_with[i];
+    for (std::size_t i = 0; i < soft_.size(); ++i) contacts_.points()[i].impulse = soft_[i].moved_with;
     for (std::size_t i = 0; i < problem_.lines.size(); ++i) problem_.lines[i].impulse = memory_.lines_moved_with[i];
+    apply();
     write();
     island_.motion->move(-h_);
-    memory_.depth = memory_.depth_before;
-    problem_.turn_with(bodies_);
-    problem_.clear_impulses();
-    problem_.apply_impulses();
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
-    const Swept done = sweep(problem_, {kSweeps, 0, 1});
-    problem_.apply_impulses();
-    if (gains() && !scale_down()) problem_.clear_impulses();
+    turn();
+    for (std::size_t i = 0; i < soft_.size(); ++i)
+    {
+        soft_[i].depth = soft_[i].depth_before;
+        contacts_.points()[i].least = smaller(soft_[i].depth, Lanes<W>{}) / h_;
+    }
+    clear_impulses();
+    apply();
+    const Swept done = sweep(problem_, contacts_, {kSweeps});
+    apply();
+    if (gains() && !scale_down()) clear_impulses(), apply();
     write();
     move();
     return done.sweeps;
@@ -298,43 +351,46 @@ int SoftIsland::step_hard()
 
 /// If the sub-step has gained energy: hard sweeps, then all impulses are scaled down until the gain is gone; if that is
 /// impossible, the sub-step is repeated.
-int SoftIsland::remove_gained_energy()
+template <int W>
+int SoftIsland<W>::remove_gained_energy()
 {
     constexpr int kSweeps = 2;
     if (!gains()) return 0;
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
-    const Swept done = sweep(problem_, {kSweeps, 0, 1});
-    problem_.apply_impulses();
+    const Swept done = sweep(problem_, contacts_, {kSweeps});  // with the targets that move() has set
+    apply();
     if (gains() && !scale_down()) return done.sweeps + step_hard();
     write();
     return done.sweeps;
 }
 
 /// Sets the impulses that return `share` of the restitution; returns the kinetic energy with them, J.
-double SoftIsland::bounce(double share)
+template <int W>
+double SoftIsland<W>::bounce(double share)
 {
-    problem_.clear_impulses();
-    problem_.apply_impulses();
+    clear_impulses();
+    apply();
+    for (std::size_t i = 0; i < contacts_.size(); ++i)
+    {
+        const Contact& c = island_.contacts[i];
+        const auto place = contacts_.place(i);
+        const bool pressed = lane(soft_[place.point].greatest, place.lane) > 0, meets = c.approach > 0 && c.restitution > 0;
+        const double returned = share * c.restitution * std::max(0.0, c.approach);
+        contacts_.set_least(i, pressed && (meets || limits_bounce_) ? returned : kFar);
+    }
     if (limits_bounce_)
         bounce_with_limits(share);
     else
-        bounce_points(share);
+        (void)sweep_hard(contacts_, std::span<Mover>(problem_.movers), {.measures = false, .friction_scale = 0});
     return kinetic_energy(problem_);
 }
 
 /// Uses sweeps, as joints pass on the impulse that a limit returns.
-void SoftIsland::bounce_with_limits(double share)
+template <int W>
+void SoftIsland<W>::bounce_with_limits(double share)
 {
     constexpr int kMostSweeps = 1000;
     double fastest = 0;
     for (const double closing : memory_.line_closing) fastest = std::max(fastest, closing);
-    for (std::size_t i = 0; i < problem_.points.size(); ++i)
-    {
-        Point& p = problem_.points[i];
-        const Contact& c = island_.contacts[i];
-        p.friction = 0;
-        p.least = !(memory_.greatest[i] > 0) ? kFar : share * c.restitution * std::max(0.0, c.approach);
-    }
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
         Line& line = problem_.lines[i];
@@ -345,29 +401,16 @@ void SoftIsland::bounce_with_limits(double share)
         // Motors have no impulse at an instant; nor has a limit that was not reached.
         if (row.kind == RowKind::Rate || (one_sided && !pressed)) line.least = line.most = 0;
     }
-    (void)sweep(problem_, {kMostSweeps, 1e-6 * fastest, 1});
+    (void)sweep(problem_, contacts_, {kMostSweeps, 1e-6 * fastest, 1, 0});
 }
 
-void SoftIsland::bounce_points(double share)
-{
-    for (std::size_t i = 0; i < problem_.points.size(); ++i)
-    {
-        Point& p = problem_.points[i];
-        const Contact& c = island_.contacts[i];
-        if (!(c.approach > 0) || !(memory_.greatest[i] > 0) || c.restitution == 0) continue;
-        const double missing = share * c.restitution * c.approach - problem_.relative_velocity(p).z;
-        if (missing <= 0) continue;
-        p.impulse.z = missing / p.K(2, 2);
-        problem_.push(p, {0, 0, p.impulse.z});
-    }
-}
-
-void SoftIsland::give_back()
+template <int W>
+void SoftIsland<W>::give_back()
 {
     constexpr int kHalvings = 24;
     problem_.read_speeds(bodies_, shafts_);
-    problem_.clear_impulses();
-    problem_.apply_impulses();
+    clear_impulses();
+    apply();
     if (!bounces_) return;
     const double most = std::max(allowed_, kinetic_energy_without(problem_));
     double low = 0, high = 1;
@@ -380,21 +423,23 @@ void SoftIsland::give_back()
         }
         (void)bounce(low);
     }
-    problem_.apply_impulses();
-    problem_.write_speeds(bodies_, shafts_);
+    write();
 }
 
-void SoftIsland::finish(Verdict& out)
+template <int W>
+void SoftIsland<W>::finish(Verdict& out)
 {
     for (std::size_t i = 0; i < problem_.points.size(); ++i)
     {
         const Point& p = problem_.points[i];
         Contact& c = island_.contacts[i];
-        const Vec3 u = problem_.relative_velocity(p), j = memory_.sum[i] + p.impulse;  // p holds the impulse of restitution
-
-        c.impulse = p.t1 * j.x + p.t2 * j.y + p.n * j.z;
+        const auto place = contacts_.place(i);
+        const SoftPoint<W>& soft = soft_[place.point];
+        const Vec3 u = problem_.relative_velocity(p), returned = contacts_.impulse(i);
+        const Vec3 j = returned + Vec3{lane(soft.sum.x, place.lane), lane(soft.sum.y, place.lane), lane(soft.sum.z, place.lane)};
+        c.impulse = to_world(p, j);
         c.slip = std::hypot(u.x, u.y);
-        if (p.impulse.z == 0 && p.K(2, 2) > 0 && memory_.depth[i] >= 0) out.residual = std::max(out.residual, -u.z);
+        if (returned.z == 0 && p.mobile() && lane(soft.depth, place.lane) >= 0) out.residual = std::max(out.residual, -u.z);
     }
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
@@ -410,7 +455,10 @@ void SoftIsland::finish(Verdict& out)
 
 Verdict advance_softly(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory)
 {
-    return SoftIsland(island, bodies, shafts, choices, memory).run();
+    Problem& problem = memory.step.problem;
+    if (island.contacts.size() > kSweptInOrder)
+        return SoftIsland<4>(island, bodies, shafts, choices, memory, problem.fours, memory.fours).run();
+    return SoftIsland<1>(island, bodies, shafts, choices, memory, problem.single, memory.single).run();
 }
 
 }  // namespace plab::managers

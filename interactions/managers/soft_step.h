@@ -42,11 +42,10 @@ struct SoftChoices
 struct SoftMemory
 {
     StepMemory step;
-    std::vector<double> depth, depth_before;  ///< m, of the contact points: now, and at the start of the sub-step
-    std::vector<Vec3> moved_with;             ///< N s, by point: impulses with which the sub-step moved
+    std::vector<SoftPoint<1>> single;  ///< parallel to the points of Problem::single
+    std::vector<SoftPoint<4>> fours;
+    std::vector<std::uint32_t> meeting;  ///< contacts that were met with a speed when the step began
     std::vector<double> lines_moved_with;
-    std::vector<double> greatest;  ///< N s, largest normal impulse of any sub-step
-    std::vector<Vec3> sum;         ///< N s, sum over the step
     std::vector<double> line_sum;
     std::vector<double> line_closing;   ///< m/s or rad/s: closing speed at limits with restitution when the step began; else 0
     std::vector<double> line_greatest;  ///< N s or N m s, largest impulse of any sub-step

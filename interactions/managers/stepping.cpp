@@ -137,6 +137,11 @@ void set_targets(Problem& problem, const Island& island, double h, double slop, 
         problem.points[i].least = c.turning + std::min(0.0, c.depth + (dot(c.impulse, c.normal) > 0 ? slop : 0.0)) / h;
     }
     for (std::size_t i = 0; i < passing.size(); ++i) problem.points[i].least = std::min(problem.points[i].least, passing[i]);
+    set_line_targets(problem, island, h);
+}
+
+void set_line_targets(Problem& problem, const Island& island, double h)
+{
     for (Line& line : problem.lines)
     {
         const ConstraintRow& row = island.rows[line.row];

@@ -63,6 +63,8 @@ struct StepChoices
 Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& method, StepMemory& memory);
 /// Sets what the contact velocities and row rates must be at the end of h; `passing` as in StepMemory, or empty.
 void set_targets(Problem& problem, const Island& island, double h, double slop, std::span<const double> passing = {});
+/// The same for the rows alone.
+void set_line_targets(Problem& problem, const Island& island, double h);
 Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory);
 /// Moves with the mean of old and new velocities. Where the impulses have not converged it moves with the new velocities only:
 /// these keep gaps from closing, whereas their mean with velocities that lead into an overlap would not.
