@@ -50,6 +50,7 @@ declare -A swaps=(
     [fan_and_balloons]="60:contact.response=Response/None 90:gears=Constraint/AngularVelocity/Impulse"
     [balls]="60:contact.response=Response/None 120:contact.response=Response/Impulse"
     [gears]="60:g2=Constraint/AngularVelocity/Impulse 120:i2=Constraint/AngularVelocity/Graph"
+    [heap]="60:manager=Manager/SequentialImpulse 120:manager=Manager/SoftStep"
     [tumbling]="60:contact.response=Response/None 90:contact.response=Response/Impulse")
 
 # What the first variant recorded, with swaps, is made again, hash by hash, by each, with 1 and 2 threads.
