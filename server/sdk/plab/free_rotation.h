@@ -88,6 +88,29 @@ private:
     bool steady_ = false;  ///< m_a does not change
 };
 
+/// Whether the body turns by so little in t seconds that slow_turn() is exact to rounding: |L| t / I_min at most 2^-11. A body near rest
+/// does.
+inline bool turns_slowly(const Mat3& inverse_inertia_B, const Vec3& m, double t)
+{
+    const double most = inverse_inertia_B(0, 0) + inverse_inertia_B(1, 1) + inverse_inertia_B(2, 2);  // at least 1 / I_min
+    const double bound = most * t;
+    return length_squared(m) * (bound * bound) <= 0x1p-22;
+}
+
+/// FreeTop::turn() in B for a slow rotation, at a tenth of the cost: the Taylor series of the rotation vector up to t^4. With w_k the k-th
+/// derivative of the angular velocity, from Euler's equations, Bortz's equation gives
+///   f(t) = t w_0 + t^2/2 w_1 + t^3/6 (w_2 + w_0 x w_1 / 2) + t^4/24 (w_3 + w_0 x w_2) + O(t^5).
+/// Source: Bortz, IEEE Trans. Aerosp. Electron. Syst. 7 (1971) 61.
+inline Quat slow_turn(const Mat3& inverse_inertia_B, const Vec3& m, double t)
+{
+    const Vec3 w0 = inverse_inertia_B * m, m1 = cross(m, w0);
+    const Vec3 w1 = inverse_inertia_B * m1, m2 = cross(m1, w0) + cross(m, w1);
+    const Vec3 w2 = inverse_inertia_B * m2, m3 = cross(m2, w0) + 2 * cross(m1, w1) + cross(m, w2);
+    const Vec3 w3 = inverse_inertia_B * m3;
+    const Vec3 third = w2 + 0.5 * cross(w0, w1), fourth = w3 + cross(w0, w2);
+    return exp_rotation(t * (w0 + (0.5 * t) * (w1 + (t / 3) * (third + (0.25 * t) * fourth))));
+}
+
 namespace free_rotation
 {
 

@@ -29,6 +29,17 @@ void turn_freely(Bodies& bodies, std::uint32_t b, const Vec3& lacking, double h)
     if (is_isotropic(bodies.inverse_inertia_B[b])) return turn_about_momentum(bodies, b, bodies.angular_momentum[b] - lacking, h);
     const Quat start = bodies.orientation[b];
     const bool needle = bodies.needle[b] != 0;
+    if (!needle)
+    {
+        const Vec3 momentum_B = rotate_back(start, bodies.angular_momentum[b] - lacking);
+        if (turns_slowly(bodies.inverse_inertia_B[b], momentum_B, h))
+        {
+            if (momentum_B == Vec3{}) return;
+            bodies.orientation[b] = normalized(start * slow_turn(bodies.inverse_inertia_B[b], momentum_B, h));
+            bodies.refresh_spin(b);
+            return;
+        }
+    }
     const RigidMember member{start, bodies.inertia_B[b], bodies.inverse_inertia_B[b], bodies.mass[b], needle};
     const PrincipalAxes principal = principal_axes(member);
     const auto to_P = [&](const Vec3& v_W) { return transposed_times(principal.axes, rotate_back(start, v_W)); };

@@ -264,3 +264,32 @@ TEST_CASE("motion without a closed form is advanced by a documented method, whic
     held.run(0.01, 1, std::ref(exact));
     CHECK(exact.rows.resolved.resolved[0] == "untouched");
 }
+
+TEST_CASE("a slow turn by its series: order 5 against the closed form, and exact to rounding where it is used")
+{
+    // Axes that are not principal: I = R diag R^T.
+    const Quat tilt = exp_rotation({0.3, -0.5, 0.8});
+    const Mat3 R = rotation_matrix(tilt);
+    for (const Vec3& moments : {Vec3{1, 2, 2.9}, Vec3{0.1, 1, 1.05}, Vec3{2, 2, 3}})
+    {
+        CAPTURE(moments.x);
+        RigidMember body;
+        body.inertia_B = R * diagonal(moments) * transposed(R);
+        body.inverse_inertia_B = R * Mat3::diagonal(1 / moments.x, 1 / moments.y, 1 / moments.z) * transposed(R);
+        const PrincipalAxes axes = principal_axes(body);
+        const Vec3 m{0.31, -0.22, 0.41};
+        const auto error = [&](double t)
+        {
+            const Quat turned_P = FreeTop(axes, transposed_times(axes.axes, m)).turn(t);
+            const Vec3 v = axes.axes * Vec3{turned_P.x, turned_P.y, turned_P.z};
+            const Quat turned{turned_P.w, v.x, v.y, v.z};
+            return length(log_rotation(conjugate(turned) * slow_turn(body.inverse_inertia_B, m, t)));
+        };
+        CHECK(std::log2(error(0.08) / error(0.04)) == doctest::Approx(5).epsilon(0.06));
+        const double slow = 0x1p-11 / (length(m) * (1 / moments.x + 1 / moments.y + 1 / moments.z));
+        CHECK(turns_slowly(body.inverse_inertia_B, m, 0.999 * slow));
+        CHECK_FALSE(turns_slowly(body.inverse_inertia_B, m, 1.001 * slow));
+        CHECK(error(slow) < 2e-16);
+        CHECK(error(8 * slow) < 1e-14);
+    }
+}
