@@ -267,6 +267,10 @@ void AutomaticRows::describe(Schema& s)
          "times as many points")
         .or_else(20)
         .at_least(1);
+    s.param(tolerance, "tolerance", unit::metre_per_second,
+            "largest remaining violation; with a larger one the step counts as not converged")
+        .or_else(0.1)
+        .positive();
     s.output(resolved, "resolved", unit::one, "the methods that advanced the islands of the last step");
     s.output(reason, "reason", unit::one, "why the larger of its islands were advanced so");
     s.output(direct_islands, "direct_islands", unit::one, "islands that were solved exactly in the last step");
@@ -279,6 +283,10 @@ namespace
 {
 
 constexpr std::size_t kHeavyPoints = 16;  // times max_points
+/// An island at rest, or nearly so, is solved within these Newton steps. One that tumbles costs no more than they do: sweeps finish.
+constexpr Solving kAffordable{1e-12, 12, 20, 1e-12};
+/// Ends of sliding are located for a body that slides alone.
+constexpr std::size_t kSlipEnds = 4;
 
 /// The ratio of the heaviest to the lightest body of an island.
 double mass_ratio(const Island& island, const Bodies& bodies)
@@ -310,23 +318,22 @@ void solve_automatic(const StepContext& context, Row row, AutomaticRows& rows, B
     const double ratio = mass_ratio(island, bodies);
     const bool direct = points <= most || (ratio >= rows.heavy[row] && points <= kHeavyPoints * most);
     AutomaticRows::Memory& memory = rows.memory[row];
-    double tolerance = 0;
     if (direct)
     {
-        const Solving how;
-        tolerance = how.tolerance;
-        Exactly method(memory.direct.newton, how);
-        report(island, advance_island(island, bodies, shafts, method, {}, memory.direct.step));
+        Exactly method(memory.direct.newton, kAffordable);
+        StepChoices choices;
+        choices.slip_ends_up_to = kSlipEnds;
+        report(island, advance_island(island, bodies, shafts, method, choices, memory.direct.step));
     }
     else
     {
         const SoftChoices choices;
-        tolerance = choices.tolerance;
         report(island, advance_softly(island, bodies, shafts, choices, memory.soft));
     }
     forget_if_given_up(island, memory);
     note_method(context, row, rows, direct, points, ratio);
-    rows.account.add(context, row, island, tolerance);
+    island.converged = island.residual <= rows.tolerance[row];
+    rows.account.add(context, row, island, rows.tolerance[row]);
 }
 
 }  // namespace plab::managers

@@ -74,7 +74,7 @@ void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bo
 struct AutomaticRows
 {
     Column<std::int64_t> max_points;
-    Column<double> heavy;
+    Column<double> heavy, tolerance;
     Column<std::string> resolved, reason;
     Column<std::int64_t> direct_islands, soft_islands;  ///< in the last step
     Account account;

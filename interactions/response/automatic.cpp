@@ -8,7 +8,8 @@ void AutomaticRows::describe(Schema& s)
     s.role(manager, "manager", {Facet::Component}, "advances the islands of these contacts")
         .family("Manager/")
         .default_type("Manager/Automatic");
-    impulse.describe(s);
+    // Where impacts cascade through a crowd, what remains after these sweeps is answered at once; a cascade of few bodies needs fewer.
+    impulse.describe(s, 40);
 }
 
 void respond_automatically(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Impact& impact)

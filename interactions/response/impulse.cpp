@@ -6,7 +6,7 @@
 namespace plab::response
 {
 
-void ImpulseRows::describe(Schema& s)
+void ImpulseRows::describe(Schema& s, std::int64_t most_iterations)
 {
     s.param(friction, "friction", unit::one, "Coulomb coefficient, unless a Material/Pair overrides it").or_else(0).not_negative();
     s.param(restitution, "restitution", unit::one,
@@ -24,7 +24,7 @@ void ImpulseRows::describe(Schema& s)
         .or_else(1e-9)
         .not_negative();
     s.param(tolerance, "tolerance", unit::metre_per_second, "closing speed that may remain").or_else(1e-12).positive();
-    s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(500).positive().at_most(1e6);
+    s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(most_iterations).positive().at_most(1e6);
     s.output(residual, "residual", unit::metre_per_second, "largest closing speed that remained in this step").reported_as_error();
     s.output(iterations, "iterations", unit::one, "sweeps and single impacts in this step");
     s.output(step, "step", unit::one, "the step that these outputs refer to; -1: none yet").or_else(-1);

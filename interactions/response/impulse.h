@@ -30,7 +30,7 @@ struct ImpulseRows
     Column<Tick> step;  ///< the step whose outputs are being summed
     Column<Workspace> workspace;
 
-    void describe(Schema& schema);
+    void describe(Schema& schema, std::int64_t most_iterations = 500);
 };
 
 /// Phase::Respond.

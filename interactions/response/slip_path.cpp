@@ -11,7 +11,7 @@ namespace
 constexpr double kStraight = 1e-14;
 constexpr double kStopped = 1e-13;  // fraction of the slip at the start
 constexpr double kTolerance = 1e-13;
-constexpr int kMaxSteps = 20000;
+constexpr int kMaxSteps = 2000;
 
 /// Direction of slip c, s; then slip speed, u_n, work, and the impulses along t1, t2, n.
 using Vector8 = std::array<double, 8>;
@@ -27,59 +27,79 @@ enum : std::size_t
     kJn,
 };
 
-Vector8 derivative(const SlipLaw& law, const Vector8& y)
+constexpr std::size_t kOrder = 16;
+using Series = std::array<double, kOrder + 1>;
+
+/// Coefficient k of the product of two power series.
+double product(const Series& a, const Series& b, std::size_t k)
 {
-    const SlipRates r = law.rates(y[kCos], y[kSin]);
-    const double slip = y[kSlip];
-    return {-y[kSin] * r.turn,
-            y[kCos] * r.turn,
-            slip * r.grow,
-            slip * r.normal,
-            slip * y[kNormal],
-            -law.friction * slip * y[kCos],
-            -law.friction * slip * y[kSin],
-            slip};
+    double sum = 0;
+    for (std::size_t i = 0; i <= k; ++i) sum += a[i] * b[k - i];
+    return sum;
 }
 
-struct Step
+/// The solution as a power series in tau about a state. The right-hand sides are polynomials, so its coefficients follow one from another.
+class Expansion
 {
-    Vector8 y;
-    double error = 0;  // in units of the tolerance
+public:
+    Expansion(const SlipLaw& law, const Vector8& y);
+    Vector8 at(double tau) const;
+    double at(double tau, std::size_t component) const;
+    /// The step at which the last terms are at the tolerance.
+    double step(const Vector8& unit) const;
+
+private:
+    std::array<Series, 8> of_;
 };
 
-/// Dormand and Prince, J. Comp. Appl. Math. 6 (1980), RK5(4)7M.
-Step advance(const SlipLaw& law, const Vector8& y, double h, const Vector8& unit)
+Expansion::Expansion(const SlipLaw& law, const Vector8& y)
 {
-    constexpr double a[6][6] = {{1.0 / 5},
-                                {3.0 / 40, 9.0 / 40},
-                                {44.0 / 45, -56.0 / 15, 32.0 / 9},
-                                {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
-                                {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
-                                {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-    constexpr double e[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
-    std::array<Vector8, 7> k;
-    k[0] = derivative(law, y);
-    Vector8 next = y;
-    for (std::size_t stage = 0; stage < 6; ++stage)
+    const Mat3& K = law.K;
+    const double mu = law.friction;
+    Series &c = of_[kCos], &s = of_[kSin], &slip = of_[kSlip], &normal = of_[kNormal];
+    for (std::size_t i = 0; i < y.size(); ++i) of_[i][0] = y[i];
+    Series f1, f2, turn, grow, rate;
+    for (std::size_t k = 0; k < kOrder; ++k)
     {
-        for (std::size_t i = 0; i < 8; ++i)
-        {
-            double sum = 0;
-            for (std::size_t j = 0; j <= stage; ++j) sum += a[stage][j] * k[j][i];
-            next[i] = y[i] + h * sum;
-        }
-        k[stage + 1] = derivative(law, next);
+        const double of_constant = k == 0 ? 1 : 0, share = 1 / static_cast<double>(k + 1);
+        f1[k] = of_constant * K(0, 2) - mu * (K(0, 0) * c[k] + K(0, 1) * s[k]);
+        f2[k] = of_constant * K(1, 2) - mu * (K(1, 0) * c[k] + K(1, 1) * s[k]);
+        rate[k] = of_constant * K(2, 2) - mu * (K(2, 0) * c[k] + K(2, 1) * s[k]);
+        turn[k] = product(c, f2, k) - product(s, f1, k), grow[k] = product(c, f1, k) + product(s, f2, k);
+        c[k + 1] = -share * product(s, turn, k), s[k + 1] = share * product(c, turn, k);
+        slip[k + 1] = share * product(slip, grow, k), normal[k + 1] = share * product(slip, rate, k);
+        of_[kWork][k + 1] = share * product(slip, normal, k);
+        of_[kJ1][k + 1] = -mu * share * product(slip, c, k), of_[kJ2][k + 1] = -mu * share * product(slip, s, k);
+        of_[kJn][k + 1] = share * slip[k];
     }
-    Step out{next, 0};
-    for (std::size_t i = 0; i < 8; ++i)
+}
+
+double Expansion::at(double tau, std::size_t component) const
+{
+    double sum = 0;
+    for (std::size_t k = kOrder + 1; k-- > 0;) sum = sum * tau + of_[component][k];
+    return sum;
+}
+
+Vector8 Expansion::at(double tau) const
+{
+    Vector8 y;
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = at(tau, i);
+    const double norm = std::hypot(y[kCos], y[kSin]);
+    y[kCos] /= norm, y[kSin] /= norm;
+    return y;
+}
+
+double Expansion::step(const Vector8& unit) const
+{
+    double last = 0, before = 0;
+    for (std::size_t i = 0; i < unit.size(); ++i)
     {
-        double sum = 0;
-        for (std::size_t j = 0; j < 7; ++j) sum += e[j] * k[j][i];
-        out.error = std::max(out.error, std::fabs(h * sum) / (kTolerance * unit[i]));
+        last = std::max(last, std::fabs(of_[i][kOrder]) / (kTolerance * unit[i]));
+        before = std::max(before, std::fabs(of_[i][kOrder - 1]) / (kTolerance * unit[i]));
     }
-    const double norm = std::hypot(next[kCos], next[kSin]);
-    out.y[kCos] /= norm, out.y[kSin] /= norm;
-    return out;
+    constexpr double kLeast = 1e-300;
+    return std::min(std::pow(std::max(last, kLeast), -1.0 / kOrder), std::pow(std::max(before, kLeast), -1.0 / (kOrder - 1)));
 }
 
 /// Magnitudes relative to which errors are measured.
@@ -91,24 +111,25 @@ Vector8 units_of(const SlipLaw& law, const ImpactState& state)
 }
 
 /// < 0 before the end of the phase.
-double before_end(bool compressing, double goal, const Vector8& y) { return compressing ? y[kNormal] : y[kWork] - goal; }
-
-/// The state at the end of the phase within a step of length h (Illinois variant of false position).
-Vector8 find_end(const SlipLaw& law, const Vector8& y, double h, const Vector8& unit, bool compressing, double goal)
+double before_end(bool compressing, double goal, const Expansion& series, double tau)
 {
-    double lo = 0, hi = h;
-    double f_lo = before_end(compressing, goal, y), f_hi = before_end(compressing, goal, advance(law, y, h, unit).y);
-    Vector8 best = advance(law, y, h, unit).y;
+    return compressing ? series.at(tau, kNormal) : series.at(tau, kWork) - goal;
+}
+
+/// The end of the phase within a step of length h (Illinois variant of false position).
+double find_end(const Expansion& series, double h, bool compressing, double goal)
+{
+    double lo = 0, hi = h, best = h;
+    double f_lo = before_end(compressing, goal, series, 0), f_hi = before_end(compressing, goal, series, h);
     for (int i = 0; i < 100 && hi - lo > 1e-16 * h && f_hi != 0; ++i)
     {
         const double middle = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
         if (!(middle > lo && middle < hi)) break;
-        const Vector8 trial = advance(law, y, middle, unit).y;
-        const double f = before_end(compressing, goal, trial);
+        const double f = before_end(compressing, goal, series, middle);
         if (f < 0)
             lo = middle, f_lo = f, f_hi *= 0.5;
         else
-            hi = middle, f_hi = f, f_lo *= 0.5, best = trial;
+            hi = best = middle, f_hi = f, f_lo *= 0.5;
     }
     return best;
 }
@@ -164,26 +185,19 @@ SlipEnd follow_slip(const SlipLaw& law, bool compressing, double goal, ImpactSta
     const double slip = std::hypot(state.u.x, state.u.y);
     const Vector8 unit = units_of(law, state);
     Vector8 y{state.u.x / slip, state.u.y / slip, slip, state.u.z, state.work, state.impulse.x, state.impulse.y, state.impulse.z};
-    double h = 0.1 / law.scale();
     for (int i = 0; i < kMaxSteps; ++i)
     {
-        const Step step = advance(law, y, h, unit);
-        const double factor = std::clamp(0.9 * std::pow(std::max(step.error, 1e-10), -0.2), 0.2, 4.0);
-        if (step.error > 1)
+        const Expansion series(law, y);
+        const double h = series.step(unit);
+        if (before_end(compressing, goal, series, h) >= 0)
         {
-            h *= factor;
-            continue;
-        }
-        if (before_end(compressing, goal, step.y) >= 0)
-        {
-            store(find_end(law, y, h, unit, compressing, goal), state);
+            store(series.at(find_end(series, h, compressing, goal)), state);
             return SlipEnd::Phase;
         }
-        y = step.y;
+        y = series.at(h);
         store(y, state);
         if (y[kSlip] <= kStopped * slip) return SlipEnd::Stopped;
         if (std::fabs(law.rates(y[kCos], y[kSin]).turn) <= kStraight * law.scale()) return SlipEnd::Straight;
-        h *= factor;
     }
     return SlipEnd::Stopped;
 }

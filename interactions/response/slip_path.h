@@ -53,7 +53,8 @@ enum class SlipEnd
 /// Integrates a curved slip path. With dJ_n = slip * dtau the equations are smooth up to the end of the slip, which they
 /// approach exponentially:
 ///   s' = turn(s) s_perp,  slip' = slip * grow(s),  u_n' = slip * normal(s).
-/// Dormand-Prince 5(4), tolerance 1e-13; the end of a phase is located within the last step by false position.
+/// Taylor series of order 16, tolerance 1e-13; the end of a phase is located on the last series by false position.
+/// Source: Jorba, Zou, Exp. Math. 14 (2005) 99, for the coefficients by recurrence and for the step size.
 SlipEnd follow_slip(const SlipLaw& law, bool compressing, double goal, ImpactState& state);
 
 }  // namespace plab::response

@@ -1,0 +1,316 @@
+// What scenes of ten to fifty thousand elements cost, and how that grows. Prints the Markdown tables of server/docs/pace.md; takes about
+// three minutes. Each case runs in a process of its own, whose processor time and memory are measured.
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "blueprint/reader.h"
+#include "model/compile.h"
+#include "plab/random.h"
+#include "plugins/library.h"
+#include "simulation/simulation.h"
+#include "support/text.h"
+
+using namespace plab;
+using test::text;
+
+namespace
+{
+
+constexpr double kMostSeconds = 4;  // of processor time per case, for stepping
+constexpr double kMebi = 1 << 20;
+
+/// What a case costs; made by a child process and sent through a pipe.
+struct Figures
+{
+    double load = 0;      ///< s
+    double first = 0;     ///< s, of the first step
+    double step = 0;      ///< s, mean of the others
+    double steps = 0;     ///< how many they are
+    double contacts = 0;  ///< contact points in the last step
+    double memory = 0;    ///< bytes, at the end, beyond what an empty scene takes
+};
+
+double processor_time()
+{
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+double peak_memory()
+{
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+[[noreturn]] void fail(const std::string& why)
+{
+    std::fprintf(stderr, "bench_pace: %s\n", why.c_str());
+    std::exit(1);
+}
+
+double contact_points(const simulation::Simulation& simulation)
+{
+    double points = 0;
+    for (const simulation::PairState& pair : simulation.stepper().contacts().pairs()) points += pair.count;
+    return points;
+}
+
+Figures run_here(const std::string& scene_text, int most_steps)
+{
+    Figures out;
+    const double idle = peak_memory();
+    double begin = processor_time();
+    const auto blueprint = blueprint::read_blueprint(scene_text, "case.xml");
+    if (!blueprint) fail(blueprint.error().text());
+    plugins::PluginLibrary library({PLAB_BINARY_DIR "/lib/plab"});
+    const auto scene = model::compile(*blueprint, library);
+    if (!scene) fail(scene.error().text());
+    simulation::Simulation simulation(library);
+    if (const auto loaded = simulation.load(*scene); !loaded) fail(loaded.error().text());
+    out.load = processor_time() - begin;
+    begin = processor_time();
+    simulation.step();
+    out.first = processor_time() - begin;
+    begin = processor_time();
+    for (int i = 0; i < most_steps; ++i)
+    {
+        simulation.step();
+        ++out.steps;
+        if (processor_time() - begin > kMostSeconds) break;
+    }
+    out.step = (processor_time() - begin) / out.steps;
+    out.contacts = contact_points(simulation);
+    out.memory = peak_memory() - idle;
+    return out;
+}
+
+Figures measure(const std::string& scene_text, int most_steps)
+{
+    int ends[2];
+    if (pipe(ends) != 0) fail("no pipe");
+    std::fflush(stdout);
+    const pid_t child = fork();
+    if (child < 0) fail("no process");
+    if (child == 0)
+    {
+        const Figures found = run_here(scene_text, most_steps);
+        const bool written = write(ends[1], &found, sizeof found) == static_cast<ssize_t>(sizeof found);
+        _exit(written ? 0 : 1);
+    }
+    close(ends[1]);
+    Figures out;
+    const bool whole = read(ends[0], &out, sizeof out) == static_cast<ssize_t>(sizeof out);
+    close(ends[0]);
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (!whole || status != 0) fail("a case ended without figures");
+    return out;
+}
+
+// Scenes --------------------------------------------------------------------------------------------------------------
+
+std::string component(const std::string& id, const std::string& type, const std::string& more)
+{
+    return "<component id=\"" + id + "\" type=\"" + type + "\" " + more + "/>\n";
+}
+
+std::string scene(const std::string& dt, const std::string& parts)
+{
+    return "<plab version=\"1\"><scene dt=\"" + dt + "\"/>\n" + parts + "</plab>";
+}
+
+std::string numbered(const char* name, int i) { return name + std::to_string(i); }
+
+std::string body(int i, const Vec3& at, const std::string& more = "shape=\"s\" mass=\"1\"")
+{
+    return component(numbered("b", i), "State/RigidBody", more + " position=\"" + text(at) + "\"");
+}
+
+const std::string kGravity = component("gravity", "Field/Gravity", "between=\"*\"");
+const std::string kGround = component("plane", "Shape/Plane", "") + component("ground", "State/Static", "shape=\"plane\"");
+
+/// SoftStep with 4 sub-steps and no location of impacts, as an engine for games has it.
+std::string heap_contact(double friction)
+{
+    return component("manager", "Manager/SoftStep", "substeps=\"4\"") +
+           component(
+               "contact", "CDetection/ODE",
+               "between=\"*\" resolution=\"Resolution/None\" response=\"Response/Rows\" response.manager=\"manager\" response.friction=\"" +
+                   text(friction) + "\"");
+}
+
+std::string free_bodies(int n)
+{
+    std::string out = kGravity + component("s", "Shape/Box", "half_extents=\"0.2 0.3 0.4\"");
+    for (int i = 0; i < n; ++i) out += body(i, {2.0 * (i % 100), 2.0 * (i / 100), 0}, "shape=\"s\" mass=\"1\" angular_velocity=\"1 2 3\"");
+    return scene("1/60", out);
+}
+
+std::string wall(int columns, int rows)
+{
+    std::string out = kGravity + kGround + component("s", "Shape/Box", "half_extents=\"0.5 0.25 0.25\"");
+    for (int k = 0; k < rows; ++k)
+        for (int i = 0; i < columns; ++i) out += body(k * columns + i, {i + (k % 2 == 1 ? 0.5 : 0.0), 0, 0.25 + 0.5 * k});
+    return scene("1/60", out + heap_contact(0.8));
+}
+
+/// Columns of ten cubes, nearly in touch.
+std::string pile(int n)
+{
+    std::string out = kGravity + kGround + component("s", "Shape/Box", "half_extents=\"0.25 0.25 0.25\"");
+    std::uint64_t random = 2;
+    const auto jitter = [&] { return 0.02 * (2 * next_uniform(random) - 1); };
+    const int side = std::max(1, static_cast<int>(std::lround(std::sqrt(n / 10.0))));
+    for (int i = 0; i < n; ++i)
+    {
+        const int column = i / 10;
+        const double x = jitter(), y = jitter();
+        out += body(i, {0.55 * (column % side) + x, 0.55 * (column / side) + y, 0.27 + 0.52 * (i % 10)});
+    }
+    return scene("1/60", out + heap_contact(0.8));
+}
+
+std::string balls(int n)
+{
+    std::string out = kGravity + kGround + component("s", "Shape/Sphere", "radius=\"0.1\"");
+    std::uint64_t random = 3;
+    const int side = std::max(1, static_cast<int>(std::lround(std::sqrt(n / 16.0))));
+    const auto jitter = [&] { return 0.004 * (2 * next_uniform(random) - 1); };
+    const std::string w = text(0.108 * side);
+    const char* const sides[4][2] = {
+        {"-1 0 0", "axis 0 1 0 90 deg"}, {"1 0 0", "axis 0 1 0 -90 deg"}, {"0 -1 0", "axis 1 0 0 -90 deg"}, {"0 1 0", "axis 1 0 0 90 deg"}};
+    for (int i = 0; i < 4; ++i)
+    {
+        std::string at = sides[i][0];
+        at.replace(at.find('1'), 1, w);
+        out +=
+            component(numbered("side", i), "State/Static", "shape=\"plane\" position=\"" + at + "\" orientation=\"" + sides[i][1] + "\"");
+    }
+    for (int i = 0; i < n; ++i)
+    {
+        const int column = i / 16;
+        const double x = jitter(), y = jitter(), z = jitter();
+        out += body(i, {0.211 * (column % side - 0.5 * (side - 1)) + x, 0.211 * (column / side - 0.5 * (side - 1)) + y,
+                        0.12 + 0.211 * (i % 16) + z});
+    }
+    return scene("1/60", out + heap_contact(0.8));
+}
+
+/// Balls and boxes that fall; no algorithm is named.
+std::string newcomers_heap(int n)
+{
+    std::string out =
+        kGravity + kGround + component("s", "Shape/Sphere", "radius=\"0.1\"") + component("q", "Shape/Box", "half_extents=\"0.1 0.1 0.1\"");
+    std::uint64_t random = 4;
+    const auto jitter = [&] { return 0.03 * (2 * next_uniform(random) - 1); };
+    for (int i = 0; i < n; ++i)
+    {
+        const double x = jitter(), y = jitter(), z = jitter();
+        out += body(i, {0.3 * (i % 5) + x, 0.3 * (i / 5 % 5) + y, 0.3 + 0.3 * (i / 25) + z},
+                    i % 2 == 0 ? "shape=\"s\" mass=\"1\"" : "shape=\"q\" mass=\"1\"");
+    }
+    return scene("1/240", out + component("contact", "CDetection/ODE", "between=\"*\" response.friction=\"0.5\""));
+}
+
+std::string gears(const char* algorithm, int n)
+{
+    std::string out;
+    for (int i = 0; i <= n; ++i) out += component(numbered("s", i), "State/Shaft", "inertia=\"1\" axis=\"0 0 1\"");
+    out += component("load", "Field/Load", "between=\"s0\" shaft_torque=\"1\"");
+    for (int i = 0; i < n; ++i)
+        out += component(numbered("g", i), std::string("Constraint/AngularVelocity/") + algorithm,
+                         "driver=\"" + numbered("s", i) + "\" driven=\"" + numbered("s", i + 1) + "\" velocity_factor=\"-1\"");
+    return scene("1/240", out);
+}
+
+/// A chain of links that hangs from the world and is released level.
+std::string hinges(int n)
+{
+    std::string out = kGravity;
+    for (int i = 0; i < n; ++i)
+    {
+        out += body(i, {0.5 * i + 0.25, 0, 0}, "mass=\"1\" inertia=\"0.01 0.03 0.03\"");
+        const std::string before = i == 0 ? "" : "a=\"" + numbered("b", i - 1) + "\" ";
+        out += component(numbered("h", i), "Constraint/Hinge",
+                         before + "b=\"" + numbered("b", i) + "\" anchor=\"" + text(Vec3{0.5 * i, 0, 0}) + "\" axis=\"0 1 0\"");
+    }
+    return scene("1/240", out);
+}
+
+/// Each damps the relative motion of two shafts.
+std::string scripts(int n)
+{
+    std::string out;
+    for (int i = 0; i < n; ++i)
+        out += component(numbered("a", i), "State/Shaft", "inertia=\"1\" axis=\"0 0 1\" angular_velocity=\"1\"") +
+               component(numbered("b", i), "State/Shaft", "inertia=\"1\" axis=\"0 0 1\"") + "<component id=\"" + numbered("c", i) +
+               "\" type=\"Script/Lua\" driver=\"" + numbered("a", i) + "\" driven=\"" + numbered("b", i) +
+               "\"><param name=\"code\">function force(t, state) driven:add_torque(0.01 * (driver.speed - driven.speed)) "
+               "end</param></component>\n";
+    return scene("1/240", out);
+}
+
+// Tables --------------------------------------------------------------------------------------------------------------
+
+void scenes_table()
+{
+    std::printf(
+        "| scene | dt | contact points | first step, ms | step, ms | CPU s per simulated s | memory, MB "
+        "|\n|---|---|---|---|---|---|---|\n");
+    const auto row = [](const char* name, const char* dt_text, double dt, const std::string& text, int steps)
+    {
+        const Figures f = measure(text, steps);
+        std::printf("| %s | %s | %.0f | %.3g | %.3g | %.3g | %.0f |\n", name, dt_text, f.contacts, f.first * 1e3, f.step * 1e3, f.step / dt,
+                    f.memory / kMebi);
+    };
+    row("wall of 1000 bricks", "1/60", 1.0 / 60, wall(40, 25), 120);
+    row("pile of 5000 cubes", "1/60", 1.0 / 60, pile(5000), 120);
+    row("10,000 balls", "1/60", 1.0 / 60, balls(10000), 120);
+    row("200 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(200), 480);
+    row("1000 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(1000), 480);
+}
+
+/// Elements of one kind, from `least` to `most` in factors of ten: cost per element and its growth.
+void growth_table(const char* kind, int least, int most, int steps, const std::function<std::string(int)>& make, bool per_contact = false)
+{
+    std::printf(
+        "\n| %s | load, us each | first step, us each | step, us each%s | memory, kB each | step against the first row "
+        "|\n|---|---|---|---|---|---|\n",
+        kind, per_contact ? " contact point" : "");
+    double reference = 0;
+    for (int n = least; n <= most; n *= 10)
+    {
+        const Figures f = measure(make(n), steps);
+        const double each = 1e6 / n, step = f.step * 1e6 / (per_contact ? f.contacts : n);
+        if (reference == 0) reference = step;
+        std::printf("| %d | %.3g | %.3g | %.3g | %.3g | %.2f |\n", n, f.load * each, f.first * each, step, f.memory / 1024 / n,
+                    step / reference);
+    }
+}
+
+}  // namespace
+
+int main()
+{
+    scenes_table();
+    growth_table("free bodies", 100, 10000, 2000, free_bodies);
+    growth_table("cubes in a pile", 100, 10000, 120, pile, true);
+    growth_table("balls in a box", 100, 10000, 120, balls, true);
+    growth_table("gears, Graph", 10, 10000, 2000, [](int n) { return gears("Graph", n); });
+    growth_table("gears, Impulse", 10, 1000, 2000, [](int n) { return gears("Impulse", n); });
+    growth_table("links of a chain", 10, 1000, 2000, hinges);
+    growth_table("scripts", 10, 10000, 2000, scripts);
+    return 0;
+}
