@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "problem.h"
+#include "movers.h"
 
 namespace plab::managers
 {

@@ -14,15 +14,10 @@
 #include <span>
 #include <vector>
 
-#include "lanes.h"
-#include "plab/vector.h"
+#include "movers.h"
 
 namespace plab::managers
 {
-
-struct Momentum;
-struct Mover;
-struct Point;
 
 /// One contact point of each pair of a packet; in the notation of problem.h. An empty lane has no mobility, so its impulse stays 0.
 template <int W>

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "contact_packets.h"
-#include "problem.h"
+#include "movers.h"
 
 namespace plab::managers
 {

@@ -15,55 +15,12 @@
 #include <vector>
 
 #include "contact_packets.h"
+#include "movers.h"
 #include "plab/island.h"
 #include "plab/tables.h"
 
 namespace plab::managers
 {
-
-/// What the innermost loops need of a body, or of a shaft (which uses w.x alone).
-struct Mover
-{
-    PaddedVec3 v;  ///< m/s
-    PaddedVec3 w;  ///< rad/s, in W; a shaft: x only
-    double inverse_mass = 0;
-    bool isotropic = false;  ///< the same inertia in all axes: it does not change when the body turns
-    Mat3 inverse_inertia;    ///< in W; a shaft: only element (0,0)
-};
-
-/// The remaining data of a mover, kept apart so that the inner loops touch less memory.
-struct Anchor
-{
-    std::uint32_t host = kNoIndex;  ///< row in Bodies or Shafts
-    bool shaft = false;
-    double mass = 1;
-    Mat3 inertia;  ///< W
-    Vec3 v, w;     ///< velocities without the impulses of this solve
-    Vec3 written;  ///< N m s: the part of Momentum::turn that has been written to the table already
-};
-
-/// The sum of the impulses on a mover.
-struct Momentum
-{
-    PaddedVec3 push;  ///< N s
-    PaddedVec3 turn;  ///< N m s
-};
-
-struct Point
-{
-    std::uint32_t a = kNoIndex, b = kNoIndex;  ///< movers; kNoIndex: impulses do not move this side
-    Vec3 n, t1, t2;                            ///< W
-    Vec3 r_a, r_b;                             ///< m, from the centres of mass to the point, in W
-    Vec3 given;                                ///< m/s: contribution to u of bodies that are not movers
-    Mat3 K;                                    ///< 1/kg
-    double slip_mobility = 0;                  ///< 1/kg, largest eigenvalue of K's tangential part
-    double friction = 0;
-    double least = 0;  ///< m/s: u_n >= least
-    Vec3 impulse;      ///< N s, in contact coordinates
-
-    bool frictional() const { return friction > 0; }
-    bool mobile() const { return a != kNoIndex || b != kNoIndex; }
-};
 
 /// The points of an island with more of them are coloured and swept four pairs at a time (contact_packets.h).
 inline constexpr std::size_t kSweptInOrder = 64;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plab/rotation.h"
 #include "sequential.h"
+#include "soft_island.h"
 
 namespace plab::managers
 {
@@ -19,90 +19,48 @@ Softness soften(double hertz, double damping_ratio, double h)
     return {omega / a, c / (1 + c), 1 / (1 + c)};
 }
 
+}  // namespace
+
 template <int W>
-class SoftIsland
+SoftIsland<W>::SoftIsland(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory,
+                          PacketList<W>& contacts, std::vector<SoftPoint<W>>& soft)
+    : island_(island),
+      bodies_(bodies),
+      shafts_(shafts),
+      choices_(choices),
+      memory_(memory),
+      problem_(memory.step.problem),
+      contacts_(contacts),
+      soft_(soft),
+      h_(island.h / choices.substeps),
+      sweep_{soften(std::min(choices.hertz, 0.25 / h_), choices.damping_ratio, h_),
+             soften(std::min(2 * choices.hertz, 0.25 / h_), choices.damping_ratio, h_), choices.push_speed, 1 / h_}
 {
-public:
-    SoftIsland(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory, PacketList<W>& contacts,
-               std::vector<SoftPoint<W>>& soft)
-        : island_(island),
-          bodies_(bodies),
-          shafts_(shafts),
-          choices_(choices),
-          memory_(memory),
-          problem_(memory.step.problem),
-          contacts_(contacts),
-          soft_(soft),
-          h_(island.h / choices.substeps),
-          sweep_{soften(std::min(choices.hertz, 0.25 / h_), choices.damping_ratio, h_),
-                 soften(std::min(2 * choices.hertz, 0.25 / h_), choices.damping_ratio, h_), choices.push_speed, 1 / h_}
+}
+
+template <int W>
+Verdict SoftIsland<W>::run()
+{
+    start();
+    Verdict out;
+    for (int s = 0; s < choices_.substeps && !island_.interrupted(); ++s)
     {
+        kick();
+        most_ = kinetic_energy_without(problem_);
+        sweep_soft(contacts_, std::span<Mover>(problem_.movers), sweep_, std::span<SoftPoint<W>>(soft_));
+        sweep_lines(true);
+        write();
+        if (bounces_) count_travel();
+        move();
+        for (int i = 0; i < choices_.relax_iterations; ++i) relax();
+        write();
+        out.iterations += 1 + choices_.relax_iterations + remove_gained_energy();
+        gather();
     }
-
-    Verdict run()
-    {
-        start();
-        Verdict out;
-        for (int s = 0; s < choices_.substeps && !island_.interrupted(); ++s)
-        {
-            kick();
-            most_ = kinetic_energy_without(problem_);
-            sweep_soft(contacts_, std::span<Mover>(problem_.movers), sweep_, std::span<SoftPoint<W>>(soft_));
-            sweep_lines(true);
-            write();
-            if (bounces_) count_travel();
-            move();
-            for (int i = 0; i < choices_.relax_iterations; ++i) relax();
-            write();
-            out.iterations += 1 + choices_.relax_iterations + remove_gained_energy();
-            gather();
-        }
-        give_back();
-        finish(out);
-        return out;
-    }
-
-private:
-    void start();
-    void kick();
-    void apply();
-    void write();
-    void move();
-    void turn();
-    void relax();
-    bool gains() const;
-    int step_hard();
-    bool scale_down();
-    void sweep_lines(bool soft);
-    int remove_gained_energy();
-    void gather();
-    void note_kicks(bool before);
-    void count_travel();
-    void note_limits();
-    void clear_impulses();
-    void scale_impulses(double share);
-    double bounce(double share);
-    void bounce_with_limits(double share);
-    void give_back();
-    void finish(Verdict& out);
-
-    Island& island_;
-    Bodies& bodies_;
-    Shafts& shafts_;
-    const SoftChoices& choices_;
-    SoftMemory& memory_;
-    Problem& problem_;
-    PacketList<W>& contacts_;  ///< the contact points; those of problem_ serve to load it and to report
-    std::vector<SoftPoint<W>>& soft_;
-    double h_;
-    SoftSweep sweep_;
-    bool bounces_ = false;
-    bool applied_ = false;  ///< the impulses have been applied in an earlier sub-step of this step
-    bool driven_ = false;   ///< the motion of other bodies may add energy at a contact
-    double most_ = 0;       ///< J: kinetic energy after the sub-step's kick, which contacts must not exceed
-    bool limits_bounce_ = false;
-    double allowed_ = 0;  ///< J: kinetic energy at the start of the step plus the work of the forces since
-};
+    give_back();
+    finish(out);
+    return out;
+}
 
 template <int W>
 void SoftIsland<W>::start()
@@ -129,52 +87,6 @@ void SoftIsland<W>::start()
     problem_.read_speeds(bodies_, shafts_);
     allowed_ = kinetic_energy_without(problem_);
     memory_.kicks.resize(problem_.anchors.size());
-}
-
-/// Notes the closing speeds at limits with restitution.
-template <int W>
-void SoftIsland<W>::note_limits()
-{
-    memory_.line_closing.assign(problem_.lines.size(), 0.0), memory_.line_greatest.assign(problem_.lines.size(), 0.0);
-    const auto may_bounce = [&](const Line& line)
-    { return line.count > 0 && island_.rows[line.row].kind == RowKind::OneSided && island_.rows[line.row].restitution > 0; };
-    if (std::none_of(problem_.lines.begin(), problem_.lines.end(), may_bounce)) return;
-    problem_.read_speeds(bodies_, shafts_);
-    for (std::size_t i = 0; i < problem_.lines.size(); ++i)
-    {
-        const Line& line = problem_.lines[i];
-        if (!may_bounce(line)) continue;
-        double rate = line.given;  // without impulses: those stored in the problem are an estimate for the sub-step
-        for (std::uint32_t k = 0; k < line.count; ++k)
-            rate += dot(line.linear[k], problem_.anchors[line.mover[k]].v) + dot(line.angular[k], problem_.anchors[line.mover[k]].w);
-        memory_.line_closing[i] = std::max(0.0, island_.rows[line.row].rate - rate);
-        limits_bounce_ = limits_bounce_ || memory_.line_closing[i] > 0;
-    }
-}
-
-/// Called before and after a kick: notes the change of the momenta.
-template <int W>
-void SoftIsland<W>::note_kicks(bool before)
-{
-    problem_.read_speeds(bodies_, shafts_);
-    for (std::size_t i = 0; i < problem_.anchors.size(); ++i)
-    {
-        const Anchor& m = problem_.anchors[i];
-        SoftMemory::Kick& k = memory_.kicks[i];
-        const SoftMemory::Kick now{m.v * m.mass, m.inertia * m.w};
-        if (before)
-            k = now;
-        else
-            k = {now.push - k.push, now.turn - k.turn};
-    }
-}
-
-/// Forces do work along the path that the bodies take, including the part due to position correction.
-template <int W>
-void SoftIsland<W>::count_travel()
-{
-    for (std::size_t i = 0; i < problem_.movers.size(); ++i)
-        allowed_ += dot(memory_.kicks[i].push, problem_.movers[i].v) + dot(memory_.kicks[i].turn, problem_.movers[i].w);
 }
 
 template <int W>
@@ -363,69 +275,6 @@ int SoftIsland<W>::remove_gained_energy()
     return done.sweeps;
 }
 
-/// Sets the impulses that return `share` of the restitution; returns the kinetic energy with them, J.
-template <int W>
-double SoftIsland<W>::bounce(double share)
-{
-    clear_impulses();
-    apply();
-    for (std::size_t i = 0; i < contacts_.size(); ++i)
-    {
-        const Contact& c = island_.contacts[i];
-        const auto place = contacts_.place(i);
-        const bool pressed = lane(soft_[place.point].greatest, place.lane) > 0, meets = c.approach > 0 && c.restitution > 0;
-        const double returned = share * c.restitution * std::max(0.0, c.approach);
-        contacts_.set_least(i, pressed && (meets || limits_bounce_) ? returned : kFar);
-    }
-    if (limits_bounce_)
-        bounce_with_limits(share);
-    else
-        (void)sweep_hard(contacts_, std::span<Mover>(problem_.movers), {.measures = false, .friction_scale = 0});
-    return kinetic_energy(problem_);
-}
-
-/// Uses sweeps, as joints pass on the impulse that a limit returns.
-template <int W>
-void SoftIsland<W>::bounce_with_limits(double share)
-{
-    constexpr int kMostSweeps = 1000;
-    double fastest = 0;
-    for (const double closing : memory_.line_closing) fastest = std::max(fastest, closing);
-    for (std::size_t i = 0; i < problem_.lines.size(); ++i)
-    {
-        Line& line = problem_.lines[i];
-        const ConstraintRow& row = island_.rows[line.row];
-        const bool one_sided = row.kind == RowKind::OneSided, pressed = memory_.line_greatest[i] > 0;
-        line.target = row.rate + (one_sided ? share * row.restitution * memory_.line_closing[i] : 0.0);
-        line.least = one_sided ? 0.0 : -HUGE_VAL, line.most = HUGE_VAL;
-        // Motors have no impulse at an instant; nor has a limit that was not reached.
-        if (row.kind == RowKind::Rate || (one_sided && !pressed)) line.least = line.most = 0;
-    }
-    (void)sweep(problem_, contacts_, {kMostSweeps, 1e-6 * fastest, 1, 0});
-}
-
-template <int W>
-void SoftIsland<W>::give_back()
-{
-    constexpr int kHalvings = 24;
-    problem_.read_speeds(bodies_, shafts_);
-    clear_impulses();
-    apply();
-    if (!bounces_) return;
-    const double most = std::max(allowed_, kinetic_energy_without(problem_));
-    double low = 0, high = 1;
-    if (bounce(1) > most)
-    {
-        for (int i = 0; i < kHalvings; ++i)
-        {
-            const double share = 0.5 * (low + high);
-            (bounce(share) > most ? high : low) = share;
-        }
-        (void)bounce(low);
-    }
-    write();
-}
-
 template <int W>
 void SoftIsland<W>::finish(Verdict& out)
 {
@@ -450,8 +299,6 @@ void SoftIsland<W>::finish(Verdict& out)
     }
     out.converged = out.residual <= choices_.tolerance;
 }
-
-}  // namespace
 
 Verdict advance_softly(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory)
 {
