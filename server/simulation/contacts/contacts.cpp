@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "world/state_hash.h"
@@ -340,10 +339,15 @@ double least_gyration(const Bodies& bodies, std::span<const std::uint32_t> some)
 
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world)
 {
-    const auto key = [&](const FoundContact& f)
-    { return std::tuple(f.detector, world.rank(f.contact.a), world.rank(f.contact.b), f.contact.feature); };
+    const auto before = [&](const FoundContact& x, const FoundContact& y)
+    {
+        if (same_pair(x, y)) return x.contact.feature < y.contact.feature;
+        if (x.detector != y.detector) return x.detector < y.detector;
+        const std::pair ranks_x(world.rank(x.contact.a), world.rank(x.contact.b)),
+            ranks_y(world.rank(y.contact.a), world.rank(y.contact.b));
+        return ranks_x < ranks_y;
+    };
     // Detectors mostly deliver in this order already.
-    const auto before = [&](const FoundContact& x, const FoundContact& y) { return key(x) < key(y); };
     if (std::is_sorted(contacts.begin(), contacts.end(), before)) return;
     std::sort(contacts.begin(), contacts.end(), before);
 }
