@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "simulation/contact_forces/contact_forces.h"
 #include "world/state_hash.h"
@@ -76,7 +77,7 @@ void ContactForces::convert_contacts()
                   [&](const ForcePair& p) { return index_of(p.detector) == contacts_.detectors().size() || !lives(p.a) || !lives(p.b); });
     // Loop over copies, so that converted pairs are not visited again.
     const auto soft = cache.force_pairs();
-    const auto hard = cache.pairs();
+    const auto hard = std::as_const(cache).pairs();
     live_.pairs = soft;
     for (const ForcePair& p : soft)
     {
@@ -113,7 +114,7 @@ void ContactForces::soft_to_soft(const ForcePair& pair, std::uint32_t d)
     as_hard.detector = pair.detector, as_hard.a = pair.a, as_hard.b = pair.b, as_hard.since = pair.since, as_hard.normal = pair.normal;
     for (const ForceContact& c : pair.all())
     {
-        KnownContact& k = as_hard.contacts[as_hard.count++];
+        KnownContact& k = as_hard.add();
         k.feature = c.feature, k.id = c.id, k.impulse = c.force * step_.frame.step;
     }
     const ForcePair to = remember_or_soften(as_hard, d);
@@ -129,7 +130,7 @@ void ContactForces::hard_to_soft(const PairState& pair, std::uint32_t d)
     const ForcePair to = remember_or_soften(pair, d);
     if (to.count > 0) live_.pairs.insert(place_of(pair.detector, pair.a, pair.b), to);
     cache.parked_pairs().push_back(pair);
-    cache.pairs().erase(find_same(cache.pairs(), pair.detector, pair.a, pair.b));
+    cache.erase(*cache.find(pair.detector, pair.a, pair.b, step_.world));
     converted_[d] += to.count;
 }
 
@@ -155,7 +156,7 @@ PairState ContactForces::harden(const ForcePair& pair, const Detector& detector)
     out.resting = answered;
     for (const ForceContact& soft : pair.all())
     {
-        KnownContact& hard = out.contacts[out.count++];
+        KnownContact& hard = out.add();
         hard.feature = soft.feature, hard.id = soft.id;
         out.overlapping = out.overlapping || soft.depth > 0;
         if (!answered) continue;
@@ -213,8 +214,8 @@ ForcePair ContactForces::soften(const PairState& pair, std::uint32_t detector)
     {
         contacts_.fill_material(f);
         const auto is_it = [&](const KnownContact& k) { return k.feature == f.contact.feature; };
-        const auto known = std::find_if(pair.contacts.begin(), pair.contacts.begin() + pair.count, is_it);
-        if (known == pair.contacts.begin() + pair.count || out.count == ForcePair::kMostContacts) continue;
+        const auto known = std::find_if(pair.all().begin(), pair.all().end(), is_it);
+        if (known == pair.all().end() || out.count == ForcePair::kMostContacts) continue;
         if (ForceContact soft; soften_contact(*known, f, soft)) out.contacts[out.count++] = soft;
     }
     return out;

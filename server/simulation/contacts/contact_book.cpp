@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "plab/surface.h"
@@ -48,11 +47,11 @@ double opening_by_curves(double speed, double h, double radii) { return 4 * spee
 /// m: persistence margin of a pair that may slide along a curve, at least `base`. Such a pair is off the curve by a little more than others
 /// at the end of a step and must still count as persistent, otherwise it would hop. A pair that separates faster than the curvature
 /// explains bounces, and gets `base` only.
-double sliding_margin(const world::HostTables& host, Ref a, Ref b, const Vec3& normal, double base, double radius, double h)
+/// `curves`, m: sum of the curve radii of both.
+double sliding_margin(const Bodies& bodies, Ref a, Ref b, const Vec3& normal, double curves, double base, double radius, double h)
 {
-    const Vec3 v = host.bodies.velocity[b.index] - host.bodies.velocity[a.index];
+    const Vec3 v = bodies.velocity[b.index] - bodies.velocity[a.index];
     const double separation_speed = dot(v, normal), along = length(v - separation_speed * normal);
-    const double curves = std::fabs(curve_radius(host.bodies, host.shapes, a.index) + curve_radius(host.bodies, host.shapes, b.index));
     if (!(curves > 0) || separation_speed > 2 * along * along * h / curves) return base;
     return base + std::min(opening_by_curves(along, h, curves), kMostShare * radius);
 }
@@ -83,6 +82,8 @@ void ContactBook::measure_bodies()
         for (const Vec3& v : g.vertices) r = std::max(r, length(v));
         return r;
     };
+    curve_radius_of_body_.clear();
+    for (std::uint32_t b = 0; b < host.bodies.size(); ++b) curve_radius_of_body_.push_back(curve_radius(host.bodies, host.shapes, b));
     radius_of_body_.assign(host.bodies.size(), 0.0);
     for (std::size_t b = 0; b < radius_of_body_.size(); ++b)
         for (const Ref shape : host.bodies.shapes[b])
@@ -153,7 +154,7 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
     {
         if (!bodies.dynamic(b) || !std::isfinite(radius_of_body_[b])) continue;
         // The other body may be round as well, with any radius.
-        const double opens = opening_by_curves(2 * fastest, step_.frame.step, curve_radius(bodies, step_.world.host().shapes, b));
+        const double opens = opening_by_curves(2 * fastest, step_.frame.step, curve_radius_of_body_[b]);
         margin = std::max(margin, kPersistenceShare * radius_of_body_[b] + std::min(opens, kMostShare * radius_of_body_[b]));
     }
     const double acceleration = detector.speculation_acceleration.value_or(0);
@@ -168,11 +169,11 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
         const PairState* pair = std::as_const(cache_).find(detector.component, c.a, c.b, step_.world, near);
         const double base = persistence_margin(c.a, c.b), radius = std::min(radius_of_body_[c.a.index], radius_of_body_[c.b.index]);
         if (!pair || !pressed(*pair) || !std::isfinite(radius)) return base;
-        return sliding_margin(step_.world.host(), c.a, c.b, c.normal, base, radius, step_.frame.step);
+        return sliding_margin(bodies, c.a, c.b, c.normal, curves_of(c.a, c.b), base, radius, step_.frame.step);
     };
     const auto far = [&](const FoundContact& f)
     {
-        if (f.contact.depth > -margin_of(f.contact)) return false;
+        if (f.contact.depth > 0 || f.contact.depth > -margin_of(f.contact)) return false;
         return !detector.speculates || !may_close(bodies, radius_of_body_, f.contact, acceleration, step_.frame.step);
     };
     out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
@@ -200,6 +201,7 @@ void ContactBook::drop_far(std::vector<FoundContact>& out, double h) const
     std::size_t near = 0;
     const auto far = [&](const FoundContact& f)
     {
+        if (f.contact.depth > 0) return false;
         const std::uint32_t detector = detectors_[f.detector].component;
         const PairState* pair = cache_.find(detector, f.contact.a, f.contact.b, step_.world, near);
         const double margin = pair ? persistence_margin(*pair) : persistence_margin(f.contact.a, f.contact.b);
@@ -243,7 +245,8 @@ double ContactBook::persistence_margin(const PairState& pair) const
 {
     const double base = persistence_margin(pair.a, pair.b), radius = std::min(radius_of_body_[pair.a.index], radius_of_body_[pair.b.index]);
     if (!pressed(pair) || !std::isfinite(radius)) return base;
-    return sliding_margin(step_.world.host(), pair.a, pair.b, pair.normal, base, radius, step_.frame.step);
+    return sliding_margin(step_.world.host().bodies, pair.a, pair.b, pair.normal, curves_of(pair.a, pair.b), base, radius,
+                          step_.frame.step);
 }
 
 double ContactBook::persistence_margin(Ref a, Ref b) const
@@ -265,13 +268,13 @@ bool ContactBook::is_of_pair(const FoundContact& f, const PairState& pair) const
 
 std::size_t ContactBook::first_of_pair(const PairState& pair, std::size_t from) const
 {
+    // Mostly there is nothing between the contacts of two pairs.
+    if (from >= found_.size() || is_of_pair(found_[from], pair)) return from;
     // Both lists are sorted by detector, a and b, so one pass serves all pairs.
-    const auto key = [&](std::uint32_t detector, Ref a, Ref b)
-    { return std::tuple(step_.world.rank(detector), step_.world.rank(a), step_.world.rank(b)); };
-    const auto wanted = key(pair.detector, pair.a, pair.b);
-    while (from < found_.size() &&
-           key(detectors_[found_[from].detector].component, found_[from].contact.a, found_[from].contact.b) < wanted)
-        ++from;
+    const PairKey wanted(step_.world, pair.detector, pair.a, pair.b);
+    const auto key = [&](const FoundContact& f)
+    { return PairKey(step_.world, detectors_[f.detector].component, f.contact.a, f.contact.b); };
+    while (from < found_.size() && key(found_[from]) < wanted) ++from;
     return from;
 }
 

@@ -100,6 +100,7 @@ public:
 
 private:
     void measure_bodies();
+    double curves_of(Ref a, Ref b) const { return std::fabs(curve_radius_of_body_[a.index] + curve_radius_of_body_[b.index]); }
     void measure_islands(ContactLoad& load);
     void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
     double gap_margin(const PairState& pair, double h) const;
@@ -111,8 +112,9 @@ private:
     std::vector<Detector> detectors_;
     ContactCache cache_;
     std::vector<FoundContact> found_;
-    std::vector<double> radius_of_body_;  ///< m, about C; infinite for planes
-    std::vector<Event> releases_;         ///< noted in this step, emitted when it is over
+    std::vector<double> radius_of_body_;        ///< m, about C; infinite for planes
+    std::vector<double> curve_radius_of_body_;  ///< m, of the most strongly curved shape; negative inside, infinite if there is none
+    std::vector<Event> releases_;               ///< noted in this step, emitted when it is over
 
     // Scratch lists, members to keep their memory.
     mutable std::vector<std::uint32_t> counted_;

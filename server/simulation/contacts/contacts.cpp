@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "world/state_hash.h"
@@ -13,42 +12,36 @@ namespace plab::simulation
 namespace
 {
 
-auto key_of(const world::World& world, std::uint32_t detector, Ref a, Ref b)
-{
-    return std::tuple(world.rank(detector), world.rank(a), world.rank(b));
-}
-
-auto key_of(const world::World& world, const PairState& p) { return key_of(world, p.detector, p.a, p.b); }
-
-std::vector<PairState>::iterator position_of(std::vector<PairState>& pairs, const world::World& world, std::uint32_t detector, Ref a, Ref b)
-{
-    const auto key = key_of(world, detector, a, b);
-    return std::lower_bound(pairs.begin(), pairs.end(), key, [&](const PairState& p, const auto& k) { return key_of(world, p) < k; });
-}
+PairKey key_of(const world::World& world, const PairState& p) { return {world, p.detector, p.a, p.b}; }
 
 }  // namespace
 
+std::size_t ContactCache::place_of(const PairKey& key) const
+{
+    return static_cast<std::size_t>(std::lower_bound(keys_.begin(), keys_.end(), key) - keys_.begin());
+}
+
 PairState* ContactCache::find(std::uint32_t detector, Ref a, Ref b, const world::World& world)
 {
-    const auto at = position_of(pairs_, world, detector, a, b);
-    return at != pairs_.end() && at->detector == detector && at->a == a && at->b == b ? &*at : nullptr;
+    const PairKey key(world, detector, a, b);
+    const std::size_t at = place_of(key);
+    return is_at(at, key) ? &pairs_[at] : nullptr;
 }
 
 /// Searches from `near` in steps that double, and then between the last two places.
 const PairState* ContactCache::find(std::uint32_t detector, Ref a, Ref b, const world::World& world, std::size_t& near) const
 {
-    const auto key = key_of(world, detector, a, b);
-    const auto before = [&](const PairState& p, const auto& k) { return key_of(world, p) < k; };
-    std::size_t first = std::min(near, pairs_.size()), end = first;
-    if (first > 0 && !before(pairs_[first - 1], key))
+    const PairKey key(world, detector, a, b);
+    std::size_t first = std::min(near, keys_.size()), end = first;
+    if (first > 0 && keys_[first - 1] >= key)
         first = 0;
     else
-        for (std::size_t stride = 1; end < pairs_.size() && before(pairs_[end], key); stride *= 2)
-            first = end + 1, end = std::min(end + stride, pairs_.size());
-    const auto at = std::lower_bound(pairs_.begin() + static_cast<std::ptrdiff_t>(first), pairs_.begin() + static_cast<std::ptrdiff_t>(end),
-                                     key, before);
-    near = static_cast<std::size_t>(at - pairs_.begin());
-    return at != pairs_.end() && at->detector == detector && at->a == a && at->b == b ? &*at : nullptr;
+        for (std::size_t stride = 1; end < keys_.size() && keys_[end] < key; stride *= 2)
+            first = end + 1, end = std::min(end + stride, keys_.size());
+    const auto from = keys_.begin();
+    near = static_cast<std::size_t>(
+        std::lower_bound(from + static_cast<std::ptrdiff_t>(first), from + static_cast<std::ptrdiff_t>(end), key) - from);
+    return is_at(near, key) ? &pairs_[near] : nullptr;
 }
 
 PairState* ContactCache::find(std::uint32_t detector, Ref a, Ref b, const world::World& world, std::size_t& near)
@@ -58,46 +51,75 @@ PairState* ContactCache::find(std::uint32_t detector, Ref a, Ref b, const world:
 
 PairState& ContactCache::get_or_add(std::uint32_t detector, Ref a, Ref b, const world::World& world, Tick now, bool& added)
 {
-    auto at = position_of(pairs_, world, detector, a, b);
-    added = !(at != pairs_.end() && at->detector == detector && at->a == a && at->b == b);
-    if (!added) return *at;
+    const PairKey key(world, detector, a, b);
+    const std::size_t at = place_of(key);
+    added = !is_at(at, key);
+    if (!added) return pairs_[at];
     PairState fresh;
     fresh.detector = detector, fresh.a = a, fresh.b = b, fresh.since = now;
-    return *pairs_.insert(at, fresh);
+    keys_.insert(keys_.begin() + static_cast<std::ptrdiff_t>(at), key);
+    return *pairs_.insert(pairs_.begin() + static_cast<std::ptrdiff_t>(at), std::move(fresh));
 }
 
 void ContactCache::add_sorted(std::span<const PairState> fresh, const world::World& world)
 {
-    if (fresh.empty()) return;
     // Merged from the back, so that each pair moves once.
     std::size_t old = pairs_.size(), at = old + fresh.size();
-    pairs_.resize(at);
-    for (std::size_t next = fresh.size(); next > 0;)
+    pairs_.resize(at), keys_.resize(at);
+    for (std::size_t next = fresh.size(); next > 0; --next)
     {
-        const bool old_is_later = old > 0 && key_of(world, fresh[next - 1]) < key_of(world, pairs_[old - 1]);
-        pairs_[--at] = old_is_later ? pairs_[--old] : fresh[--next];
+        const PairKey key = key_of(world, fresh[next - 1]);
+        for (; old > 0 && key < keys_[old - 1]; --old) --at, pairs_[at] = std::move(pairs_[old - 1]), keys_[at] = keys_[old - 1];
+        --at, pairs_[at] = fresh[next - 1], keys_[at] = key;
     }
+}
+
+/// Keeps the first `size` pairs, and the memory of the others.
+void ContactCache::shrink(std::size_t size)
+{
+    for (std::size_t i = size; i < pairs_.size(); ++i) pool_.recycle(pairs_[i].contacts);
+    pairs_.resize(size), keys_.resize(size);
+}
+
+void ContactCache::erase(PairState& pair)
+{
+    drop_if([&](const PairState& p) { return &p == &pair; });
+}
+
+void ContactCache::assign(std::vector<PairState> pairs, const world::World& world)
+{
+    pairs_ = std::move(pairs);
+    sort(world);
+    may_have_rest_depth_ = true;
+}
+
+void ContactCache::sort(const world::World& world)
+{
+    std::sort(pairs_.begin(), pairs_.end(), [&](const PairState& x, const PairState& y) { return key_of(world, x) < key_of(world, y); });
+    keys_.clear();
+    for (const PairState& p : pairs_) keys_.push_back(key_of(world, p));
 }
 
 KnownContact& ContactCache::contact_of(PairState& pair, std::uint32_t feature)
 {
-    for (std::uint32_t i = 0; i < pair.count; ++i)
-        if (pair.contacts[i].feature == feature) return pair.contacts[i];
+    for (KnownContact& known : pair.all())
+        if (known.feature == feature) return known;
     // If the manifold is full, its last slot is reused.
-    const std::uint32_t place = std::min<std::uint32_t>(pair.count, PairState::kMostContacts - 1);
+    const std::uint32_t place = std::min(pair.count, PairState::kMostContacts - 1);
+    pool_.reserve(pair.contacts, place + 1, place);
     pair.count = place + 1;
-    pair.contacts[place] = {};
-    pair.contacts[place].feature = feature, pair.contacts[place].id = next_id_++;
-    return pair.contacts[place];
+    KnownContact& fresh = pair.contacts[place] = {};
+    fresh.feature = feature, fresh.id = next_id_++;
+    return fresh;
 }
 
 const KnownContact* ContactCache::find_contact(std::uint32_t detector, Ref a, Ref b, std::uint32_t feature, const world::World& world)
 {
     const PairState* pair = find(detector, a, b, world);
     if (!pair) return nullptr;
-    const auto end = pair->contacts.begin() + pair->count;
-    const auto found = std::find_if(pair->contacts.begin(), end, [&](const KnownContact& k) { return k.feature == feature; });
-    return found == end ? nullptr : &*found;
+    const std::span<const KnownContact> all = pair->all();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const KnownContact& k) { return k.feature == feature; });
+    return found == all.end() ? nullptr : &*found;
 }
 
 void ContactCache::refresh(const world::World& world, const std::vector<Detector>& detectors)
@@ -114,8 +136,7 @@ void ContactCache::refresh(const world::World& world, const std::vector<Detector
         return p.ahead && std::none_of(detectors.begin(), detectors.end(),
                                        [&](const Detector& d) { return d.component == p.detector && d.speculates; });
     };
-    std::erase_if(pairs_, gone);
-    std::erase_if(pairs_, has_no_speculating_detector);
+    drop_if([&](const PairState& p) { return gone(p) || has_no_speculating_detector(p); });
     for (PairState& p : pairs_)
     {
         // Without a response nothing rests: a sensor supports no body.
@@ -125,18 +146,16 @@ void ContactCache::refresh(const world::World& world, const std::vector<Detector
         if (answered) continue;
         p.resting = false;
         p.bounces = {};
-        for (KnownContact& k : p.contacts) k.impulse = {};
+        for (KnownContact& k : p.all()) k.impulse = {};
     }
-    std::sort(pairs_.begin(), pairs_.end(), [&](const PairState& x, const PairState& y) { return key_of(world, x) < key_of(world, y); });
+    sort(world);  // a new component changes ranks
+    may_have_rest_depth_ = true;
 }
 
 namespace
 {
 
 using world::hash_of, world::mix;
-
-void copy_head(const PairHead& from, PairHead& to) { to = from; }
-void copy_head(const ForcePairHead& from, ForcePairHead& to) { to = from; }
 
 std::uint64_t hash_of_contact(const KnownContact& k)
 {
@@ -151,7 +170,7 @@ std::uint64_t hash_of_pair(const world::World& world, const PairState& p)
     const std::uint64_t pair = std::uint64_t{world.rank(p.a)} << 32 | world.rank(p.b);
     const std::uint64_t how = (p.resting ? 1u : 0u) | (p.ahead ? 2u : 0u) | (p.overlapping ? 4u : 0u) | std::uint64_t{p.count} << 3;
     std::uint64_t h = mix(mix(hash_of(p.normal), pair), how);
-    for (std::uint32_t i = 0; i < p.count; ++i) h = mix(h, hash_of_contact(p.contacts[i]));
+    for (const KnownContact& k : p.all()) h = mix(h, hash_of_contact(k));
     if (p.bounces == BounceHistory{}) return h;
     return mix(mix(mix(h, p.bounces.time), p.bounces.interval), p.bounces.previous);
 }
@@ -175,18 +194,26 @@ std::uint64_t hash_of_contact(const ForceContact& c)
 
 void ContactCache::copy(const ContactCache& from)
 {
-    const auto copy_list = [](const auto& list, auto& to)
+    shrink(std::min(pairs_.size(), from.pairs_.size()));
+    pairs_.resize(from.pairs_.size());
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+    {
+        pool_.reserve(pairs_[i].contacts, from.pairs_[i].count, 0);
+        pairs_[i] = from.pairs_[i];
+    }
+    keys_ = from.keys_;
+    parked_pairs_ = from.parked_pairs_;
+    const auto copy_forces = [](const std::vector<ForcePair>& list, std::vector<ForcePair>& to)
     {
         to.resize(list.size());
         for (std::size_t i = 0; i < list.size(); ++i)
         {
-            copy_head(list[i], to[i]);
+            static_cast<ForcePairHead&>(to[i]) = list[i];
             std::copy_n(list[i].contacts.begin(), list[i].count, to[i].contacts.begin());
         }
     };
-    copy_list(from.pairs_, pairs_), copy_list(from.parked_pairs_, parked_pairs_);
-    copy_list(from.force_pairs_, force_pairs_), copy_list(from.parked_force_pairs_, parked_force_pairs_);
-    next_id_ = from.next_id_;
+    copy_forces(from.force_pairs_, force_pairs_), copy_forces(from.parked_force_pairs_, parked_force_pairs_);
+    next_id_ = from.next_id_, may_have_rest_depth_ = from.may_have_rest_depth_;
 }
 
 std::uint64_t ContactCache::state_hash(const world::World& world, std::uint64_t h) const
@@ -285,7 +312,7 @@ std::vector<Detector> find_detectors(const world::World& world, const Schedule& 
 double pressed_with(const PairState& pair)
 {
     double sum = 0;
-    for (std::uint32_t k = 0; k < pair.count; ++k) sum += dot(pair.contacts[k].impulse, pair.normal);
+    for (const KnownContact& k : pair.all()) sum += dot(k.impulse, pair.normal);
     return sum;
 }
 
@@ -312,10 +339,15 @@ double least_gyration(const Bodies& bodies, std::span<const std::uint32_t> some)
 
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world)
 {
-    const auto key = [&](const FoundContact& f)
-    { return std::tuple(f.detector, world.rank(f.contact.a), world.rank(f.contact.b), f.contact.feature); };
+    const auto before = [&](const FoundContact& x, const FoundContact& y)
+    {
+        if (same_pair(x, y)) return x.contact.feature < y.contact.feature;
+        if (x.detector != y.detector) return x.detector < y.detector;
+        const std::pair ranks_x(world.rank(x.contact.a), world.rank(x.contact.b)),
+            ranks_y(world.rank(y.contact.a), world.rank(y.contact.b));
+        return ranks_x < ranks_y;
+    };
     // Detectors mostly deliver in this order already.
-    const auto before = [&](const FoundContact& x, const FoundContact& y) { return key(x) < key(y); };
     if (std::is_sorted(contacts.begin(), contacts.end(), before)) return;
     std::sort(contacts.begin(), contacts.end(), before);
 }

@@ -6,10 +6,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <compare>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "simulation/contacts/contact_force_pair.h"
+#include "simulation/contacts/point_block.h"
 #include "simulation/systems/group_system.h"
 
 namespace plab::simulation
@@ -72,16 +75,6 @@ inline bool same_pair(const FoundContact& x, const FoundContact& y)
     return x.detector == y.detector && x.contact.a == y.contact.a && x.contact.b == y.contact.b;
 }
 
-struct KnownContact
-{
-    std::uint32_t feature = 0;
-    std::uint64_t id = 0;
-    Vec3 impulse;           ///< N s per step on b, for warm starts
-    Vec3 stretch;           ///< m, as in Contact: state of force contacts
-    double rest_depth = 0;  ///< m
-    double preload = 0;     ///< N
-};
-
 /// The last impacts of a pair, to predict where a sequence of bounces ends (zeno.h).
 struct BounceHistory
 {
@@ -114,25 +107,54 @@ struct PairHead
 
 struct PairState : PairHead
 {
-    static constexpr std::size_t kMostContacts = 16;
+    static constexpr std::uint32_t kMostContacts = PointBlock::kMost;
 
     PairState() = default;
-    /// Copies the first `count` contacts only: most pairs have far fewer than there is room for, and lists of pairs are moved in each step.
+    PairState(PairState&&) noexcept = default;
+    PairState& operator=(PairState&&) noexcept = default;
     PairState(const PairState& other) : PairHead(other) { copy_contacts(other); }
     PairState& operator=(const PairState& other)
     {
+        if (this == &other) return *this;
         PairHead::operator=(other);
         copy_contacts(other);
         return *this;
     }
 
-    std::array<KnownContact, kMostContacts> contacts;
+    PointBlock contacts;  ///< the first `count` are in use
+
+    std::span<KnownContact> all() { return {contacts.begin(), count}; }
+    std::span<const KnownContact> all() const { return {contacts.begin(), count}; }
+    /// Adds a contact with default values; there must be fewer than kMostContacts.
+    KnownContact& add()
+    {
+        contacts.reserve(count + 1, count);
+        return contacts[count++] = {};
+    }
 
 private:
-    void copy_contacts(const PairState& other) { std::copy_n(other.contacts.begin(), count, contacts.begin()); }
+    void copy_contacts(const PairState& other)
+    {
+        contacts.reserve(other.count, 0);
+        std::copy_n(other.contacts.begin(), other.count, contacts.begin());
+    }
 };
 
-/// All known pairs, sorted by detector, a and b in id order.
+/// Where a pair stands in the order of pairs: ranks of its detector and bodies.
+struct PairKey
+{
+    PairKey() = default;
+    PairKey(const world::World& world, std::uint32_t of_detector, Ref of_a, Ref of_b)
+        : detector(world.rank(of_detector)), a(world.rank(of_a)), b(world.rank(of_b))
+    {
+    }
+    std::uint32_t detector = 0, a = 0, b = 0;
+    friend auto operator<=>(const PairKey&, const PairKey&) = default;
+};
+
+/// All known pairs, sorted by detector, a and b in id order. Searches read a list of keys (12 bytes a pair) that always corresponds to
+/// the pairs one to one, so pairs are added and dropped through this class only. Blocks of points that pairs leave behind are reused, so
+/// that contacts that begin and end in a warm step allocate nothing.
 class ContactCache
 {
 public:
@@ -141,10 +163,18 @@ public:
     PairState* find(std::uint32_t detector, Ref a, Ref b, const world::World& world, std::size_t& near);
     const PairState* find(std::uint32_t detector, Ref a, Ref b, const world::World& world, std::size_t& near) const;
     PairState& get_or_add(std::uint32_t detector, Ref a, Ref b, const world::World& world, Tick now, bool& added);
-    /// Adds pairs that are not known yet, in one pass. `fresh` is sorted like pairs().
+    /// Adds pairs that are not known yet and have no contacts, in one pass. `fresh` is sorted like pairs().
     void add_sorted(std::span<const PairState> fresh, const world::World& world);
-    std::vector<PairState>& pairs() { return pairs_; }
+    void erase(PairState& pair);
+    /// Asks `ends` once for each pair, in order, and drops those for which it is true.
+    template <class Ends>
+    void drop_if(Ends ends);
+    /// Takes pairs in any order in place of the present ones.
+    void assign(std::vector<PairState> pairs, const world::World& world);
+    std::span<PairState> pairs() { return pairs_; }
     const std::vector<PairState>& pairs() const { return pairs_; }
+    /// Of each of pairs(), in the same order.
+    std::span<const PairKey> keys() const { return keys_; }
     /// The known contact of a feature of the pair; added with a new id if the feature is new.
     KnownContact& contact_of(PairState& pair, std::uint32_t feature);
     /// Null if the pair or the feature is not known.
@@ -152,12 +182,16 @@ public:
     /// To be called after a structural change: drops pairs whose detector or bodies are gone, and sorts the rest again.
     void refresh(const world::World& world, const std::vector<Detector>& detectors);
     void clear() { *this = {}; }
-    /// Copies `from`, except contact slots that are not in use: a pair has more of them than it usually needs.
+    /// Copies `from`, except contact slots that are not in use, and keeps this cache's memory.
     void copy(const ContactCache& from);
     std::uint64_t new_id() { return next_id_++; }
     std::uint64_t next_id() const { return next_id_; }
     /// Lets ids continue from those of a snapshot.
     void continue_ids(std::uint64_t next) { next_id_ = next; }
+    /// False if it is certain that no contact has a rest_depth. Only swaps and restored states bring one in.
+    bool may_have_rest_depth() const { return may_have_rest_depth_; }
+    /// To be called by whoever has seen that no contact has one.
+    void has_no_rest_depth() { may_have_rest_depth_ = false; }
     /// Pairs with force contacts, in the same order.
     std::vector<ForcePair>& force_pairs() { return force_pairs_; }
     const std::vector<ForcePair>& force_pairs() const { return force_pairs_; }
@@ -171,10 +205,31 @@ public:
     std::uint64_t state_hash(const world::World& world, std::uint64_t start) const;
 
 private:
+    std::size_t place_of(const PairKey& key) const;
+    bool is_at(std::size_t place, const PairKey& key) const { return place < keys_.size() && keys_[place] == key; }
+    void sort(const world::World& world);
+    void shrink(std::size_t size);
+
     std::vector<PairState> pairs_, parked_pairs_;
+    std::vector<PairKey> keys_;  ///< of pairs_
+    PointPool pool_;
     std::vector<ForcePair> force_pairs_, parked_force_pairs_;
     std::uint64_t next_id_ = 1;
+    bool may_have_rest_depth_ = true;
 };
+
+template <class Ends>
+void ContactCache::drop_if(Ends ends)
+{
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+    {
+        if (ends(pairs_[i])) continue;
+        if (kept != i) std::swap(pairs_[kept], pairs_[i]), keys_[kept] = keys_[i];
+        ++kept;
+    }
+    shrink(kept);
+}
 
 /// Detectors of a scene, in id order.
 std::vector<Detector> find_detectors(const world::World& world, const Schedule& schedule);

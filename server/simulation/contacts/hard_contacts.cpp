@@ -16,7 +16,7 @@ void HardContacts::begin_step()
 
 bool HardContacts::needs_islands() const
 {
-    const auto& pairs = contacts_.cache().pairs();
+    const auto pairs = contacts_.cache().pairs();
     return held_.holds_joints() || std::any_of(pairs.begin(), pairs.end(), [](const PairState& p) { return p.resting; });
 }
 
@@ -56,10 +56,38 @@ void HardContacts::update_pair(PairState& pair, std::span<FoundContact> found)
     const auto is_past = [&](const KnownContact& k)
     { return std::none_of(found.begin(), found.end(), [&](const FoundContact& f) { return f.contact.feature == k.feature; }); };
     if (pair.resting) held_.pass_on(pair, known, found);
-    const auto past = std::remove_if(pair.contacts.begin(), pair.contacts.begin() + pair.count, is_past);
-    pair.count = static_cast<std::uint32_t>(past - pair.contacts.begin());
+    const std::span<KnownContact> all = pair.all();
+    pair.count = static_cast<std::uint32_t>(std::remove_if(all.begin(), all.end(), is_past) - all.begin());
     pair.overlapping = overlaps;
     if (!found.empty()) pair.normal = found.front().contact.normal;
+}
+
+/// With the contacts of the end of the step: whether a pair is no longer known. `at`: where the contacts of the pair before it end in
+/// found(); moved behind its own.
+bool HardContacts::ends(PairState& pair, std::size_t& at, double time)
+{
+    std::vector<FoundContact>& found = contacts_.found();
+    const std::size_t begin = contacts_.first_of_pair(pair, at);
+    bool touches = false;
+    for (at = begin; at < found.size() && contacts_.is_of_pair(found[at], pair); ++at)
+    {
+        const double depth = found[at].contact.depth;
+        touches = touches || depth > 0 || (pair.resting && depth > -contacts_.persistence_margin(pair));
+    }
+    const std::span<FoundContact> own = std::span(found).subspan(begin, at - begin);
+    const bool was_held = !touches && pressed(pair);
+    const bool released = contacts_.report_release(pair);
+    update_pair(pair, own);
+    const bool ahead = held_.keeps_ahead(pair, touches, own, time);
+    if (!touches && !ahead)
+    {
+        // A pair that pressed in the last step and does not touch at the end of this one was released in between.
+        if (was_held && !released) step_.emit(contacts_.contact_event("contact.release", pair, time));
+        if (!pair.ahead) step_.emit(contacts_.contact_event("contact.end", pair, time));
+        return true;
+    }
+    step_.report.resting_pairs += pair.resting && !ahead ? 1 : 0;
+    return false;
 }
 
 void HardContacts::finish_step()
@@ -73,32 +101,8 @@ void HardContacts::finish_step()
     }
     positions_.ease_overlaps();
     positions_.correct_positions();
-    std::vector<PairState>& pairs = contacts_.cache().pairs();
-    std::size_t kept = 0, at = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-    {
-        PairState& pair = pairs[i];
-        const std::size_t begin = contacts_.first_of_pair(pair, at);
-        bool touches = false;
-        for (at = begin; at < found.size() && contacts_.is_of_pair(found[at], pair); ++at)
-            touches = touches || found[at].contact.depth > (pair.resting ? -contacts_.persistence_margin(pair) : 0.0);
-        const std::span<FoundContact> own = std::span(found).subspan(begin, at - begin);
-        const bool was_held = pressed(pair);
-        const bool released = contacts_.report_release(pair);
-        update_pair(pair, own);
-        const bool ahead = held_.keeps_ahead(pair, touches, own, time);
-        if (!touches && !ahead)
-        {
-            // A pair that pressed in the last step and does not touch at the end of this one was released in between.
-            if (was_held && !released) step_.emit(contacts_.contact_event("contact.release", pair, time));
-            if (!pair.ahead) step_.emit(contacts_.contact_event("contact.end", pair, time));
-            continue;
-        }
-        step_.report.resting_pairs += pair.resting && !ahead ? 1 : 0;
-        if (kept != i) pairs[kept] = pair;
-        ++kept;
-    }
-    pairs.resize(kept);
+    std::size_t at = 0;
+    contacts_.cache().drop_if([&](PairState& pair) { return ends(pair, at, time); });
     for (const FoundContact& f : found) step_.report.deepest = std::max(step_.report.deepest, f.contact.depth);
 }
 

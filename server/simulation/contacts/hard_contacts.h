@@ -36,6 +36,7 @@ public:
     void finish_step();
 
 private:
+    bool ends(PairState& pair, std::size_t& at, double time);
     void update_pair(PairState& pair, std::span<FoundContact> found);
 
     StepState& step_;

@@ -41,17 +41,21 @@ void ContactBook::measure_islands(ContactLoad& load)
 {
     const Bodies& bodies = step_.world.host().bodies;
     load_islands_.reset(bodies.size());
-    for (const PairState& p : cache_.pairs())
-        if (p.resting && bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) load_islands_.join(p.a.index, p.b.index);
     load_counts_.assign(bodies.size(), {});
-    for (std::uint32_t b = 0; b < bodies.size(); ++b)
-        if (bodies.dynamic(b))
-            ++load.bodies, load.island_bodies = std::max(load.island_bodies, ++load_counts_[load_islands_.find(b)].bodies);
+    // Points are counted at one body of each pair first, so that the pairs are gone through once.
     for (const PairState& p : cache_.pairs())
     {
         if (!p.resting) continue;
-        std::uint32_t& points = load_counts_[load_islands_.find(bodies.dynamic(p.a.index) ? p.a.index : p.b.index)].points;
-        load.island_points = std::max(load.island_points, points += p.count);
+        if (bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) load_islands_.join(p.a.index, p.b.index);
+        load_counts_[bodies.dynamic(p.a.index) ? p.a.index : p.b.index].points += p.count;
+    }
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+    {
+        const std::uint32_t root = load_islands_.find(b);
+        IslandCount& island = load_counts_[root];
+        if (root != b) island.points += load_counts_[b].points;
+        load.island_points = std::max(load.island_points, island.points);
+        if (bodies.dynamic(b)) ++load.bodies, load.island_bodies = std::max(load.island_bodies, ++island.bodies);
     }
 }
 

@@ -85,10 +85,10 @@ double PositionCorrection::share_of_overlap_left(const PairState& pair, std::spa
 {
     const Bodies& bodies = step_.world.host().bodies;
     double deepest = 0, press = 0;
-    for (std::uint32_t k = 0; k < pair.count; ++k)
+    for (const KnownContact& known : pair.all())
     {
-        deepest = std::max(deepest, pair.contacts[k].rest_depth);
-        press += std::max(0.0, dot(pair.contacts[k].impulse, pair.normal)) / step_.frame.step;
+        deepest = std::max(deepest, known.rest_depth);
+        press += std::max(0.0, dot(known.impulse, pair.normal)) / step_.frame.step;
     }
     const double a = press * (bodies.inverse_mass[pair.a.index] + bodies.inverse_mass[pair.b.index]);
     const double left = deepest - step_.frame.step * std::max(0.05 * std::sqrt(a * deepest), 0.5 * deepest);
@@ -102,9 +102,8 @@ void PositionCorrection::ease_pair(PairState& pair)
 {
     std::vector<Eased>& eased = eased_;
     eased.clear();
-    for (std::uint32_t k = 0; k < pair.count; ++k)
+    for (KnownContact& known : pair.all())
     {
-        KnownContact& known = pair.contacts[k];
         if (!(known.rest_depth > 0)) continue;
         const auto is_it = [&](const FoundContact& f) { return contacts_.is_of_pair(f, pair) && f.contact.feature == known.feature; };
         const auto found = std::find_if(contacts_.found().begin(), contacts_.found().end(), is_it);
@@ -135,11 +134,16 @@ void PositionCorrection::ease_pair(PairState& pair)
 
 void PositionCorrection::ease_overlaps()
 {
+    if (!contacts_.cache().may_have_rest_depth()) return;
+    bool any = false;
     for (PairState& pair : contacts_.cache().pairs())
     {
-        const auto eases = [](const KnownContact& k) { return k.rest_depth > 0; };
-        if (std::any_of(pair.contacts.begin(), pair.contacts.begin() + pair.count, eases)) ease_pair(pair);
+        const std::span<const KnownContact> all = pair.all();
+        if (std::none_of(all.begin(), all.end(), [](const KnownContact& k) { return k.rest_depth > 0; })) continue;
+        any = true;
+        ease_pair(pair);
     }
+    if (!any) contacts_.cache().has_no_rest_depth();
 }
 
 }  // namespace plab::simulation

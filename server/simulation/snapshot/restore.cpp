@@ -1,6 +1,8 @@
 // From a snapshot to a run.
 #include <algorithm>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "simulation/snapshot/compare.h"
 #include "simulation/snapshot/snapshot.h"
@@ -9,6 +11,14 @@ namespace plab::simulation
 {
 namespace
 {
+
+void fill_points(PairState& pair, std::span<const KnownContact> points)
+{
+    pair.contacts.reserve(pair.count, 0);
+    std::copy(points.begin(), points.end(), pair.contacts.begin());
+}
+
+void fill_points(ForcePair& pair, std::span<const ForceContact> points) { std::copy(points.begin(), points.end(), pair.contacts.begin()); }
 
 /// Rebuilds the pairs with their new indices. Pairs whose detector or bodies do not exist any more are left out.
 template <class Pair, class List>
@@ -22,9 +32,9 @@ std::vector<Pair> put_together(const List& list, const world::Renumbering& now)
         Pair pair;
         static_cast<std::decay_t<decltype(head)>&>(pair) = head;
         pair.detector = now.component(head.detector), pair.a = now.ref(head.a), pair.b = now.ref(head.b);
-        std::copy_n(list.points.begin() + static_cast<std::ptrdiff_t>(at), head.count, pair.contacts.begin());
+        fill_points(pair, std::span(list.points).subspan(at, head.count));
         at += head.count;
-        if (pair.detector != kNoIndex && pair.a.valid() && pair.b.valid()) out.push_back(pair);
+        if (pair.detector != kNoIndex && pair.a.valid() && pair.b.valid()) out.push_back(std::move(pair));
     }
     return out;
 }
@@ -78,7 +88,7 @@ bool knows_all_states(const world::Image& image, const world::World& world)
 void restore_contacts(const ContactsImage& image, const world::Renumbering& now, const world::World& world, ContactCache& cache)
 {
     cache.clear();
-    cache.pairs() = put_together<PairState>(image.pairs, now);
+    cache.assign(put_together<PairState>(image.pairs, now), world);
     cache.parked_pairs() = put_together<PairState>(image.parked, now);
     cache.force_pairs() = put_together<ForcePair>(image.force_pairs, now);
     cache.parked_force_pairs() = put_together<ForcePair>(image.parked_force_pairs, now);
@@ -88,7 +98,6 @@ void restore_contacts(const ContactsImage& image, const world::Renumbering& now,
         const auto key = [&](const auto& p) { return std::tuple(world.rank(p.detector), world.rank(p.a), world.rank(p.b)); };
         return key(x) < key(y);
     };
-    std::sort(cache.pairs().begin(), cache.pairs().end(), before);
     std::sort(cache.force_pairs().begin(), cache.force_pairs().end(), before);
 }
 

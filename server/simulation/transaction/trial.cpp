@@ -80,7 +80,7 @@ void Trial::set_up(Stepper& part, const TrialScope& scope) const
     part.contacts().copy(stepper_.contacts());
     if (!scope.has_everything())
     {
-        std::erase_if(part.contacts().pairs(), [&](const PairState& p) { return !concerns(p); });
+        part.contacts().drop_if([&](const PairState& p) { return !concerns(p); });
         std::erase_if(part.contacts().force_pairs(), [&](const ForcePair& p) { return !concerns(p); });
     }
     part.reported() = stepper_.reported();
