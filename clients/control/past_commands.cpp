@@ -208,7 +208,7 @@ Exit await_server(Context& c, int process, const BranchOptions& o)
                                   ", t = " + exact_number(s.time) + " s; process " + std::to_string(process) + ", log " + o.log + "\n");
                 return Exit::Done;
             }
-        if (const Life life = look_at(process); !life.runs)
+        if (const Life life = life_of(process); !life.runs)
             return c.fail(Exit::Failed, "the branch ended with code " + std::to_string(life.code) + "; see " + o.log);
         if (c.stopped()) return Exit::Interrupted;
         if (Clock::now() >= end) return c.fail(Exit::NoServer, "the branch did not appear on the bus; see " + o.log);

@@ -85,14 +85,14 @@ bool FileThread::pass()
     const bool any = source_->write_some(file_);
     const Clock::time_point now = Clock::now();
     file_.tick(now);
-    look_after_disk(now);
+    check_disk(now);
     if (no_room_.messages > 0 && now - noted_at_ >= kPatience) noted_at_ = now, note_gap();
     return any;
 }
 
-void FileThread::look_after_disk(Clock::time_point now)
+void FileThread::check_disk(Clock::time_point now)
 {
-    if (file_.refused() && !is_refusal_told_) is_refusal_told_ = true, notify(Notice::Refused, *file_.refused());
+    if (file_.refused() && !is_refusal_reported_) is_refusal_reported_ = true, notify(Notice::Refused, *file_.refused());
     report();  // before a retry: a failure must be seen even if it occurs only once
     if (const auto& trouble = file_.writer().trouble())
     {

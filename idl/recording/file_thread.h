@@ -83,7 +83,7 @@ private:
     void run();
     bool pass();
     std::chrono::nanoseconds time_to_sleep() const;
-    void look_after_disk(Clock::time_point now);
+    void check_disk(Clock::time_point now);
     void note_gap();
     void report();
     void notify(Notice notice, const Error& why) const;
@@ -95,7 +95,7 @@ private:
     // Used by the writer's thread; by close() once that has ended.
     Clock::time_point tried_{}, noted_at_{};
     std::optional<Error> stalled_;
-    bool is_refusal_told_ = false;
+    bool is_refusal_reported_ = false;
     Losses no_room_;                   ///< not yet noted in the file
     std::uint64_t last_log_time_ = 0;  ///< of the last entry
 

@@ -335,7 +335,7 @@ TEST_CASE("plab-bus ends with plabd, however that ends, and can be started by no
     CHECK(has(alone.errors, "plab-bus is started by plabd"));
 }
 
-TEST_CASE("a signal to the whole process group ends plab-bus only after clients have been told of the end")
+TEST_CASE("a signal to the whole process group ends plab-bus only after clients have been informed of the end")
 {
     Server server(kScene, {"--paused"});
     const link::Session session = server.session();

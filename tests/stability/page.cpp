@@ -92,14 +92,14 @@ std::string page(const std::vector<Case>& cases, const Table& table)
         "beyond all "
         "bounds without a word, a hang or a crash; a defect. `~0` is below 1e-11. *Slow*: the cell's budget of force evaluations was used "
         "up.\n\n"
-        "Events that tell, beside those of the component that failed (`solver.gave_up`, `constraint.contradiction`, `contact.stiff`, "
-        "`script.error` ...):\n\n"
+        "Events that report a failure, beside those of the component that failed (`solver.gave_up`, `constraint.contradiction`, "
+        "`contact.stiff`, `script.error` ...):\n\n"
         "- `state.not_finite`: an object left the range of numbers that a step can compute with (1e150); it is put back to the start of "
         "the step.\n"
         "- `motion.diverged`: energy a hundred times what was there or put in, or a speed that doubles every few steps, on and on. The "
         "motion goes on; its numbers are worth nothing. Energy is counted anew after each request.\n"
-        "- `contact.missed`: a body passed through another between two looks. Told by its centre of mass: a corner that passes is not "
-        "seen.\n"
+        "- `contact.missed`: a body passed through another between two detections. The check follows its centre of mass: a corner that "
+        "passes is not noticed.\n"
         "- `contact.deep`: bodies stay sunk into one another, where impulses or rows should hold them.\n\n"
         "Cells: " +
         summary(cases, table) + ".\n\n";

@@ -170,7 +170,7 @@ void Player::begin(Clock::time_point now)
 
 Result<void> Player::step(Clock::time_point now)
 {
-    if (const auto why = facade_.look_for_rival()) return reason(*why);
+    if (const auto why = facade_.find_rival()) return reason(*why);
     facade_.answer(state_);
     if (!has_begun_ && readers() < wanted_readers_)
     {
@@ -180,7 +180,7 @@ Result<void> Player::step(Clock::time_point now)
     }
     if (!has_begun_) begin(now);
     send_due(now);
-    look_at_readers();
+    serve_new_readers();
     report_status(now, false);
     return {};
 }

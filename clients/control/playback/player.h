@@ -89,7 +89,7 @@ private:
     void take_gone(recording::ByteView bytes);
     void dispose(const std::set<InstanceKey>& places);
     void note_place(recording::Peek& peek, recording::ByteView bytes);
-    void look_at_readers();
+    void serve_new_readers();
     bool has_newcomers(const std::string& topic);
     void report_status(Clock::time_point now, bool at_once);
     Track* track_of(const std::string& topic);

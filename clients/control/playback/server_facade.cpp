@@ -84,7 +84,7 @@ void ServerFacade::refuse(const plab_v2_Request& request, const PlaybackState& s
     ++refused_;
 }
 
-std::optional<std::string> ServerFacade::look_for_rival()
+std::optional<std::string> ServerFacade::find_rival()
 {
     std::optional<std::string> why;
     const auto compare = [&](const plab_v2_Server& other, const dds_sample_info_t& info)

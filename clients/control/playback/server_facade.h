@@ -37,7 +37,7 @@ public:
     /// Refuses the requests that have arrived.
     void answer(const PlaybackState& state);
     /// Why this playback has to end, if it must: the server that started first keeps the name.
-    std::optional<std::string> look_for_rival();
+    std::optional<std::string> find_rival();
     /// Disposes of its instances; waits at most this long.
     void leave(dds_duration_t longest);
 

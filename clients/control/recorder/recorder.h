@@ -107,15 +107,15 @@ private:
 
     void take_all();
     void take(Track& track);
-    void look_at(Arrived& sample);
+    void process(Arrived& sample);
     void keep(const Track& track, const recording::SampleHeader& header, std::uint64_t log_time, Message&& message);
     void put(std::uint64_t log_time, Message&& message);
-    void look_at_gone(const Arrived& sample);
+    void process_gone(const Arrived& sample);
     void note_server(const recording::SampleHeader& header);
     void note_gap(Track& track, const recording::SampleHeader& header, std::uint64_t writer, std::uint64_t log_time);
     bool is_left_out(const Track& track, const recording::SampleHeader& header);
     void write(const std::vector<Disposal>& disposals);
-    void tell_gaps();
+    void report_gaps();
 
     RecorderOptions options_;
     std::int64_t started_ns_ = 0;  ///< of the server that is recorded

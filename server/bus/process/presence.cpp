@@ -41,7 +41,7 @@ Presence::Clock::duration Presence::due_in(Clock::time_point now) const
     return std::max<Clock::duration>(written_ + kHeartbeat - now, Clock::duration::zero());
 }
 
-std::optional<std::string> Presence::look_for_rival()
+std::optional<std::string> Presence::find_rival()
 {
     std::optional<std::string> why;
     const auto compare = [&](const plab_v2_Server& other, const dds_sample_info_t& info)

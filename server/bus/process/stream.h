@@ -26,7 +26,7 @@ public:
         return {};
     }
     /// Checks for readers. True if anything changed since the last check.
-    bool look()
+    bool check_readers()
     {
         const wire::Matched readers = writer_.entity().valid() ? writer_.matched() : wire::Matched{};
         const bool came = readers.ever > seen_ && readers.now > 0, was_wanted = is_wanted_;

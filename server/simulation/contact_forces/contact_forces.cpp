@@ -59,11 +59,11 @@ double ContactForces::positions_of(Ref a, Ref b) const
     return length(bodies.position[a.index]) + length(bodies.position[b.index]);
 }
 
-bool ContactForces::touches(Ref a, Ref b, std::uint32_t group) const { return step_.groups.of(a) == group || step_.groups.of(b) == group; }
+bool ContactForces::involves(Ref a, Ref b, std::uint32_t group) const { return step_.groups.of(a) == group || step_.groups.of(b) == group; }
 
 void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32_t group)
 {
-    const auto here = [&](const auto& x) { return touches(x.a, x.b, group); };
+    const auto here = [&](const auto& x) { return involves(x.a, x.b, group); };
     if (from.pairs.empty() && to.pairs.empty() && from.happenings.empty() && to.happenings.empty()) return;
     std::erase_if(to.pairs, here), std::erase_if(to.happenings, here);
     std::copy_if(from.pairs.begin(), from.pairs.end(), std::back_inserter(to.pairs), here);

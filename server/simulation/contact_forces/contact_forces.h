@@ -133,7 +133,7 @@ private:
 
     // contact_forces.cpp
     void transfer(const ForceState& from, ForceState& to, std::uint32_t group);
-    bool touches(Ref a, Ref b, std::uint32_t group) const;
+    bool involves(Ref a, Ref b, std::uint32_t group) const;
     void make_room();
     void find_near();
     void fill_motion_margins(double h);

@@ -253,7 +253,7 @@ public:
             else if (a == first.end() || b->first < a->first)
                 add(b++->first, "presence", "-", "there");
             else
-                look(a->first, a->second, b->second), ++a, ++b;
+                compare(a->first, a->second, b->second), ++a, ++b;
         }
     }
 
@@ -273,7 +273,7 @@ private:
         const auto at = std::find_if(facts.begin(), facts.end(), [&](const Fact& f) { return f.name == name; });
         return at == facts.end() ? nullptr : &*at;
     }
-    void look(const std::string& component, const Facts& first, const Facts& second)
+    void compare(const std::string& component, const Facts& first, const Facts& second)
     {
         for (const Fact& a : first)
         {

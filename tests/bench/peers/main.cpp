@@ -142,7 +142,7 @@ CaseResult compare(const Case& which, const Options& options)
     std::vector<int> wanted;
     for (const Run& run : runs_of(which, options, result.notes))
     {
-        const Measurement m = measure(which, run, Look::Figures);
+        const Measurement m = measure(which, run, Quantity::Figures);
         result.points.push_back({run, m.outcome, m.why, m.figures, m.cost, m.cost, m.memory, 1});
         costs.push_back({m.cost});
         wanted.push_back(repetitions_for(m, which, options.repeat));
@@ -152,7 +152,7 @@ CaseResult compare(const Case& which, const Options& options)
         for (std::size_t i = 0; i < result.points.size(); ++i)
         {
             if (round >= wanted[i]) continue;
-            const Measurement m = measure(which, result.points[i].run, Look::Cost);
+            const Measurement m = measure(which, result.points[i].run, Quantity::Cost);
             if (m.outcome == Outcome::Done) costs[i].push_back(m.cost);
         }
     for (std::size_t i = 0; i < result.points.size(); ++i)

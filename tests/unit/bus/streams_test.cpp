@@ -123,7 +123,7 @@ TEST_CASE("frames that come too fast are dropped, the oldest first: numbers incr
     CHECK(log.numbers.size() + dropped <= kFrames);
 }
 
-TEST_CASE("a reader that never takes samples delays nobody")
+TEST_CASE("a reader that never takes samples delays no other")
 {
     TestBus bus;
     const link::Session session = bus.session();

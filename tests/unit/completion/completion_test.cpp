@@ -28,7 +28,7 @@ CommandOutline program()
 {
     CommandOutline out;
     out.name = "prog", out.help = "prog: does things", out.footer = "Examples:\n  prog swap a --to B-C\nExit codes: 0 done,\n1 failed.\n";
-    out.options = {option({"-h", "--help"}, "", "help"), option({"-s", "--server"}, "NAME", "whom to ask"),
+    out.options = {option({"-h", "--help"}, "", "help"), option({"-s", "--server"}, "NAME", "which server to ask"),
                    option({"--mode"}, "WORD", "how\nor why")};
     out.options[2].words = {"slow", "fast"};
     CommandOutline swap, play;

@@ -158,7 +158,7 @@ void FakeServer::publish_catalogue()
 void FakeServer::publish_types()
 {
     std::vector<plab_v2_FieldInfo> fields{field("restitution", "", "0.5", "must be from 0 to 1", "how much it bounces")};
-    plab_v2_RoleInfo role{text("between"), text("body"), 2, 4294967295u, text("who collides")};
+    plab_v2_RoleInfo role{text("between"), text("body"), 2, 4294967295u, text("the bodies that collide")};
     for (const char* name : {"Response/Impulse", "Response/None", "State/RigidBody", "State/Shaft", "CDetection/ODE", "Shape/Sphere"})
     {
         plab_v2_Type type{};
