@@ -146,7 +146,7 @@ void SparseBlocks::find_places(std::span<const SparseEdge> edges)
     for (const SparseEdge& e : edges)
     {
         const std::uint32_t at = below_[find(e.a, e.b)].offset;
-        place_.push_back(rank_[e.a] < rank_[e.b] ? Place{at, 1, nodes_[e.a].size} : Place{at, nodes_[e.b].size, 1});
+        place_.push_back(rank_[e.a] < rank_[e.b] ? BlockStrides{at, 1, nodes_[e.a].size} : BlockStrides{at, nodes_[e.b].size, 1});
     }
 }
 
