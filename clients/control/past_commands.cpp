@@ -29,7 +29,7 @@ struct SnapshotSample
 };
 
 /// Waits for a snapshot for which `is_it` holds.
-Result<SnapshotSample> await_snapshot(Context& c, wire::Reader<plab_v2_Snapshot>& reader,
+Result<SnapshotSample> await_snapshot(Context& c, wire::DataReader<plab_v2_Snapshot>& reader,
                                       const std::function<bool(const plab_v2_Snapshot&)>& is_it)
 {
     std::optional<SnapshotSample> out;

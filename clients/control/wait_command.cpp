@@ -31,7 +31,8 @@ struct RunMoment
 };
 
 /// The server's state gives the time once per second and at every change, frames in between.
-std::optional<RunMoment> wait_for_place(Context& c, link::Catalogue& catalogue, const WaitOptions& o, RunMoment place, Clock::time_point end)
+std::optional<RunMoment> wait_for_place(Context& c, link::Catalogue& catalogue, const WaitOptions& o, RunMoment place,
+                                        Clock::time_point end)
 {
     auto frames = c.session().reader<plab_v2_Frame>();
     while (!c.stopped() && Clock::now() < end && !catalogue.server_is_gone())

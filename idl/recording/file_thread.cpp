@@ -28,17 +28,17 @@ WriterOptions writer_options(const AsyncWriterOptions& options)
 
 }  // namespace
 
-Result<Writer> open_writer(const AsyncWriterOptions& options)
+Result<McapWriter> open_writer(const AsyncWriterOptions& options)
 {
-    return Writer::create(options.file, writer_options(options), options.overwrite ? Overwrite::Yes : Overwrite::No);
+    return McapWriter::create(options.file, writer_options(options), options.overwrite ? Overwrite::Yes : Overwrite::No);
 }
 
-Result<Writer> open_writer(std::unique_ptr<Sink> sink, const AsyncWriterOptions& options)
+Result<McapWriter> open_writer(std::unique_ptr<Sink> sink, const AsyncWriterOptions& options)
 {
-    return Writer::open(std::move(sink), writer_options(options));
+    return McapWriter::open(std::move(sink), writer_options(options));
 }
 
-FileThread::FileThread(Writer writer, AsyncWriterOptions options, Source& source)
+FileThread::FileThread(McapWriter writer, AsyncWriterOptions options, Source& source)
     : options_(std::move(options)), source_(&source), file_(std::move(writer))
 {
 }
@@ -126,7 +126,7 @@ void FileThread::note_gap()
 
 void FileThread::report()
 {
-    const Writer& writer = file_.writer();
+    const McapWriter& writer = file_.writer();
     const std::uint64_t messages = writer.messages();
     const std::lock_guard lock(mutex_);
     progress_.messages = messages;

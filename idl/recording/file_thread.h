@@ -45,9 +45,9 @@ struct WriteProgress
 };
 
 /// The file that the options name, with nothing in it yet.
-Result<Writer> open_writer(const AsyncWriterOptions& options);
+Result<McapWriter> open_writer(const AsyncWriterOptions& options);
 /// For tests: any sink.
-Result<Writer> open_writer(std::unique_ptr<Sink> sink, const AsyncWriterOptions& options);
+Result<McapWriter> open_writer(std::unique_ptr<Sink> sink, const AsyncWriterOptions& options);
 
 class FileThread
 {
@@ -65,7 +65,7 @@ public:
     };
 
     /// `source` must outlive close().
-    FileThread(Writer writer, AsyncWriterOptions options, Source& source);
+    FileThread(McapWriter writer, AsyncWriterOptions options, Source& source);
     FileThread(const FileThread&) = delete;
     FileThread& operator=(const FileThread&) = delete;
     ~FileThread() { (void)close(0, 0); }

@@ -45,9 +45,9 @@ struct HitBody
 /// Working memory of one response, kept from call to call to avoid allocations.
 struct Workspace
 {
-    std::vector<std::uint32_t> order;  ///< contacts by pair of bodies, then id
-    std::vector<PairManifold> manifolds;        ///< by id
-    std::vector<ContactPoint> points;  ///< per contact
+    std::vector<std::uint32_t> order;     ///< contacts by pair of bodies, then id
+    std::vector<PairManifold> manifolds;  ///< by id
+    std::vector<ContactPoint> points;     ///< per contact
     std::vector<ConeContact> cones;
     std::vector<Vec3> before;             ///< m/s, contact velocities before an impact
     std::vector<std::uint32_t> together;  ///< manifolds that are hit simultaneously

@@ -155,7 +155,7 @@ private:
     std::vector<std::uint32_t> rank_;
     std::vector<std::uint32_t> offset_;    // of a node's unknowns
     std::vector<std::uint32_t> diagonal_;  // of a node's block in values_
-    std::vector<BlockStrides> place_;             // by edge
+    std::vector<BlockStrides> place_;      // by edge
     std::vector<Pivot> pivots_;            // in order of elimination
     std::vector<Below> below_;             // of each pivot, in order of elimination
     std::vector<std::uint32_t> targets_;

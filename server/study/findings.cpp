@@ -132,7 +132,7 @@ void report_failures(const StudyResult& r, std::vector<std::string>& out)
     {
         if (!p.contacts.known || p.contacts.missed == 0) continue;
         combinations += (missed == 0 ? "" : ", ") + p.combination.label() + " (" + std::to_string(p.contacts.missed) + " of " +
-               std::to_string(p.contacts.expected) + ")";
+                        std::to_string(p.contacts.expected) + ")";
         if (++missed == 4) break;
     }
     if (missed > 0) out.push_back("Impacts of the reference that were missed: " + combinations + ".");

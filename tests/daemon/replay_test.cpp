@@ -180,8 +180,9 @@ TEST_CASE("one bit of a hash in the file, with and without a state beside it")
     const Outcome alone_wrong = verify(edited("bit.mcap", {alone, nullptr}));
     CHECK(alone_wrong.code == 1);
     CHECK_MESSAGE(has(alone_wrong.output, "run 1, step 141: recorded hash "), alone_wrong.output);
-    CHECK_MESSAGE(has(alone_wrong.output, "the recorded frame of step 144 is identical: the difference is in data that frames do not contain"),
-                  alone_wrong.output);
+    CHECK_MESSAGE(
+        has(alone_wrong.output, "the recorded frame of step 144 is identical: the difference is in data that frames do not contain"),
+        alone_wrong.output);
     // And where nothing is recorded behind it.
     const auto last = [&](const std::string& topic, recording::Bytes& data) { return topic != "plab/states" && alone(topic, data); };
     const Outcome blind = verify(edited("bit.mcap", {last, nullptr}));
@@ -246,7 +247,7 @@ TEST_CASE("a recording of a different build is replayed with a warning before, o
     REQUIRE(copy_recording(file, other, {nullptr, [](recording::Pairs& about) { about.erase("build"); }}));
     CHECK(!has(verify(other).errors, "a different build"));
     // What is stated about the build names no place.
-    auto reader = recording::Reader::open(file);
+    auto reader = recording::McapReader::open(file);
     REQUIRE(reader);
     const std::string build = reader->metadata("plab")->values.at("build");
     CHECK(has(build, "compiler "));

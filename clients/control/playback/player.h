@@ -67,7 +67,7 @@ public:
     const std::vector<std::string>& foreign() const { return foreign_; }
 
 private:
-    Player(recording::Reader reader, ServerFacade front, const Pace& pace, const PlaybackOptions& options);
+    Player(recording::McapReader reader, ServerFacade front, const Pace& pace, const PlaybackOptions& options);
     Result<void> join(const PlaybackOptions& options);
     Result<void> make_tracks();
     void show_scene();
@@ -94,7 +94,7 @@ private:
     void report_status(Clock::time_point now, bool at_once);
     Track* track_of(const std::string& topic);
 
-    recording::Reader reader_;
+    recording::McapReader reader_;
     ServerFacade facade_;
     Pace pace_;
     bool loop_, moved_only_ = false;

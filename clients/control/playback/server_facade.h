@@ -56,10 +56,10 @@ private:
     std::string file_;
     recording::Decoder decoder_;
     std::unique_ptr<recording::Sample<plab_v2_Server>> recorded_ = std::make_unique<recording::Sample<plab_v2_Server>>();
-    wire::Writer<plab_v2_Server> status_;
-    wire::Reader<plab_v2_Server> others_;
-    wire::Reader<plab_v2_Request> requests_;
-    wire::Writer<plab_v2_Reply> replies_;
+    wire::DataWriter<plab_v2_Server> status_;
+    wire::DataReader<plab_v2_Server> others_;
+    wire::DataReader<plab_v2_Request> requests_;
+    wire::DataWriter<plab_v2_Reply> replies_;
     std::uint64_t refused_ = 0;
 };
 

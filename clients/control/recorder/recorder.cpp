@@ -96,7 +96,7 @@ Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::str
     return out;
 }
 
-Recorder::Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::Writer writer)
+Recorder::Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::McapWriter writer)
     : options_(options),
       started_ns_(server.started_ns),
       run_(server.run),

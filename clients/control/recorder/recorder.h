@@ -93,7 +93,7 @@ private:
         std::uint64_t last_log_time = 0;
     };
 
-    Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::Writer writer);
+    Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::McapWriter writer);
     Result<void> subscribe(const link::Session& session, const std::vector<const wire::Topic*>& topics);
     /// A sample that has arrived and is not processed yet.
     struct Arrived

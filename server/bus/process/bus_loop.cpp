@@ -119,9 +119,9 @@ Result<void> BusLoop::enter()
     if (!all) return all;
     // Create the writer first: a client that finds the reader and sends a request at once then has a writer to get its reply
     // from.
-    auto replies = wire::Writer<plab_v2_Reply>::make(participant_, publisher_);
+    auto replies = wire::DataWriter<plab_v2_Reply>::make(participant_, publisher_);
     if (!replies) return replies.errors();
-    auto requests = wire::Reader<plab_v2_Request>::make(participant_, subscriber_);
+    auto requests = wire::DataReader<plab_v2_Request>::make(participant_, subscriber_);
     if (!requests) return requests.errors();
     replies_ = replies.take(), requests_ = requests.take();
     return presence_.open(participant_, publisher_, subscriber_);

@@ -80,9 +80,9 @@ private:
     Stream<plab_v2_Snapshot, wire::Snapshot> snapshots_;
     CatalogueWriter catalogue_;
     Presence presence_;
-    wire::Reader<plab_v2_Request> requests_;
+    wire::DataReader<plab_v2_Request> requests_;
     std::deque<RequestMessage> waiting_;  ///< taken from the reader in one pass, and not passed on yet
-    wire::Writer<plab_v2_Reply> replies_;
+    wire::DataWriter<plab_v2_Reply> replies_;
     wire::SampleView<plab_v2_Reply> reply_sample_;
     Outbox outbox_;
     std::array<std::uint64_t, kStreams> ring_dropped_{};

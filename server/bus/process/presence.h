@@ -31,8 +31,8 @@ public:
 
 private:
     wire::Identity identity_;
-    wire::Writer<plab_v2_Server> writer_;
-    wire::Reader<plab_v2_Server> reader_;
+    wire::DataWriter<plab_v2_Server> writer_;
+    wire::DataReader<plab_v2_Server> reader_;
     wire::SampleView<plab_v2_Server> sample_;
     std::optional<wire::Server> status_;
     bool is_new_ = false;

@@ -56,7 +56,7 @@ public:
         {
             const std::uint32_t before = version_.load(std::memory_order_acquire);
             Reading out{activity_.load(relaxed), node_.load(relaxed),       step_.load(relaxed),
-                     since_.load(relaxed),    node_since_.load(relaxed), work_.load(relaxed)};
+                        since_.load(relaxed),    node_since_.load(relaxed), work_.load(relaxed)};
             std::atomic_thread_fence(std::memory_order_acquire);
             if (before % 2 == 0 && version_.load(relaxed) == before) return out;
         }

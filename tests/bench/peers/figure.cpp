@@ -36,7 +36,8 @@ constexpr std::array<EngineStyle, 4> kEngineStyles{
 
 const EngineStyle& style_of(const std::string& engine)
 {
-    const auto found = std::find_if(kEngineStyles.begin(), kEngineStyles.end(), [&engine](const EngineStyle& l) { return engine == l.engine; });
+    const auto found =
+        std::find_if(kEngineStyles.begin(), kEngineStyles.end(), [&engine](const EngineStyle& l) { return engine == l.engine; });
     return found == kEngineStyles.end() ? kEngineStyles.front() : *found;
 }
 

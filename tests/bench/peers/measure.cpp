@@ -174,7 +174,8 @@ void work(const Case& which, const Run& run, Quantity quantity, Outbox& out)
     std::vector<double> figures;
     double cost = 0;
     for (const Scene& scene : which.scenes)
-        if (const auto done = run_scene(which, run, scene, quantity, figures, cost); !done) return out.say("refused " + done.error().text());
+        if (const auto done = run_scene(which, run, scene, quantity, figures, cost); !done)
+            return out.say("refused " + done.error().text());
     for (const double f : figures) out.say("figure", f);
     out.say("cost", cost);
     out.say("memory", resident_megabytes() - born);

@@ -15,7 +15,7 @@ struct Placed
     const BodySpec* spec;
     Vec3 center;
     std::array<Vec3, 3> axes;  ///< of the box, in W
-    double bounding_radius;              ///< m, radius of the ball around it
+    double bounding_radius;    ///< m, radius of the ball around it
 };
 
 Placed place(const BodySpec& spec, const BodyState& s)
@@ -60,7 +60,8 @@ double box_depth(const Placed& a, const Placed& b)
 
 double pair_depth(const Placed& a, const Placed& b)
 {
-    if (a.spec->form == Form::Sphere && b.spec->form == Form::Sphere) return a.bounding_radius + b.bounding_radius - length(b.center - a.center);
+    if (a.spec->form == Form::Sphere && b.spec->form == Form::Sphere)
+        return a.bounding_radius + b.bounding_radius - length(b.center - a.center);
     return box_depth(a, b);
 }
 
@@ -92,13 +93,15 @@ Penetration penetration_of(const Scene& scene, std::span<const BodyState> states
 {
     std::vector<Placed> placed;
     for (std::size_t i = 0; i < states.size(); ++i) placed.push_back(place(scene.bodies[i], states[i]));
-    std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.center.x - a.bounding_radius < b.center.x - b.bounding_radius; });
+    std::sort(placed.begin(), placed.end(),
+              [](const Placed& a, const Placed& b) { return a.center.x - a.bounding_radius < b.center.x - b.bounding_radius; });
     Tally tally;
     for (std::size_t i = 0; i < placed.size(); ++i)
     {
         const Placed& a = placed[i];
         add_half_spaces(scene, a, tally);
-        for (std::size_t j = i + 1; j < placed.size() && placed[j].center.x - placed[j].bounding_radius < a.center.x + a.bounding_radius; ++j)
+        for (std::size_t j = i + 1; j < placed.size() && placed[j].center.x - placed[j].bounding_radius < a.center.x + a.bounding_radius;
+             ++j)
         {
             const double bounding_radius = a.bounding_radius + placed[j].bounding_radius;
             if (length_squared(placed[j].center - a.center) < bounding_radius * bounding_radius) tally.add(pair_depth(a, placed[j]));

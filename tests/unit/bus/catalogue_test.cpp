@@ -79,7 +79,7 @@ public:
     std::size_t dead() const { return dead_; }
 
 private:
-    wire::Reader<T> reader_;
+    wire::DataReader<T> reader_;
     Ids ids_;
     std::size_t disposed_ = 0, dead_ = 0;
 };

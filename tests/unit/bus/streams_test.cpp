@@ -13,7 +13,7 @@ namespace
 struct FrameLog
 {
     std::vector<std::uint64_t> numbers;
-    void take(wire::Reader<plab_v2_Frame>& reader)
+    void take(wire::DataReader<plab_v2_Frame>& reader)
     {
         (void)reader.take(
             [&](const plab_v2_Frame& frame, const dds_sample_info_t& info)

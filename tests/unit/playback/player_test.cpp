@@ -37,8 +37,8 @@ public:
 
 private:
     link::Session session_;
-    wire::Reader<plab_v2_Events> events_;
-    wire::Reader<plab_v2_Frame> frames_;
+    wire::DataReader<plab_v2_Events> events_;
+    wire::DataReader<plab_v2_Frame> frames_;
 };
 
 bool has_no_gap(const std::vector<std::uint64_t>& numbers)
