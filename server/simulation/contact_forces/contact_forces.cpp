@@ -61,6 +61,8 @@ double ContactForces::positions_of(Ref a, Ref b) const
 
 bool ContactForces::involves(Ref a, Ref b, std::uint32_t group) const { return step_.groups.of(a) == group || step_.groups.of(b) == group; }
 
+/// Copies what belongs to the pairs of a group, when the group is rewound or saved. A pair of two groups is copied with either of them;
+/// both are always rewound together, because near pairs join their groups to one scope (close_over).
 void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32_t group)
 {
     const auto here = [&](const auto& x) { return involves(x.a, x.b, group); };
@@ -73,6 +75,8 @@ void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32
     std::sort(to.pairs.begin(), to.pairs.end(), [&](const ForcePair& x, const ForcePair& y) { return key(x) < key(y); });
 }
 
+/// Prepares a step: copies the known contacts, evaluates once how far each body may move, and lists the pairs that may meet. Only these
+/// are detected at the stages of the solver.
 void ContactForces::begin_step()
 {
     live_.pairs = contacts_.cache().force_pairs();

@@ -10,6 +10,9 @@ namespace plab::simulation
 namespace
 {
 
+// Two states are compared by their portraits: a list of named values for each component, in the order of ids, compared bit by bit. Indices
+// of rows do not appear in it, so states of different worlds can be compared, and a difference names its component and field.
+
 /// The kind of a value, by which a Comparison selects.
 enum class Weight : std::uint8_t
 {
