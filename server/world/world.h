@@ -145,7 +145,7 @@ public:
     HostTables& host() { return host_; }
     const HostTables& host() const { return host_; }
     const model::SceneSpec& scene() const { return *scene_; }
-    /// The present scene, for any thread. Whoever holds it can tell by its address whether the scene has changed since.
+    /// The present scene, for any thread. Its holder recognises by its address whether the scene has changed since.
     std::shared_ptr<const model::SceneSpec> lend_scene() const { return scene_.lend(); }
     /// Sets the settings and the file name; to be called before components are added.
     void describe(const model::SceneSettings& settings, const std::string& file);

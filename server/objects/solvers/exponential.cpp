@@ -42,8 +42,8 @@ public:
             nonlinearity = correct();
             out.linear = nonlinearity <= kRoundingOfNonlinearity, out.fine = std::isfinite(nonlinearity);
             if (out.fine && only_linear) out.fine = is_as_good_as_linear(nonlinearity);
-            out.sways = out.fine && !is_steady();
-            out.fine = out.fine && !out.sways;
+            out.unsteady = out.fine && !is_steady();
+            out.fine = out.fine && !out.unsteady;
         }
         if (out.fine && !(nonlinearity <= kSlight && book_by_moments())) book();
         if (out.fine) along(0, 1, m_.work);
@@ -383,7 +383,7 @@ void advance_exponential(const StepContext& context, Row row, ExponentialRows& r
                             counts.too_large
                                 ? "the group has " + std::to_string(FlatSystem(system).size()) +
                                       " numbers (positions and speeds), of which more than max_size = " + std::to_string(most) + " move"
-                            : counts.sways ? "the lateral effect of stiff forces changes within the step"
+                            : counts.unsteady ? "the lateral effect of stiff forces changes within the step"
                                            : "the exponential of this step overflows");
     const Radau5Counts done = advance_by_radau(start.dt, kRadauTolerance, kRadauSubsteps, memory.radau, system);
     if (is_trial(start)) return;
