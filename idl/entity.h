@@ -75,15 +75,15 @@ struct Matched
 };
 
 template <class T>
-class Writer
+class DataWriter
 {
 public:
-    Writer() = default;
-    static Result<Writer> make(const Entity& participant, const Entity& publisher)
+    DataWriter() = default;
+    static Result<DataWriter> make(const Entity& participant, const Entity& publisher)
     {
         auto topic = make_topic<T>(participant);
         if (!topic) return topic.errors();
-        Writer w;
+        DataWriter w;
         w.topic_ = topic.take();
         const dds_entity_t e = dds_create_writer(publisher.get(), w.topic_.get(), qos_of(topic_of<T>().delivery).get(), nullptr);
         if (e < 0) return failed(std::string("cannot write ") + topic_of<T>().name, e);
@@ -110,17 +110,17 @@ private:
 };
 
 template <class T>
-class Reader
+class DataReader
 {
 public:
-    Reader() = default;
+    DataReader() = default;
     /// `filter`: samples for which it returns false are not delivered to this reader.
-    static Result<Reader> make(const Entity& participant, const Entity& subscriber, dds_topic_filter_arg_fn filter = nullptr,
-                               void* argument = nullptr)
+    static Result<DataReader> make(const Entity& participant, const Entity& subscriber, dds_topic_filter_arg_fn filter = nullptr,
+                                   void* argument = nullptr)
     {
         auto topic = make_topic<T>(participant);
         if (!topic) return topic.errors();
-        Reader r;
+        DataReader r;
         r.topic_ = topic.take();
         if (filter != nullptr)
             if (const auto code = dds_set_topic_filter_and_arg(r.topic_.get(), filter, argument); code < 0)

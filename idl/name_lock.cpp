@@ -41,11 +41,11 @@ int holder_of(const Address& address)
 {
     const int fd = make_socket();
     if (fd < 0) return 0;
-    ucred who{};
-    socklen_t length = sizeof who;
-    const bool known = connect(fd, address.get(), address.length) == 0 && getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &length) == 0;
+    ucred peer{};
+    socklen_t length = sizeof peer;
+    const bool known = connect(fd, address.get(), address.length) == 0 && getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &length) == 0;
     (void)close(fd);
-    return known ? who.pid : 0;
+    return known ? peer.pid : 0;
 }
 
 }  // namespace
@@ -53,13 +53,13 @@ int holder_of(const Address& address)
 Result<NameLock> NameLock::take(std::uint32_t domain, const std::string& name)
 {
     // Connections are never accepted. Once the queue is full, further clients do not learn the process id.
-    constexpr int kAskers = 128;
+    constexpr int kQueue = 128;
     NameLock lock(make_socket());
     if (lock.socket_ < 0) return reason(std::string("cannot reserve the server's name: ") + std::strerror(errno));
     const Address address = address_of(domain, name);
     if (bind(lock.socket_, address.get(), address.length) == 0)
     {
-        if (listen(lock.socket_, kAskers) == 0) return lock;
+        if (listen(lock.socket_, kQueue) == 0) return lock;
         return reason(std::string("cannot reserve the server's name: ") + std::strerror(errno));
     }
     if (errno != EADDRINUSE) return reason(std::string("cannot reserve the server's name: ") + std::strerror(errno));

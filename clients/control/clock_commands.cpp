@@ -82,12 +82,12 @@ void add_rate(const Command& app, Context& context)
 
 void add_dt(const Command& app, Context& context)
 {
-    struct Options
+    struct DtOptions
     {
         std::string dt;
         Timing timing;
     };
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<DtOptions>();
     const auto text = [](const link::ServerInfo& s) { return "dt " + exact_number(s.dt) + " s (1/" + number(1 / s.dt) + ")"; };
     const auto json = [](const link::ServerInfo& s) -> Json { return {{"server", s.name}, {"dt", s.dt}}; };
     const Command command = add_command(app, context, {"dt", "set the step length, or print it", "  plabctl dt 1/480\n  plabctl dt\n"},

@@ -96,7 +96,7 @@ Result<int> start_server(const std::vector<std::string>& arguments, const std::s
     return plan.spawn(plabd_with(arguments));
 }
 
-Life look_at(int process)
+Life life_of(int process)
 {
     int status = 0;
     if (waitpid(process, &status, WNOHANG) != process) return {true, 0};

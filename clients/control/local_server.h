@@ -23,7 +23,7 @@ struct Life
     bool runs = false;
     int code = 0;
 };
-Life look_at(int process);
+Life life_of(int process);
 
 /// Runs plabd to its end with this program's own output; returns the exit code, or 128 + the signal that ended it. When `stop`
 /// returns true, it is asked to end, and waited for.

@@ -29,7 +29,7 @@ struct SnapshotSample
 };
 
 /// Waits for a snapshot for which `is_it` holds.
-Result<SnapshotSample> await_snapshot(Context& c, wire::Reader<plab_v2_Snapshot>& reader,
+Result<SnapshotSample> await_snapshot(Context& c, wire::DataReader<plab_v2_Snapshot>& reader,
                                       const std::function<bool(const plab_v2_Snapshot&)>& is_it)
 {
     std::optional<SnapshotSample> out;
@@ -149,11 +149,11 @@ std::string not_a_time(const std::string& text)
 
 void add_rewind(const Command& app, Context& context)
 {
-    struct Options
+    struct RewindOptions
     {
         std::string to, by;
     };
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<RewindOptions>();
     const Command command = add_command(app, context,
                                         {"rewind", "go back to an earlier time of this run; everything later is discarded",
                                          "  plabctl rewind --to 3\n  plabctl rewind --by 0.5\n"},
@@ -169,12 +169,12 @@ void add_rewind(const Command& app, Context& context)
 
 void add_named(const Command& app, Context& context, const CommandText& text)
 {
-    struct Options
+    struct NameOptions
     {
         std::string name;
         Timing timing;
     };
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<NameOptions>();
     const Command command = add_command(app, context, text,
                                         [o, verb = text.name](Context& c) {
                                             return send(c, {{verb, o->name}}, o->timing);
@@ -208,7 +208,7 @@ Exit await_server(Context& c, int process, const BranchOptions& o)
                                   ", t = " + exact_number(s.time) + " s; process " + std::to_string(process) + ", log " + o.log + "\n");
                 return Exit::Done;
             }
-        if (const Life life = look_at(process); !life.runs)
+        if (const Life life = life_of(process); !life.runs)
             return c.fail(Exit::Failed, "the branch ended with code " + std::to_string(life.code) + "; see " + o.log);
         if (c.stopped()) return Exit::Interrupted;
         if (Clock::now() >= end) return c.fail(Exit::NoServer, "the branch did not appear on the bus; see " + o.log);
@@ -255,12 +255,12 @@ void add_branch(const Command& app, Context& context)
 
 void add_shadow(const Command& app, Context& context)
 {
-    struct Options
+    struct ShadowOptions
     {
         std::string id, type;
         std::string seconds = "1";
     };
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ShadowOptions>();
     const auto run = [o](Context& c)
     {
         if (const Exit e = c.connect(); e != Exit::Done) return e;

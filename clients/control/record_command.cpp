@@ -59,7 +59,7 @@ std::string counts_text(const recorder::Progress& p)
 class TroubleWatch
 {
 public:
-    void look(const Context& c, program::Progress& line, const std::optional<Error>& trouble)
+    void update(const Context& c, program::Progress& line, const std::optional<Error>& trouble)
     {
         if (trouble.has_value() == is_reported_) return;
         is_reported_ = trouble.has_value();
@@ -86,7 +86,7 @@ recorder::State follow(const Context& c, recorder::Recorder& recorder, const std
     {
         state = recorder.step(kSlice);
         const recorder::Progress progress = recorder.progress();
-        watch.look(c, line, progress.trouble);
+        watch.update(c, line, progress.trouble);
         if (line.is_due()) line.show(file + ": " + seconds_text(recorder.length()) + ", " + counts_text(progress) + "  (Ctrl-C ends)");
     }
     return state;

@@ -26,12 +26,12 @@ Result<NameValue> split_at_equal(const std::string& text, const char* wanted)
 
 void add_add(const Command& app, Context& context)
 {
-    struct Options
+    struct AddOptions
     {
         std::string file;
         Timing timing;
     };
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<AddOptions>();
     const Command command = add_command(app, context,
                                         {"add", "add components from a blueprint",
                                          "  plabctl add ball.xml\n"
@@ -49,12 +49,12 @@ void add_add(const Command& app, Context& context)
 
 void add_remove(const Command& app, Context& context)
 {
-    struct Options
+    struct RemoveOptions
     {
         std::vector<std::string> ids;
         Timing timing;
     };
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<RemoveOptions>();
     const Command command = add_command(app, context,
                                         {"remove", "remove components; several are removed together or not at all",
                                          "  plabctl remove wind\n  plabctl remove contact red\n"},
@@ -207,13 +207,13 @@ void add_set(const Command& app, Context& context)
 
 void add_push(const Command& app, Context& context)
 {
-    struct Options
+    struct PushOptions
     {
         std::string id, impulse;
         std::optional<std::string> point;
         Timing timing;
     };
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<PushOptions>();
     const Command command = add_command(app, context,
                                         {"push", "apply an impulse to an object",
                                          "  plabctl push red --impulse \"0.01 0 0\"\n"

@@ -23,7 +23,7 @@ struct WaitOptions
     bool reached(std::int64_t at_step, double at_time) const { return (!step || at_step >= *step) && (!time || at_time >= *time); }
 };
 
-struct Place
+struct RunMoment
 {
     std::uint64_t run = 0;
     std::int64_t step = 0;
@@ -31,7 +31,8 @@ struct Place
 };
 
 /// The server's state gives the time once per second and at every change, frames in between.
-std::optional<Place> wait_for_place(Context& c, link::Catalogue& catalogue, const WaitOptions& o, Place place, Clock::time_point end)
+std::optional<RunMoment> wait_for_place(Context& c, link::Catalogue& catalogue, const WaitOptions& o, RunMoment place,
+                                        Clock::time_point end)
 {
     auto frames = c.session().reader<plab_v2_Frame>();
     while (!c.stopped() && Clock::now() < end && !catalogue.server_is_gone())
@@ -66,7 +67,7 @@ Exit run_wait(Context& c, const WaitOptions& o)
     auto catalogue = link::Catalogue::open(c.session());
     if (!catalogue) return c.fail(Exit::Failed, catalogue.errors());
     if (auto fetched = catalogue->fetch(left(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
-    Place place{catalogue->now().server->run, catalogue->now().server->step, catalogue->now().server->time};
+    RunMoment place{catalogue->now().server->run, catalogue->now().server->step, catalogue->now().server->time};
     if (o.step || o.time)
     {
         const auto reached = wait_for_place(c, *catalogue, o, place, end);

@@ -51,8 +51,8 @@ struct Caller::State
     const Session* session = nullptr;
     wire::ClientId id{};
     std::uint64_t last = 0;
-    wire::Reader<plab_v2_Reply> replies;  // its filter reads `id`: State never moves
-    wire::Writer<plab_v2_Request> requests;
+    wire::DataReader<plab_v2_Reply> replies;  // its filter reads `id`: State never moves
+    wire::DataWriter<plab_v2_Request> requests;
 
     static bool is_mine(const void* sample, void* self)
     {

@@ -9,7 +9,7 @@
 namespace plab::link
 {
 
-/// What a client asks for; the caller adds who asks, and a number.
+/// What a client asks for; the caller adds the client and a number.
 struct Request
 {
     std::vector<Operation> operations;

@@ -17,7 +17,7 @@ constexpr Seconds kQuiet(0.05);
 constexpr Seconds kSlice(0.05);
 
 template <class T>
-Result<void> open_reader(const Session& session, bool wanted, wire::Reader<T>& reader)
+Result<void> open_reader(const Session& session, bool wanted, wire::DataReader<T>& reader)
 {
     if (!wanted) return {};
     auto made = session.reader<T>();
@@ -28,7 +28,7 @@ Result<void> open_reader(const Session& session, bool wanted, wire::Reader<T>& r
 
 /// Updates `things` with the reader's samples; true if there were any.
 template <class T, class Thing>
-bool take_into(wire::Reader<T>& reader, std::map<std::string, Thing>& things, char* T::*key)
+bool take_into(wire::DataReader<T>& reader, std::map<std::string, Thing>& things, char* T::*key)
 {
     if (!reader.entity().valid()) return false;
     const dds_return_t taken = reader.take(

@@ -76,13 +76,13 @@ private:
 
     const Session* session_ = nullptr;
     Parts parts_ = 0;
-    wire::Reader<plab_v2_Server> server_;
-    wire::Reader<plab_v2_Scene> scene_;
-    wire::Reader<plab_v2_SceneObject> objects_;
-    wire::Reader<plab_v2_Shape> shapes_;
-    wire::Reader<plab_v2_Interaction> interactions_;
-    wire::Reader<plab_v2_Type> types_;
-    wire::Reader<plab_v2_Metrics> metrics_;
+    wire::DataReader<plab_v2_Server> server_;
+    wire::DataReader<plab_v2_Scene> scene_;
+    wire::DataReader<plab_v2_SceneObject> objects_;
+    wire::DataReader<plab_v2_Shape> shapes_;
+    wire::DataReader<plab_v2_Interaction> interactions_;
+    wire::DataReader<plab_v2_Type> types_;
+    wire::DataReader<plab_v2_Metrics> metrics_;
     wire::Entity waitset_;
     CatalogueContents now_;
     std::map<std::uint32_t, std::string> handles_;

@@ -20,7 +20,7 @@ std::size_t sequence_length(std::string_view text)
     const std::uint8_t first = byte(0);
     if (first < 0x80) return 1;
     if (first >= 0xC2 && first <= 0xDF) return follows(1) ? 2 : 0;
-    // The second byte tells overlong forms, surrogates, and what lies beyond U+10FFFF.
+    // The second byte distinguishes overlong forms, surrogates, and what is beyond U+10FFFF.
     if (first >= 0xE0 && first <= 0xEF)
     {
         if (!follows(1) || !follows(2)) return 0;

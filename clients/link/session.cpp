@@ -94,7 +94,7 @@ std::vector<ServerInfo> Session::servers_in(const std::string& partition, Second
     std::map<std::string, ServerInfo> seen;
     auto subscriber = wire::make_subscriber(participant_, partition);
     if (!subscriber) return {};
-    auto reader = wire::Reader<plab_v2_Server>::make(participant_, *subscriber);
+    auto reader = wire::DataReader<plab_v2_Server>::make(participant_, *subscriber);
     if (!reader) return {};
     do {
         if (!wait_for(reader->entity(), DDS_DATA_AVAILABLE_STATUS, left_until(end))) break;

@@ -48,18 +48,18 @@ public:
     std::vector<ServerInfo> all_servers(Seconds timeout) const { return servers_in("*", timeout, static_cast<std::size_t>(-1)); }
 
     template <class T>
-    Result<wire::Reader<T>> reader(dds_topic_filter_arg_fn filter = nullptr, void* argument = nullptr) const
+    Result<wire::DataReader<T>> reader(dds_topic_filter_arg_fn filter = nullptr, void* argument = nullptr) const
     {
-        return wire::Reader<T>::make(participant_, subscriber_, filter, argument);
+        return wire::DataReader<T>::make(participant_, subscriber_, filter, argument);
     }
     template <class T>
-    Result<wire::Writer<T>> writer() const
+    Result<wire::DataWriter<T>> writer() const
     {
-        return wire::Writer<T>::make(participant_, publisher_);
+        return wire::DataWriter<T>::make(participant_, publisher_);
     }
     /// Waits until the reader has samples (true) or the time is over (false).
     template <class T>
-    bool wait(const wire::Reader<T>& reader, Seconds timeout) const
+    bool wait(const wire::DataReader<T>& reader, Seconds timeout) const
     {
         return wait_for(reader.entity(), DDS_DATA_AVAILABLE_STATUS, timeout);
     }

@@ -10,7 +10,7 @@ namespace
 {
 
 template <class T>
-Result<void> subscribe(const link::Session& session, const wire::Entity& waitset, wire::Reader<T>& out)
+Result<void> subscribe(const link::Session& session, const wire::Entity& waitset, wire::DataReader<T>& out)
 {
     auto reader = session.reader<T>();
     if (!reader) return reader.errors();

@@ -42,10 +42,10 @@ private:
     LoggerOptions options_;
     Output output_;
     std::unique_ptr<Lines> lines_;
-    wire::Reader<plab_v2_Server> server_;
-    wire::Reader<plab_v2_Events> events_;
-    wire::Reader<plab_v2_Collisions> collisions_;
-    wire::Reader<plab_v2_Metrics> metrics_;
+    wire::DataReader<plab_v2_Server> server_;
+    wire::DataReader<plab_v2_Events> events_;
+    wire::DataReader<plab_v2_Collisions> collisions_;
+    wire::DataReader<plab_v2_Metrics> metrics_;
     wire::Entity waitset_;
 
     link::Sequence event_numbers_, collision_numbers_;

@@ -17,7 +17,7 @@ public:
 
     /// Waits for the next moment. Empty: end() gives the reason.
     std::optional<Moment> next();
-    /// The state in the catalogue, for a paused server that has sent no state yet; `stale` tells whether objects may have moved
+    /// The state in the catalogue, for a paused server that has sent no state yet; `stale`: objects may have moved
     /// since. Empty: it is not paused, or has sent states.
     std::optional<Moment> standing_still(bool& stale) const;
 

@@ -38,7 +38,7 @@ std::optional<link::Metrics> metrics_of(recording::ByteView bytes)
 }
 
 /// The last ones until `time`, or the first ones; empty: there are none.
-std::optional<link::Metrics> metrics_at(const recording::Reader& reader, std::uint64_t time)
+std::optional<link::Metrics> metrics_at(const recording::McapReader& reader, std::uint64_t time)
 {
     const auto last = reader.last_at(name_of<plab_v2_Metrics>(), time);
     if (last && *last) return metrics_of((*last)->data);

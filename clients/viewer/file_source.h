@@ -29,7 +29,7 @@ private:
     /// A message of the catalogue that was read, but is not due yet.
     using Ahead = std::optional<recording::Found>;
 
-    FileSource(recording::Reader reader) : reader_(std::move(reader)) {}
+    FileSource(recording::McapReader reader) : reader_(std::move(reader)) {}
     void start(std::optional<double> from);
     std::uint64_t frame_that_leads_to(std::uint64_t first, std::uint64_t ahead) const;
     bool decode_frame(const recording::Found& found);
@@ -42,7 +42,7 @@ private:
     void show(std::uint64_t time);
     std::optional<Moment> only_catalogue();
 
-    recording::Reader reader_;
+    recording::McapReader reader_;
     std::optional<recording::Cursor> frames_, catalogue_;
     Ahead ahead_;
     std::map<std::string, std::unique_ptr<recording::Peek>> peeks_;

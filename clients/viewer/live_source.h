@@ -32,7 +32,7 @@ private:
     void hand_over();
 
     const link::Session& session_;
-    wire::Reader<plab_v2_Frame> frames_;
+    wire::DataReader<plab_v2_Frame> frames_;
     std::optional<link::Catalogue> catalogue_;
     MomentBuffer moments_;
 

@@ -25,7 +25,7 @@ public:
     using Write = std::function<std::uint64_t(TopicFile& file, Entry& entry)>;
 
     /// What `write` uses must outlive close().
-    AsyncWriter(Writer writer, const AsyncWriterOptions& options, Write write)
+    AsyncWriter(McapWriter writer, const AsyncWriterOptions& options, Write write)
         : write_(std::move(write)),
           most_waiting_bytes_(options.most_waiting_bytes),
           queue_(options.most_waiting),

@@ -14,7 +14,7 @@ constexpr std::size_t kMostOpen = 256;
 
 }  // namespace
 
-Cursor::Cursor(const Reader& reader, const Query& query)
+Cursor::Cursor(const McapReader& reader, const Query& query)
     : reader_(&reader),
       from_(query.from),
       to_(query.to),

@@ -28,17 +28,17 @@ WriterOptions writer_options(const AsyncWriterOptions& options)
 
 }  // namespace
 
-Result<Writer> open_writer(const AsyncWriterOptions& options)
+Result<McapWriter> open_writer(const AsyncWriterOptions& options)
 {
-    return Writer::create(options.file, writer_options(options), options.overwrite ? Overwrite::Yes : Overwrite::No);
+    return McapWriter::create(options.file, writer_options(options), options.overwrite ? Overwrite::Yes : Overwrite::No);
 }
 
-Result<Writer> open_writer(std::unique_ptr<Sink> sink, const AsyncWriterOptions& options)
+Result<McapWriter> open_writer(std::unique_ptr<Sink> sink, const AsyncWriterOptions& options)
 {
-    return Writer::open(std::move(sink), writer_options(options));
+    return McapWriter::open(std::move(sink), writer_options(options));
 }
 
-FileThread::FileThread(Writer writer, AsyncWriterOptions options, Source& source)
+FileThread::FileThread(McapWriter writer, AsyncWriterOptions options, Source& source)
     : options_(std::move(options)), source_(&source), file_(std::move(writer))
 {
 }
@@ -85,14 +85,14 @@ bool FileThread::pass()
     const bool any = source_->write_some(file_);
     const Clock::time_point now = Clock::now();
     file_.tick(now);
-    look_after_disk(now);
+    check_disk(now);
     if (no_room_.messages > 0 && now - noted_at_ >= kPatience) noted_at_ = now, note_gap();
     return any;
 }
 
-void FileThread::look_after_disk(Clock::time_point now)
+void FileThread::check_disk(Clock::time_point now)
 {
-    if (file_.refused() && !is_refusal_told_) is_refusal_told_ = true, notify(Notice::Refused, *file_.refused());
+    if (file_.refused() && !is_refusal_reported_) is_refusal_reported_ = true, notify(Notice::Refused, *file_.refused());
     report();  // before a retry: a failure must be seen even if it occurs only once
     if (const auto& trouble = file_.writer().trouble())
     {
@@ -126,7 +126,7 @@ void FileThread::note_gap()
 
 void FileThread::report()
 {
-    const Writer& writer = file_.writer();
+    const McapWriter& writer = file_.writer();
     const std::uint64_t messages = writer.messages();
     const std::lock_guard lock(mutex_);
     progress_.messages = messages;

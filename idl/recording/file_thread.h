@@ -45,9 +45,9 @@ struct WriteProgress
 };
 
 /// The file that the options name, with nothing in it yet.
-Result<Writer> open_writer(const AsyncWriterOptions& options);
+Result<McapWriter> open_writer(const AsyncWriterOptions& options);
 /// For tests: any sink.
-Result<Writer> open_writer(std::unique_ptr<Sink> sink, const AsyncWriterOptions& options);
+Result<McapWriter> open_writer(std::unique_ptr<Sink> sink, const AsyncWriterOptions& options);
 
 class FileThread
 {
@@ -65,7 +65,7 @@ public:
     };
 
     /// `source` must outlive close().
-    FileThread(Writer writer, AsyncWriterOptions options, Source& source);
+    FileThread(McapWriter writer, AsyncWriterOptions options, Source& source);
     FileThread(const FileThread&) = delete;
     FileThread& operator=(const FileThread&) = delete;
     ~FileThread() { (void)close(0, 0); }
@@ -83,7 +83,7 @@ private:
     void run();
     bool pass();
     std::chrono::nanoseconds time_to_sleep() const;
-    void look_after_disk(Clock::time_point now);
+    void check_disk(Clock::time_point now);
     void note_gap();
     void report();
     void notify(Notice notice, const Error& why) const;
@@ -95,7 +95,7 @@ private:
     // Used by the writer's thread; by close() once that has ended.
     Clock::time_point tried_{}, noted_at_{};
     std::optional<Error> stalled_;
-    bool is_refusal_told_ = false;
+    bool is_refusal_reported_ = false;
     Losses no_room_;                   ///< not yet noted in the file
     std::uint64_t last_log_time_ = 0;  ///< of the last entry
 

@@ -64,13 +64,13 @@ Metadata about(const Origin& o)
     return out;
 }
 
-Result<Reader> open_recording(const std::string& path, const Watch& watch)
+Result<McapReader> open_recording(const std::string& path, const Watch& watch)
 {
     auto file = FileSource::open(path);
     if (!file) return file.errors();
     std::unique_ptr<const Source> source = std::make_unique<FileSource>(file.take());
     if (watch) source = std::make_unique<WatchedSource>(std::move(source), watch);
-    auto reader = Reader::open(std::move(source));
+    auto reader = McapReader::open(std::move(source));
     if (!reader) return reader;
     // Missing or damaged: the rest of the file may still be intact.
     const auto about = reader->metadata(kAbout);

@@ -28,8 +28,8 @@ struct Origin
 };
 Metadata about(const Origin& origin);
 
-/// Like Reader::open(), but refuses files of a newer, an outdated or an unknown format. A file without our metadata (made by
+/// Like McapReader::open(), but refuses files of a newer, an outdated or an unknown format. A file without our metadata (made by
 /// another tool, or its beginning was lost) is accepted.
-Result<Reader> open_recording(const std::string& path, const Watch& watch = {});
+Result<McapReader> open_recording(const std::string& path, const Watch& watch = {});
 
 }  // namespace plab::recording

@@ -9,14 +9,14 @@
 namespace plab::recording
 {
 
-Result<Reader> Reader::open(const std::string& path, const Limits& limits)
+Result<McapReader> McapReader::open(const std::string& path, const Limits& limits)
 {
     auto source = FileSource::open(path);
     if (!source) return source.errors();
     return open(std::make_unique<FileSource>(source.take()), limits);
 }
 
-Result<Reader> Reader::open(std::unique_ptr<const Source> source, const Limits& limits)
+Result<McapReader> McapReader::open(std::unique_ptr<const Source> source, const Limits& limits)
 {
     auto index = read_index(*source, limits);
     if (!index)
@@ -25,22 +25,22 @@ Result<Reader> Reader::open(std::unique_ptr<const Source> source, const Limits& 
         error.where.file = source->name();
         return error;
     }
-    return Reader(std::move(source), index.take(), limits);
+    return McapReader(std::move(source), index.take(), limits);
 }
 
-Error Reader::with_name(Error error) const
+Error McapReader::with_name(Error error) const
 {
     error.where.file = source_->name();
     return error;
 }
 
-const Schema* Reader::schema_of(const Channel& channel) const
+const Schema* McapReader::schema_of(const Channel& channel) const
 {
     const auto found = index_.declarations.schemas.find(channel.schema_id);
     return found == index_.declarations.schemas.end() ? nullptr : &found->second;
 }
 
-std::set<ChannelId> Reader::channels_of(const std::vector<std::string>& topics) const
+std::set<ChannelId> McapReader::channels_of(const std::vector<std::string>& topics) const
 {
     std::set<ChannelId> out;
     for (const auto& [id, channel] : channels())
@@ -48,13 +48,13 @@ std::set<ChannelId> Reader::channels_of(const std::vector<std::string>& topics) 
     return out;
 }
 
-std::size_t Reader::first_chunk_at(std::uint64_t time) const
+std::size_t McapReader::first_chunk_at(std::uint64_t time) const
 {
     const auto& latest = index_.latest_before;
     return static_cast<std::size_t>(std::lower_bound(latest.begin(), latest.end(), time) - latest.begin());
 }
 
-Result<std::optional<Kept>> Reader::last_at(const std::string& topic, std::uint64_t time) const
+Result<std::optional<Kept>> McapReader::last_at(const std::string& topic, std::uint64_t time) const
 {
     const std::set<ChannelId> wanted = channels_of({topic});
     if (wanted.empty()) return std::optional<Kept>();
@@ -85,7 +85,7 @@ Result<std::optional<Kept>> Reader::last_at(const std::string& topic, std::uint6
     return best;
 }
 
-Result<Bytes> Reader::record_at(std::uint64_t offset, std::uint64_t length, Opcode opcode, std::uint64_t most) const
+Result<Bytes> McapReader::record_at(std::uint64_t offset, std::uint64_t length, Opcode opcode, std::uint64_t most) const
 {
     auto size = source_->size();
     if (!size) return size.errors();
@@ -101,7 +101,7 @@ Result<Bytes> Reader::record_at(std::uint64_t offset, std::uint64_t length, Opco
     return record;
 }
 
-Result<Reader::AttachmentData> Reader::attachment(const AttachmentIndex& place) const
+Result<McapReader::AttachmentData> McapReader::attachment(const AttachmentIndex& place) const
 {
     auto record = record_at(place.offset, place.length, Opcode::Attachment, limits_.attachment_bytes);
     if (!record) return record.errors();
@@ -112,7 +112,7 @@ Result<Reader::AttachmentData> Reader::attachment(const AttachmentIndex& place) 
     return out;
 }
 
-Result<Reader::AttachmentData> Reader::attachment(const std::string& name) const
+Result<McapReader::AttachmentData> McapReader::attachment(const std::string& name) const
 {
     const auto has_name = [&](const AttachmentIndex& place) { return place.name == name; };
     const auto found = std::find_if(index_.attachments.begin(), index_.attachments.end(), has_name);
@@ -120,7 +120,7 @@ Result<Reader::AttachmentData> Reader::attachment(const std::string& name) const
     return attachment(*found);
 }
 
-Result<Metadata> Reader::metadata(const MetadataIndex& place) const
+Result<Metadata> McapReader::metadata(const MetadataIndex& place) const
 {
     auto record = record_at(place.offset, place.length, Opcode::Metadata, limits_.record_bytes);
     if (!record) return record.errors();
@@ -130,7 +130,7 @@ Result<Metadata> Reader::metadata(const MetadataIndex& place) const
     return *parsed;
 }
 
-Result<Metadata> Reader::metadata(const std::string& name) const
+Result<Metadata> McapReader::metadata(const std::string& name) const
 {
     const auto has_name = [&](const MetadataIndex& place) { return place.name == name; };
     const auto found = std::find_if(index_.metadata.begin(), index_.metadata.end(), has_name);

@@ -1,6 +1,6 @@
 /// Reads a recording: what is in it, its messages in the order of their time, and what stood at a certain time.
 ///
-///   auto reader = Reader::open("run.mcap");
+///   auto reader = McapReader::open("run.mcap");
 ///   auto messages = reader->messages({.topics = {"plab/states"}, .from = 3'000'000'000});
 ///   for (auto next = messages.next(); next && *next; next = messages.next()) use(**next);
 ///
@@ -46,7 +46,7 @@ struct Kept
     Message message;  ///< its data are those above
 };
 
-class Reader;
+class McapReader;
 
 /// Iterates over messages by log_time; messages of equal time are in file order. The reader must not move. Each thread needs a
 /// cursor of its own.
@@ -58,8 +58,8 @@ public:
     Result<std::optional<Found>> next();
 
 private:
-    friend class Reader;
-    Cursor(const Reader& reader, const Query& query);
+    friend class McapReader;
+    Cursor(const McapReader& reader, const Query& query);
 
     struct OpenChunk
     {
@@ -74,7 +74,7 @@ private:
     std::size_t earliest() const;
     bool is_full() const;
 
-    const Reader* reader_;
+    const McapReader* reader_;
     std::uint64_t from_;
     std::uint64_t to_;
     std::set<ChannelId> channels_;
@@ -85,11 +85,11 @@ private:
     std::size_t last_ = 0;                           ///< index in open_: origin of the message that was returned last
 };
 
-class Reader
+class McapReader
 {
 public:
-    static Result<Reader> open(const std::string& path, const Limits& limits = {});
-    static Result<Reader> open(std::unique_ptr<const Source> source, const Limits& limits = {});
+    static Result<McapReader> open(const std::string& path, const Limits& limits = {});
+    static Result<McapReader> open(std::unique_ptr<const Source> source, const Limits& limits = {});
 
     const FileIndex& index() const { return index_; }
     const std::map<ChannelId, Channel>& channels() const { return index_.declarations.channels; }
@@ -117,7 +117,7 @@ public:
 
 private:
     friend class Cursor;
-    Reader(std::unique_ptr<const Source> source, FileIndex index, const Limits& limits)
+    McapReader(std::unique_ptr<const Source> source, FileIndex index, const Limits& limits)
         : source_(std::move(source)), index_(std::move(index)), limits_(limits)
     {
     }

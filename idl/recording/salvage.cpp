@@ -36,7 +36,7 @@ public:
         auto size = source_->size();
         if (!size) return size.errors();
         data_end_ = *size;
-        if (auto done = look_at_summary(); !done) return done.errors();
+        if (auto done = find_end_of_data(); !done) return done.errors();
         auto begin = begin_of_data();
         if (!begin) return begin.errors();
         std::uint64_t at = *begin;
@@ -67,7 +67,7 @@ private:
     }
 
     /// An intact summary gives the end of the data, even if the record that marks it is damaged.
-    Result<void> look_at_summary()
+    Result<void> find_end_of_data()
     {
         auto footer = read_footer(*source_);
         if (!footer) return footer.errors();

@@ -66,7 +66,7 @@ private:
 /// Called at each read with the fraction of the source before it, from 0 to 1; return false to stop.
 using Watch = std::function<bool(double share)>;
 
-/// A source that reports the progress of reading, and can be told to stop: from then on each read is an error. This makes every
+/// A source that reports the progress of reading, and can be stopped: from then on each read is an error. This makes every
 /// reader of recordings, with or without an index, interruptible.
 class WatchedSource final : public Source
 {

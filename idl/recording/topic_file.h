@@ -20,11 +20,11 @@ struct Stamp
     Clock::time_point now{};
 };
 
-/// Used by one thread. Trouble with the disk is Writer's; what the file itself cannot take is refused().
+/// Used by one thread. Trouble with the disk is McapWriter's; what the file itself cannot take is refused().
 class TopicFile
 {
 public:
-    explicit TopicFile(Writer writer) : writer_(std::move(writer)) {}
+    explicit TopicFile(McapWriter writer) : writer_(std::move(writer)) {}
 
     void write(const wire::Topic& topic, ByteView sample, const Stamp& stamp);
     /// Stored as soon as the disk accepts it.
@@ -39,7 +39,7 @@ public:
     void retry();
     /// Completes the file. An error: not everything is in it.
     Result<void> close();
-    const Writer& writer() const { return writer_; }
+    const McapWriter& writer() const { return writer_; }
 
 private:
     struct Enclosure
@@ -51,7 +51,7 @@ private:
     Result<ChannelId> declare(const wire::Topic& topic);
     void attach_pending();
 
-    Writer writer_;
+    McapWriter writer_;
     std::map<const wire::Topic*, ChannelId> channels_;  ///< 0: refused
     std::deque<Enclosure> pending_;
     std::optional<Error> refused_;

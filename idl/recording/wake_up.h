@@ -21,7 +21,7 @@ public:
     /// Never waits. Costs a system call only for the first ring since the sleeper woke.
     void ring()
     {
-        if (!is_rung_.exchange(true, std::memory_order_acq_rel)) (void)sem_post(&semaphore_);
+        if (!is_signalled_.exchange(true, std::memory_order_acq_rel)) (void)sem_post(&semaphore_);
     }
     /// Sleeps until a ring, or for this time. Whatever was written before the ring is visible to what follows the return.
     void sleep(std::chrono::nanoseconds longest)
@@ -32,12 +32,12 @@ public:
         end.tv_sec += static_cast<std::time_t>(ns / 1'000'000'000), end.tv_nsec = static_cast<long>(ns % 1'000'000'000);
         // An interrupted wait only makes one early pass, which is harmless.
         (void)sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &end);
-        (void)is_rung_.exchange(false, std::memory_order_acq_rel);
+        (void)is_signalled_.exchange(false, std::memory_order_acq_rel);
     }
 
 private:
     sem_t semaphore_{};
-    std::atomic<bool> is_rung_{false};
+    std::atomic<bool> is_signalled_{false};
 };
 
 }  // namespace plab::recording

@@ -33,31 +33,31 @@ void Losses::add(const Losses& more)
     bytes += more.bytes;
 }
 
-Result<Writer> Writer::open(std::unique_ptr<Sink> sink, WriterOptions options)
+Result<McapWriter> McapWriter::open(std::unique_ptr<Sink> sink, WriterOptions options)
 {
     auto container = Container::begin(std::move(sink), {options.profile, options.library}, options.most_index_memory);
     if (!container) return container.errors();
-    return Writer(container.take(), std::move(options));
+    return McapWriter(container.take(), std::move(options));
 }
 
-Result<Writer> Writer::create(const std::string& path, WriterOptions options, Overwrite overwrite)
+Result<McapWriter> McapWriter::create(const std::string& path, WriterOptions options, Overwrite overwrite)
 {
     auto sink = FileSink::open(path, overwrite);
     if (!sink) return sink.errors();
     return open(std::make_unique<FileSink>(sink.take()), std::move(options));
 }
 
-Writer::Writer(Container container, WriterOptions options)
+McapWriter::McapWriter(Container container, WriterOptions options)
     : options_(std::move(options)), container_(std::move(container)), compressor_(options_.compression, options_.level)
 {
 }
 
-Writer::~Writer()
+McapWriter::~McapWriter()
 {
     if (container_.is_open()) (void)close();
 }
 
-Result<std::uint16_t> Writer::add_schema(Schema schema)
+Result<std::uint16_t> McapWriter::add_schema(Schema schema)
 {
     if (schemas_.size() >= kMostIds) return reason("more schemas than a file can hold");
     schema.id = static_cast<std::uint16_t>(schemas_.size() + 1);
@@ -66,7 +66,7 @@ Result<std::uint16_t> Writer::add_schema(Schema schema)
     return schemas_.back().id;
 }
 
-Result<ChannelId> Writer::add_channel(Channel channel)
+Result<ChannelId> McapWriter::add_channel(Channel channel)
 {
     if (channels_.size() >= kMostIds) return reason("more channels than a file can hold");
     if (channel.schema_id > schemas_.size())
@@ -77,14 +77,14 @@ Result<ChannelId> Writer::add_channel(Channel channel)
     return channels_.back().channel.id;
 }
 
-void Writer::forget_declarations()
+void McapWriter::forget_declarations()
 {
     for (Known& known : channels_) known.is_declared = false;
 }
 
 /// Each chunk is preceded by the declarations that its messages refer to. They are repeated after a while: see
 /// WriterOptions::declare_time.
-void Writer::declare(ChannelId id, Clock::time_point now)
+void McapWriter::declare(ChannelId id, Clock::time_point now)
 {
     if (now - declared_since_ > options_.declare_time)
     {
@@ -98,7 +98,7 @@ void Writer::declare(ChannelId id, Clock::time_point now)
     known.is_declared = known.was_declared = true;
 }
 
-bool Writer::write(const Message& message, Clock::time_point now)
+bool McapWriter::write(const Message& message, Clock::time_point now)
 {
     now_ = now;
     const bool is_known = message.channel > 0 && message.channel <= channels_.size();
@@ -118,26 +118,26 @@ bool Writer::write(const Message& message, Clock::time_point now)
     return true;
 }
 
-void Writer::drop(const Losses& losses)
+void McapWriter::drop(const Losses& losses)
 {
     dropped_.add(losses);
     gap_.add(losses);
 }
 
-void Writer::fail(const Error& error)
+void McapWriter::fail(const Error& error)
 {
     trouble_ = error;
     unsynced_since_.reset();
 }
 
-Result<void> Writer::note(Result<void> done)
+Result<void> McapWriter::note(Result<void> done)
 {
     if (!done) fail(done.error());
     if (done && !unsynced_since_) unsynced_since_ = now_;
     return done;
 }
 
-void Writer::flush()
+void McapWriter::flush()
 {
     if (chunk_.empty()) return;
     if (!trouble_)
@@ -151,7 +151,7 @@ void Writer::flush()
     if (!trouble_) (void)note_gap("larger than a message may be, or without a channel");
 }
 
-void Writer::drop_chunk()
+void McapWriter::drop_chunk()
 {
     const ChunkContents& contents = chunk_.contents();
     drop({contents.total, chunk_.size(), contents.start_time, contents.end_time});
@@ -159,7 +159,7 @@ void Writer::drop_chunk()
         if (known.is_declared) known.is_declared = known.was_declared = false;
 }
 
-Result<void> Writer::note_gap(const std::string& why)
+Result<void> McapWriter::note_gap(const std::string& why)
 {
     if (gap_.messages == 0) return {};
     auto done = note(container_.put(gap_record(gap_, why)));
@@ -167,19 +167,19 @@ Result<void> Writer::note_gap(const std::string& why)
     return done;
 }
 
-Result<void> Writer::attach(const Attachment& attachment)
+Result<void> McapWriter::attach(const Attachment& attachment)
 {
     if (trouble_) return *trouble_;
     return note(container_.put(attachment));
 }
 
-Result<void> Writer::add_metadata(Metadata metadata)
+Result<void> McapWriter::add_metadata(Metadata metadata)
 {
     if (trouble_) return *trouble_;
     return note(container_.put(sealed(std::move(metadata))));
 }
 
-Result<void> Writer::add_gap(const Losses& losses, const std::string& why)
+Result<void> McapWriter::add_gap(const Losses& losses, const std::string& why)
 {
     Result<void> done;
     if (!trouble_) done = note(container_.put(gap_record(losses, why)));
@@ -187,20 +187,20 @@ Result<void> Writer::add_gap(const Losses& losses, const std::string& why)
     return done;
 }
 
-void Writer::tick(Clock::time_point now)
+void McapWriter::tick(Clock::time_point now)
 {
     now_ = now;
     if (!chunk_.empty() && now - chunk_since_ >= options_.chunk_time) flush();
     if (unsynced_since_ && options_.sync_time.count() > 0 && now - *unsynced_since_ >= options_.sync_time) sync();
 }
 
-void Writer::sync()
+void McapWriter::sync()
 {
     unsynced_since_.reset();
     if (auto done = container_.sync(); !done) fail(done.error());
 }
 
-std::optional<Clock::time_point> Writer::due() const
+std::optional<Clock::time_point> McapWriter::due() const
 {
     std::optional<Clock::time_point> first;
     if (!chunk_.empty()) first = chunk_since_ + options_.chunk_time;
@@ -212,7 +212,7 @@ std::optional<Clock::time_point> Writer::due() const
     return first;
 }
 
-Result<void> Writer::retry()
+Result<void> McapWriter::retry()
 {
     if (!trouble_) return {};
     if (auto done = container_.repair(); !done) return note(done);
@@ -223,13 +223,13 @@ Result<void> Writer::retry()
 }
 
 /// A channel without messages is in no chunk yet, but the summary may only repeat what is in the data.
-void Writer::declare_rest()
+void McapWriter::declare_rest()
 {
     for (Known& known : channels_)
         if (!known.was_declared) declare(known.channel.id, now_);
 }
 
-Result<void> Writer::close()
+Result<void> McapWriter::close()
 {
     if (!container_.is_open()) return reason("the recording is already closed");
     auto tried = retry();

@@ -48,15 +48,15 @@ struct Losses
     void add(const Losses& more);
 };
 
-class Writer
+class McapWriter
 {
 public:
-    static Result<Writer> open(std::unique_ptr<Sink> sink, WriterOptions options);
-    static Result<Writer> create(const std::string& path, WriterOptions options = {}, Overwrite overwrite = Overwrite::No);
-    Writer(Writer&&) noexcept = default;
-    Writer& operator=(Writer&&) = delete;
+    static Result<McapWriter> open(std::unique_ptr<Sink> sink, WriterOptions options);
+    static Result<McapWriter> create(const std::string& path, WriterOptions options = {}, Overwrite overwrite = Overwrite::No);
+    McapWriter(McapWriter&&) noexcept = default;
+    McapWriter& operator=(McapWriter&&) = delete;
     /// Closes the file if necessary; call close() to learn whether that succeeded.
-    ~Writer();
+    ~McapWriter();
 
     /// Ids count from 1. The id of `schema` is ignored.
     Result<std::uint16_t> add_schema(Schema schema);
@@ -96,7 +96,7 @@ public:
     std::uint64_t file_size() const { return container_.size(); }
 
 private:
-    Writer(Container container, WriterOptions options);
+    McapWriter(Container container, WriterOptions options);
     void declare(ChannelId channel, Clock::time_point now);
     void declare_rest();
     void forget_declarations();

@@ -32,9 +32,9 @@ struct Best
     double gap = -HUGE_VAL;
     bool backwards = false;  ///< whether it points from B to A
 
-    void offer(int which, double along, double reach, double preference)
+    void offer(int which, double along, double radii, double preference)
     {
-        const double candidate = std::fabs(along) - reach;
+        const double candidate = std::fabs(along) - radii;
         if (candidate > gap + preference) axis = which, gap = candidate, backwards = along < 0;
     }
 };
@@ -57,12 +57,12 @@ void try_edge(const Boxes& x, std::size_t i, std::size_t j, double preference, B
     const double u = -x.C[i2][j], v = x.C[i1][j];  // components along e_i1, e_i2
     const double square = u * u + v * v;
     const double along = x.t[i1] * u + x.t[i2] * v;
-    const double reach = x.a[i1] * x.F[i2][j] + x.a[i2] * x.F[i1][j] + x.b[j1] * x.F[i][j2] + x.b[j2] * x.F[i][j1];
+    const double radii = x.a[i1] * x.F[i2][j] + x.a[i2] * x.F[i1][j] + x.b[j1] * x.F[i][j2] + x.b[j2] * x.F[i][j1];
     // Most axes can be rejected before the square root is taken.
-    const double rough = std::fabs(along) - reach;
+    const double rough = std::fabs(along) - radii;
     if (square < kParallel * kParallel || (rough < 0 && best.gap < 0 && rough * rough > best.gap * best.gap * square)) return;
     const double sine = std::sqrt(square);
-    best.offer(static_cast<int>(6 + 3 * i + j), along / sine, reach / sine, preference / sine);
+    best.offer(static_cast<int>(6 + 3 * i + j), along / sine, radii / sine, preference / sine);
 }
 
 Boxes boxes_of(const Vec3& half_a, const Mat3& R_a, const Vec3& half_b, const Mat3& R_b, const Vec3& between)

@@ -189,8 +189,8 @@ Vec3 Polytope::grow(double tolerance)
             break;
         }
         const PointIndex eye = add_point(n);
-        const double reach = dot(n, points_[eye]);
-        if (reach < least) least = reach, best = n;
+        const double support = dot(n, points_[eye]);
+        if (support < least) least = support, best = n;
         if (least - faces_[f].offset <= std::max(tolerance * std::fabs(least), 4 * kEpsilon * scale_)) break;
         if (!collect_rim(f, points_[eye]) || !close_rim(eye))
         {

@@ -192,7 +192,7 @@ Pose OdeScene::place(const Part& part, const Vec3& p_OC, const Bodies& bodies) c
     return {p_OC + rotate(q, part.in_body.p - bodies.center_B[body]), q * part.in_body.q};
 }
 
-void OdeScene::look(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies)
+void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies)
 {
     const Part &pa = parts_[part_a], &pb = parts_[part_b];
     const Member &ma = members_[pa.member], &mb = members_[pb.member];
@@ -292,7 +292,7 @@ void OdeScene::query_persistent(const Bodies& bodies, ContactSink& sink)
         if (i > 0 && s.a == persistent_[i - 1].a && s.b == persistent_[i - 1].b) continue;
         const Member &a = members_[s.a], &b = members_[s.b];
         for (std::uint32_t p = a.first_part; p < a.end_part; ++p)
-            for (std::uint32_t q = b.first_part; q < b.end_part; ++q) look(p, q, s.shift, bodies);
+            for (std::uint32_t q = b.first_part; q < b.end_part; ++q) query(p, q, s.shift, bodies);
         flush(a, b, length(s.shift), sink);
     }
 }
@@ -305,7 +305,7 @@ void OdeScene::query_near(const StepContext& context, const Bodies& bodies, Cont
     for (std::size_t i = 0; i < near.size(); ++i)
     {
         const auto [a, b] = members(near[i]);
-        if (may_meet(members_[a], members_[b], context) && !is_persistent(a, b)) look(near[i].first, near[i].second, {}, bodies);
+        if (may_meet(members_[a], members_[b], context) && !is_persistent(a, b)) query(near[i].first, near[i].second, {}, bodies);
         if (i + 1 == near.size() || members(near[i + 1]) != BroadPhase::Pair{a, b}) flush(members_[a], members_[b], 0, sink);
     }
 }

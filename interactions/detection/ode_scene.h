@@ -69,7 +69,7 @@ private:
     void collect_persistent(const StepContext& context, const ContactSink& sink);
     bool is_persistent(std::uint32_t a, std::uint32_t b) const;
     Pose place(const Part& part, const Vec3& p_OC, const Bodies& bodies) const;
-    void look(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies);
+    void query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies);
     void query_persistent(const Bodies& bodies, ContactSink& sink);
     void query_near(const StepContext& context, const Bodies& bodies, ContactSink& sink);
     void flush(const Member& a, const Member& b, double shift, ContactSink& sink);

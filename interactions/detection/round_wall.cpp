@@ -108,9 +108,9 @@ Vec3 furthest_of_rim(const Vec3& m, double a, const Vec3& u, const Vec3& start)
         // r^2(t) = |P (m + a (w cos t + v sin t))|^2, P: across z
         const Vec3 v = cross(u, w), p = m + a * w;
         const double slope = a * (p.x * v.x + p.y * v.y);
-        const double bend = a * a * (v.x * v.x + v.y * v.y) - a * (p.x * w.x + p.y * w.y);
-        if (!(bend < 0) || std::fabs(slope) >= -bend) break;
-        w = normalized(w - (slope / bend) * v);
+        const double curvature = a * a * (v.x * v.x + v.y * v.y) - a * (p.x * w.x + p.y * w.y);
+        if (!(curvature < 0) || std::fabs(slope) >= -curvature) break;
+        w = normalized(w - (slope / curvature) * v);
     }
     return m + a * w;
 }
@@ -214,7 +214,7 @@ void meet_round_wall(const Solid& K, const Collider& collider, MeetingSink& out)
                         if (K.core() == Core::Segment) return meet_ball(p, K.radius(), feature, wall, out);
                         if (!wall.faces(p))
                         {
-                            // Excludes edges on their way in: those nearer to the wall than to the rim.
+                            // Excludes edges that have just come in: nearer to the wall than to the rim.
                             for (const Rim& rim : wall.rims())
                             {
                                 const Vec3 closest = on_rim(rim, p);

@@ -13,8 +13,8 @@ namespace
 using Index = std::uint32_t;
 
 constexpr Index kLeaf = 4;         ///< triangles per leaf
-constexpr double kFlat = 1e-9;     ///< sine: an edge with a smaller bend counts as flat
-constexpr double kSmooth = 0.707;  ///< cosine: triangles of one patch bend by less than this angle
+constexpr double kFlat = 1e-9;     ///< sine: an edge with a smaller dihedral angle counts as flat
+constexpr double kSmooth = 0.707;  ///< cosine: the normals of neighbours in one patch differ by less than this angle
 
 /// Of vertices at exactly the same place, the first represents all.
 std::vector<Index> first_at_same_place(std::span<const Vec3> vertices)
@@ -34,7 +34,7 @@ Result<TriangleSurface> TriangleSurface::make(std::span<const Vec3> vertices, st
     TriangleSurface out;
     out.join(vertices, triangles);
     if (out.triangles_.empty()) return reason("a surface needs at least one triangle that has an area");
-    if (!out.find_edges()) return reason("an edge of more than two triangles, or of two that face opposite ways, has no front");
+    if (!out.find_edges()) return reason("an edge of more than two triangles, or of two that face in opposite directions, has no front");
     out.find_corners();
     out.find_patches();
     out.build_tree();

@@ -23,7 +23,7 @@ public:
         std::array<std::uint32_t, 3> corner{}, edge{};  ///< edge i runs from corner i to the next one
         std::array<Vec3, 3> inward;                     ///< unit, in the plane, perpendicular to edge i
         Vec3 normal;                                    ///< unit, towards the front
-        std::uint32_t patch = 0;                        ///< number of a group of adjacent triangles without a sharp bend between them
+        std::uint32_t patch = 0;                        ///< number of a group of adjacent triangles without a sharp edge between them
     };
     struct Edge
     {

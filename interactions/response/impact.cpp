@@ -9,12 +9,12 @@ namespace plab::response
 {
 namespace
 {
-/// Patches whose closing speeds differ by less than this fraction count as equally fast.
+/// Pairs whose closing speeds differ by less than this fraction count as equally fast.
 constexpr double kSameSpeed = 1e-9;
 /// Fraction of the fastest approach that may remain where bodies are trapped between others.
 constexpr double kStill = 1e-6;
 
-/// Answers one patch after the other, the one that closes fastest first, until none closes (Mirtich's sequential collisions).
+/// Answers one pair of bodies after the other, the one that closes fastest first, until none closes (Mirtich's sequential collisions).
 class ImpactSequence
 {
 public:
@@ -28,11 +28,11 @@ private:
     void prepare();
     void group();
     double closing_speed(std::uint32_t contact) const { return -work_.points[contact].velocity(bodies_).z; }
-    double closing_speed(const Patch& patch) const;
+    double closing_speed(const PairManifold& manifold) const;
     void choose(std::uint32_t fastest, double speed);
-    bool touch_one_body(const Patch& p, const Patch& q) const;
+    bool share_body(const PairManifold& p, const PairManifold& q) const;
     void hit(bool plastic);
-    double restitution_of(const Patch& patch, bool plastic) const;
+    double restitution_of(const PairManifold& manifold, bool plastic) const;
     void hit_point(std::uint32_t contact, double restitution);
     void hit_at_once();
     void choose_all();
@@ -65,42 +65,42 @@ void ImpactSequence::group()
     std::sort(order.begin(), order.end(),
               [&](auto i, auto j)
               { return std::tuple_cat(pair_of(i), std::tie(contacts_[i].id)) < std::tuple_cat(pair_of(j), std::tie(contacts_[j].id)); });
-    work_.patches.clear();
+    work_.manifolds.clear();
     for (std::uint32_t k = 0; k < order.size(); ++k)
     {
-        if (k == 0 || pair_of(order[k]) != pair_of(order[k - 1])) work_.patches.push_back({k, k, contacts_[order[k]].id});
-        work_.patches.back().end = k + 1;
+        if (k == 0 || pair_of(order[k]) != pair_of(order[k - 1])) work_.manifolds.push_back({k, k, contacts_[order[k]].id});
+        work_.manifolds.back().end = k + 1;
     }
-    std::sort(work_.patches.begin(), work_.patches.end(), [](const Patch& p, const Patch& q) { return p.id < q.id; });
+    std::sort(work_.manifolds.begin(), work_.manifolds.end(), [](const PairManifold& p, const PairManifold& q) { return p.id < q.id; });
 }
 
-double ImpactSequence::closing_speed(const Patch& patch) const
+double ImpactSequence::closing_speed(const PairManifold& manifold) const
 {
     double fastest = -HUGE_VAL;
-    for (std::uint32_t k = patch.first; k < patch.end; ++k) fastest = std::max(fastest, closing_speed(work_.order[k]));
+    for (std::uint32_t k = manifold.first; k < manifold.end; ++k) fastest = std::max(fastest, closing_speed(work_.order[k]));
     return fastest;
 }
 
-bool ImpactSequence::touch_one_body(const Patch& p, const Patch& q) const
+bool ImpactSequence::share_body(const PairManifold& p, const PairManifold& q) const
 {
     const Contact &x = contacts_[work_.order[p.first]], &y = contacts_[work_.order[q.first]];
     const auto same = [&](Ref r, Ref t) { return r == t && bodies_.dynamic(r.index); };
     return same(x.a, y.a) || same(x.a, y.b) || same(x.b, y.a) || same(x.b, y.b);
 }
 
-/// Chooses the patch that closes fastest, and those that close equally fast on the same bodies. Answered one after the other,
+/// Chooses the pair that closes fastest, and those that close equally fast on the same bodies. Answered one after the other,
 /// their order would be arbitrary and would break the symmetry of the scene.
 void ImpactSequence::choose(std::uint32_t fastest, double speed)
 {
     auto& chosen = work_.together;
     chosen.assign(1, fastest);
-    if (work_.patches.size() == 1) return;
-    for (std::size_t k = 0; k < chosen.size(); ++k, visits_ += static_cast<std::int64_t>(work_.patches.size()))
-        for (std::uint32_t p = 0; p < work_.patches.size(); ++p)
+    if (work_.manifolds.size() == 1) return;
+    for (std::size_t k = 0; k < chosen.size(); ++k, visits_ += static_cast<std::int64_t>(work_.manifolds.size()))
+        for (std::uint32_t p = 0; p < work_.manifolds.size(); ++p)
         {
-            const Patch& patch = work_.patches[p];
-            if (std::find(chosen.begin(), chosen.end(), p) != chosen.end() || !touch_one_body(work_.patches[chosen[k]], patch)) continue;
-            if (closing_speed(patch) >= (1 - kSameSpeed) * speed) chosen.push_back(p);
+            const PairManifold& manifold = work_.manifolds[p];
+            if (std::find(chosen.begin(), chosen.end(), p) != chosen.end() || !share_body(work_.manifolds[chosen[k]], manifold)) continue;
+            if (closing_speed(manifold) >= (1 - kSameSpeed) * speed) chosen.push_back(p);
         }
     std::sort(chosen.begin(), chosen.end());
 }
@@ -108,14 +108,14 @@ void ImpactSequence::choose(std::uint32_t fastest, double speed)
 void ImpactSequence::choose_all()
 {
     work_.together.clear();
-    for (std::uint32_t p = 0; p < work_.patches.size(); ++p) work_.together.push_back(p);
+    for (std::uint32_t p = 0; p < work_.manifolds.size(); ++p) work_.together.push_back(p);
 }
 
-double ImpactSequence::restitution_of(const Patch& patch, bool plastic) const
+double ImpactSequence::restitution_of(const PairManifold& manifold, bool plastic) const
 {
-    const double closing = closing_speed(patch);
+    const double closing = closing_speed(manifold);
     double restitution = plastic ? 0.0 : 1.0;
-    for (std::uint32_t k = patch.first; k < patch.end; ++k)
+    for (std::uint32_t k = manifold.first; k < manifold.end; ++k)
     {
         const Contact& c = contacts_[work_.order[k]];
         restitution = std::min(restitution, c.restitution);
@@ -126,15 +126,15 @@ double ImpactSequence::restitution_of(const Patch& patch, bool plastic) const
 
 void ImpactSequence::hit(bool plastic)
 {
-    const Patch& first = work_.patches[work_.together.front()];
+    const PairManifold& first = work_.manifolds[work_.together.front()];
     if (work_.together.size() == 1 && first.end - first.first == 1)
         return hit_point(work_.order[first.first], restitution_of(first, plastic));
     work_.hit.clear();
     for (const std::uint32_t p : work_.together)
     {
-        const Patch& patch = work_.patches[p];
-        const double restitution = restitution_of(patch, plastic);
-        for (std::uint32_t k = patch.first; k < patch.end; ++k) work_.hit.push_back({work_.order[k], restitution});
+        const PairManifold& manifold = work_.manifolds[p];
+        const double restitution = restitution_of(manifold, plastic);
+        for (std::uint32_t k = manifold.first; k < manifold.end; ++k) work_.hit.push_back({work_.order[k], restitution});
     }
     hit_at_once();
 }
@@ -201,7 +201,7 @@ void ImpactSequence::run(Impact& impact)
 {
     prepare();
     group();
-    const std::int64_t budget = settings_.max_iterations * static_cast<std::int64_t>(std::max<std::size_t>(1, work_.patches.size()));
+    const std::int64_t budget = settings_.max_iterations * static_cast<std::int64_t>(std::max<std::size_t>(1, work_.manifolds.size()));
     bool plastic = false;
     double hardest = 0;  // m/s
     for (impact.iterations = 0; spent_ < budget && !(settings_.interruption && settings_.interruption->due()); ++impact.iterations)
@@ -209,8 +209,8 @@ void ImpactSequence::run(Impact& impact)
         std::uint32_t next = kNoIndex;
         double fastest = threshold_;
         visits_ += static_cast<std::int64_t>(work_.order.size());
-        for (std::uint32_t p = 0; p < work_.patches.size(); ++p)
-            if (const double v = closing_speed(work_.patches[p]); v > fastest) fastest = v, next = p;
+        for (std::uint32_t p = 0; p < work_.manifolds.size(); ++p)
+            if (const double v = closing_speed(work_.manifolds[p]); v > fastest) fastest = v, next = p;
         if (next == kNoIndex) break;
         // Bodies trapped between others might bounce forever; what remains after half of the budget is answered at once and
         // without bounce.

@@ -24,7 +24,7 @@ struct BounceLimit
 bool rests(const Contact& contact, double speed, const BounceLimit& limit);
 
 /// The contacts between two bodies, which are answered together.
-struct Patch
+struct PairManifold
 {
     std::uint32_t first = 0, end = 0;  ///< range in Workspace::order
     std::uint64_t id = 0;              ///< smallest contact id
@@ -45,14 +45,14 @@ struct HitBody
 /// Working memory of one response, kept from call to call to avoid allocations.
 struct Workspace
 {
-    std::vector<std::uint32_t> order;  ///< contacts by pair of bodies, then id
-    std::vector<Patch> patches;        ///< by id
-    std::vector<ContactPoint> points;  ///< per contact
+    std::vector<std::uint32_t> order;     ///< contacts by pair of bodies, then id
+    std::vector<PairManifold> manifolds;  ///< by id
+    std::vector<ContactPoint> points;     ///< per contact
     std::vector<ConeContact> cones;
     std::vector<Vec3> before;             ///< m/s, contact velocities before an impact
-    std::vector<std::uint32_t> together;  ///< patches that are hit simultaneously
-    std::vector<HitContact> hit;          ///< contacts of those patches
-    std::vector<HitBody> saved;           ///< bodies of those patches, before the impact
+    std::vector<std::uint32_t> together;  ///< manifolds that are hit simultaneously
+    std::vector<HitContact> hit;          ///< contacts of those manifolds
+    std::vector<HitBody> saved;           ///< bodies of those manifolds, before the impact
 
     /// Sets `points`, and `order` to the contacts whose bodies can move, in the order of `contacts`.
     void gather(std::span<const Contact> contacts, const Bodies& bodies);

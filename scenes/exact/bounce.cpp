@@ -46,9 +46,9 @@ public:
         return true;
     }
     bool knows_contacts() const override { return true; }
-    std::vector<Touch> contacts(double until) const override
+    std::vector<ContactStart> contacts(double until) const override
     {
-        std::vector<Touch> out;
+        std::vector<ContactStart> out;
         const auto& [a, b] = std::minmax(ball_, plane_);
         for (const Flight& f : flights_)
             if (f.begin <= until) out.push_back({"contact.impact", a, b, f.begin});

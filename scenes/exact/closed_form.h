@@ -28,7 +28,7 @@ struct State
 };
 
 /// A contact that begins.
-struct Touch
+struct ContactStart
 {
     std::string kind;  ///< of the event: "contact.impact"
     std::string a, b;
@@ -51,7 +51,7 @@ public:
     virtual double precision(double until) const { return (void)until, kPrecision; }
     /// Whether the moments of contact are part of the solution; those up to `until`.
     virtual bool knows_contacts() const { return false; }
-    virtual std::vector<Touch> contacts(double until) const { return (void)until, std::vector<Touch>(); }
+    virtual std::vector<ContactStart> contacts(double until) const { return (void)until, std::vector<ContactStart>(); }
 };
 
 /// The data available to a closed form: the scene before its first step.

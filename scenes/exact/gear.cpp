@@ -106,11 +106,11 @@ double torque_on(const SceneFacts& facts, std::uint32_t shaft)
 {
     double out = 0;
     for (const std::uint32_t i : facts.of_type("Field/Load"))
-        for (const std::uint32_t who : participants(facts, i, "between"))
-            if (who == shaft) out += real_of(facts, i, "shaft_torque");
+        for (const std::uint32_t participant : participants(facts, i, "between"))
+            if (participant == shaft) out += real_of(facts, i, "shaft_torque");
     for (const std::uint32_t i : facts.of_type("Script/"))
-        for (const std::uint32_t who : participants(facts, i, "driven"))
-            if (who == shaft) out += facts.number("torque").value_or(0);
+        for (const std::uint32_t participant : participants(facts, i, "driven"))
+            if (participant == shaft) out += facts.number("torque").value_or(0);
     return out;
 }
 

@@ -76,9 +76,9 @@ public:
     }
     double precision(double until) const override { return precision_after(20 * block_.w0 * until); }
     bool knows_contacts() const override { return true; }
-    std::vector<Touch> contacts(double until) const override
+    std::vector<ContactStart> contacts(double until) const override
     {
-        std::vector<Touch> out;
+        std::vector<ContactStart> out;
         const auto& [a, b] = std::minmax(id_, ground_);
         for (const double t : impacts_)
             if (t <= until) out.push_back({"contact.impact", a, b, t});

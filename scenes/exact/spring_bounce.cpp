@@ -27,11 +27,11 @@ public:
             t += v >= 0 ? (v + root) / g : 2 * z / (root - v);
             if (t > until) break;
             pieces_.push_back({t, 0, -root, true});
-            const double parting = parts_after(-root);
-            if (!std::isfinite(parting)) break;
+            const double release = release_after(-root);
+            if (!std::isfinite(release)) break;
             double height = 0;
-            in_contact(parting, -root, height, v);
-            t += parting, z = 0;
+            in_contact(release, -root, height, v);
+            t += release, z = 0;
         }
     }
     bool state(const std::string& id, double t, State& out) const override
@@ -49,9 +49,9 @@ public:
     }
     double precision(double until) const override { return precision_after(std::sqrt(law_.w2) * until); }
     bool knows_contacts() const override { return true; }
-    std::vector<Touch> contacts(double until) const override
+    std::vector<ContactStart> contacts(double until) const override
     {
-        std::vector<Touch> out;
+        std::vector<ContactStart> out;
         const auto& [a, b] = std::minmax(ball_, plane_);
         for (const Piece& p : pieces_)
             if (p.touches && p.begin <= until) out.push_back({"contact.impact", a, b, p.begin});
@@ -69,7 +69,7 @@ private:
         double begin, z, v;
         bool touches;
     };
-    /// About the height at which it would rest, m g/k below the first touch.
+    /// About the height at which it would rest, m g/k below the first contact.
     void in_contact(double s, double v0, double& z, double& v) const
     {
         const double low = -g_ / law_.w2;
@@ -77,7 +77,7 @@ private:
         z += low;
     }
     /// The first s > 0 at which it is back at z = 0; infinite if it stays.
-    double parts_after(double v0) const
+    double release_after(double v0) const
     {
         const double period = 2 * std::numbers::pi / std::sqrt(law_.w2), step = period / 64;
         double z = 0, v = 0, low = step, high = 0;

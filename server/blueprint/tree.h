@@ -16,7 +16,7 @@ class Complaints
 public:
     explicit Complaints(std::string file) : file_(std::move(file)) {}
 
-    void add(Place where, std::string element, std::string why)
+    void add(TextPosition where, std::string element, std::string why)
     {
         add(Error{{{}, where.line, where.column}, std::move(element), std::move(why)});
     }
@@ -62,7 +62,7 @@ public:
     model::Blueprint take() { return std::move(blueprint_); }
 
 private:
-    SourceLocation at(Place where) const { return {blueprint_.file, where.line, where.column}; }
+    SourceLocation at(TextPosition where) const { return {blueprint_.file, where.line, where.column}; }
 
     // Checks that are the same for all elements.
     void misplaced(const XmlElement& e, const std::string& parent);
@@ -90,7 +90,7 @@ private:
     const ForeignHandlers& handlers_;
     Complaints& complaints_;
     model::Blueprint blueprint_;
-    Place scene_at_;
+    TextPosition scene_at_;
     bool known_root_ = false;
 };
 

@@ -58,7 +58,7 @@ public:
     }
 
 private:
-    void complain(Place at, std::string element, std::string why)
+    void complain(TextPosition at, std::string element, std::string why)
     {
         if (errors_.size() < kMostErrors) errors_.push_back({{{}, at.line, at.column}, std::move(element), std::move(why)});
     }

@@ -20,14 +20,14 @@ struct ParserDeleter
 };
 using Parser = std::unique_ptr<std::remove_pointer_t<XML_Parser>, ParserDeleter>;
 
-Error error_at(Place where, std::string element, std::string why)
+Error error_at(TextPosition where, std::string element, std::string why)
 {
     return Error{{{}, where.line, where.column}, std::move(element), std::move(why)};
 }
 
-Place place_of(std::string_view text, std::size_t offset)
+TextPosition place_of(std::string_view text, std::size_t offset)
 {
-    Place at{1, 1};
+    TextPosition at{1, 1};
     for (const char c : text.substr(0, offset))
     {
         if ((static_cast<unsigned char>(c) & 0xC0) != 0x80) ++at.column;
@@ -63,7 +63,7 @@ std::optional<Error> check_encoding(std::string_view text)
 {
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
         return error_at({1, 1}, {}, "the text is UTF-16; a blueprint must be UTF-8");
-    Place at{1, 1};
+    TextPosition at{1, 1};
     for (std::size_t i = 0; i < text.size();)
     {
         const std::size_t n = utf8_length(text.substr(i));
@@ -108,14 +108,14 @@ private:
     static void on_doctype(void* d, const XML_Char*, const XML_Char*, const XML_Char*, int) { self(d).doctype(); }
     static void on_declaration(void* d, const XML_Char*, const XML_Char* encoding, int) { self(d).declaration(encoding); }
 
-    Place place() const
+    TextPosition place() const
     {
         return {static_cast<std::uint32_t>(XML_GetCurrentLineNumber(parser_.get())),
                 static_cast<std::uint32_t>(XML_GetCurrentColumnNumber(parser_.get())) + 1};
     }
 
     void stop(std::string element, std::string why) { stop_at(place(), std::move(element), std::move(why)); }
-    void stop_at(Place where, std::string element, std::string why)
+    void stop_at(TextPosition where, std::string element, std::string why)
     {
         if (stopped_) return;
         stopped_ = true;

@@ -17,7 +17,7 @@ namespace plab::blueprint
 inline constexpr std::size_t kLongestName = 200;
 
 /// Line and column start at 1, columns count characters; line 0: no place.
-struct Place
+struct TextPosition
 {
     std::uint32_t line = 0;
     std::uint32_t column = 0;
@@ -35,8 +35,8 @@ struct XmlElement
     std::vector<XmlAttribute> attributes;
     std::string text;  ///< all character data directly inside, unchanged
     std::vector<XmlElement> children;
-    Place where;
-    Place text_where;  ///< place of the first non-blank character
+    TextPosition where;
+    TextPosition text_where;  ///< place of the first non-blank character
 
     const std::string* find_attribute(std::string_view wanted) const
     {

@@ -20,7 +20,7 @@ struct BusOptions
     /// show its current state). Called on a thread of the bus; must not wait.
     void (*wake)(void*) = nullptr;
     void* wake_argument = nullptr;
-    /// A client requests the shutdown of the server: this tells the step thread at once, even during a step that takes long.
+    /// A client requests the shutdown of the server: this notifies the step thread at once, even during a long step.
     /// Called on a thread of the bus; the request itself arrives through take().
     void (*end)(void*) = nullptr;
     void* end_argument = nullptr;

@@ -89,14 +89,14 @@ std::string wrong_with(const wire::Request& request)
     for (std::size_t i = 0; i < request.operations.size() && wrong.empty(); ++i)
         wrong = wrong_count(i, request.operations[i].values.size());
     TextBudget budget;
-    const auto look = [&](const std::string& text, const char* what)
+    const auto check = [&](const std::string& text, const char* what)
     {
         if (wrong.empty()) wrong = budget.wrong(text, what);
     };
     for (const wire::Operation& op : request.operations)
     {
-        look(op.verb, "a verb"), look(op.target, "a target"), look(op.argument, "an argument"), look(op.blueprint, "a blueprint");
-        for (const auto& [name, text] : op.values) look(name, "a name"), look(text, "a value");
+        check(op.verb, "a verb"), check(op.target, "a target"), check(op.argument, "an argument"), check(op.blueprint, "a blueprint");
+        for (const auto& [name, text] : op.values) check(name, "a name"), check(text, "a value");
     }
     return wrong;
 }

@@ -130,7 +130,7 @@ private:
     Clock::time_point started_{}, start_at_{}, heard_{}, died_{}, status_sent_{};
     Clock::time_point stopped_{};  ///< time of the last check whether plab-bus is stopped
     Clock::duration delay_{};
-    int stopped_looks_ = 0;
+    int stopped_checks_ = 0;
     int silent_ = 0;       ///< seconds in which this thread was awake and plab-bus sent nothing
     bool is_new_ = false;  ///< the current plab-bus started recently and may not know of its readers yet
     std::string why_restarted_;

@@ -96,7 +96,7 @@ void ServerBus::supervise(Clock::time_point now)
     }
     process_ = started.take();
     pid_.store(process_->pid(), std::memory_order_relaxed);
-    started_ = heard_ = stopped_ = now, silent_ = stopped_looks_ = 0;
+    started_ = heard_ = stopped_ = now, silent_ = stopped_checks_ = 0;
     has_joined_ = is_broken_ = false, failed_.clear();
 }
 
@@ -112,10 +112,10 @@ void ServerBus::watch(Clock::time_point now)
 bool ServerBus::was_stopped(Clock::time_point now)
 {
     if (!process_->stopped())
-        stopped_looks_ = 0, stopped_ = now;
+        stopped_checks_ = 0, stopped_ = now;
     else if (now - stopped_ >= kStopped)
-        ++stopped_looks_, stopped_ = now;
-    return stopped_looks_ > kMostStopped;
+        ++stopped_checks_, stopped_ = now;
+    return stopped_checks_ > kMostStopped;
 }
 
 void ServerBus::end_process(const std::string& why, Clock::time_point now)

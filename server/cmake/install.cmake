@@ -52,7 +52,7 @@ foreach(archive plab_idl_c plab_wire_names plab_wire plab_link)
   install(CODE "execute_process(COMMAND \"${CMAKE_STRIP}\" --strip-debug \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/lib${archive}.a\" COMMAND_ERROR_IS_FATAL ANY)"
     COMPONENT sdk)
 endforeach()
-# Two sets: who writes plugins needs no Cyclone DDS.
+# Two sets: authors of plugins need no Cyclone DDS.
 foreach(set plab-sdk plab-link)
   install(EXPORT ${set} NAMESPACE plab:: DESTINATION ${PLAB_PACKAGE_DIR} FILE ${set}-targets.cmake COMPONENT sdk)
 endforeach()

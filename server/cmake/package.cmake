@@ -23,7 +23,7 @@ set(CPACK_DEBIAN_VIEWER_DESCRIPTION "pictures and films of pLab's scenes, and it
 set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "plab (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_SDK_PACKAGE_NAME plab-dev)
 set(CPACK_DEBIAN_SDK_DESCRIPTION "headers, libraries and CMake package for plugins and clients of pLab")
-# Cyclone DDS for plab::link; who writes plugins does without.
+# Cyclone DDS for plab::link; authors of plugins do without.
 set(CPACK_DEBIAN_SDK_PACKAGE_DEPENDS "plab (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_SDK_PACKAGE_RECOMMENDS "cyclonedds-dev, cyclonedds-tools, g++, cmake, make | ninja-build, pkgconf")
 

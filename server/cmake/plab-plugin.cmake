@@ -1,6 +1,6 @@
 # plab_add_plugin(NAME sources... [LINK libraries...] [TARGET target]): the plugin NAME.so, and beside it NAME.manifest, the list of types
 # by which plabd finds it without loading it. A plugin sees the SDK and its own third party, nothing else of pLab. It lies in
-# LIBRARY_OUTPUT_DIRECTORY of its target, the build folder if nobody says otherwise; PLAB_PLUGIN_PATH names that folder to plabd.
+# LIBRARY_OUTPUT_DIRECTORY of its target, the build folder by default; PLAB_PLUGIN_PATH names that folder to plabd.
 # pLab's own plugins are made by this, and the installed package has it.
 function(plab_add_plugin name)
   cmake_parse_arguments(arg "" "TARGET" "LINK" ${ARGN})

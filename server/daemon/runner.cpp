@@ -172,7 +172,7 @@ void Run::report_rate(Clock::time_point now)
 /// The run ends at the state before the step; if a shutdown request caused this, it is answered.
 void Run::report_given_up()
 {
-    const publish::Busy busy = publish::words_of(s_.progress().look(), simulation::now_ns());
+    const publish::Busy busy = publish::words_of(s_.progress().read(), simulation::now_ns());
     spdlog::error("{}: abandoned, because the run is to end; the state is that of t = {:.9g} s, before the step", publish::text_of(busy),
                   s_.time());
     service_.take_last_requests(kGrace);

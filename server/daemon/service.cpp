@@ -218,7 +218,7 @@ void Service::shut_down(const publish::ReceivedRequest& text)
     shutdown_ = true;
 }
 
-/// The client that waits for the request is told that it was cancelled.
+/// The client that waits for the request gets the reply that it was cancelled.
 void Service::cancel(const publish::ReceivedRequest& text, const control::Wanted::Cancelled& which)
 {
     const auto waits = std::find_if(waiting_.begin(), waiting_.end(),

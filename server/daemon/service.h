@@ -56,7 +56,7 @@ public:
     void idle();
     void publish_status(double rate_reached, double slipped, bool slipping);
 
-    /// The end: tells clients whose requests still wait. Returns the number of waiting requests of the command line.
+    /// The end: answers clients whose requests still wait. Returns the number of waiting requests of the command line.
     std::size_t close();
     /// Ends the recording. False if its file is incomplete, or something was dropped; the log has the details.
     bool close_recording();

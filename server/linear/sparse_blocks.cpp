@@ -163,6 +163,12 @@ void SparseBlocks::clear()
 }
 
 /// L D L^T of the pivot block, right-looking: after column c the rest of the block is the remaining matrix.
+///
+/// The pivots of a quasi-definite matrix have known signs, + for masses and - for joints; `p` is the pivot times its sign. In exact
+/// arithmetic it is not negative. It becomes 0 if the other rows of a joint imply this row, and then only rounding errors of the entries
+/// that cancelled are left of it, with any sign: dividing by them would give arbitrary multipliers. Such a pivot is recognised by its size
+/// relative to the entry before the elimination of the block, and raised. A raised pivot is a compliance in that row: its multiplier stays
+/// small, and the caller removes the error by iterative refinement against the original matrix (row_equations.h).
 template <int K>
 void SparseBlocks::factor_pivot(std::uint32_t node, double* d)
 {
@@ -179,6 +185,7 @@ void SparseBlocks::factor_pivot(std::uint32_t node, double* d)
         if (small_[u] != 0) p = raised(p, entry[c], lift_[u]);
         const double inverse = sign / p;
         inverse_[u] = inverse;
+        // The column before its division by the pivot: the update needs l_r d l_k, and left[k] is d l_k.
         double left[K];
         for (int r = c + 1; r < K; ++r) left[r] = d[r * K + c];
         for (int r = c + 1; r < K; ++r)
@@ -226,6 +233,8 @@ void SparseBlocks::eliminate(const Pivot& p)
 {
     double* d = &values_[diagonal_[p.node]];
     const Below* below = below_.data() + p.first;
+    // Block elimination of this node: D = L_p D_p L_p^T here, then W = A L_p^-T D_p^-1 for each block A below, and at last the Schur
+    // complement, A_ij - A_i D^-1 A_j^T for each pair of blocks below. The order of elimination has made room for its fill.
     factor_pivot<K>(p.node, d);
     const double* inverse = &inverse_[offset_[p.node]];
     double* u = scratch_.data();

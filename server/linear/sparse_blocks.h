@@ -80,7 +80,7 @@ public:
     /// QuasiDefinite: adds to element (r of node a, c of node b) of an edge's block.
     void add(std::uint32_t edge, std::uint32_t r, std::uint32_t c, double value)
     {
-        const Place& p = place_[edge];
+        const BlockStrides& p = place_[edge];
         values_[p.offset + r * p.a_stride + c * p.b_stride] += value;
     }
     /// QuasiDefinite: a pivot of this unknown that is not above `floor` is raised by `lift`, and flagged in small(). The same happens
@@ -105,7 +105,7 @@ public:
     std::size_t products() const;
 
 private:
-    struct Place
+    struct BlockStrides
     {
         std::uint32_t offset = 0, a_stride = 0, b_stride = 0;
     };
@@ -155,7 +155,7 @@ private:
     std::vector<std::uint32_t> rank_;
     std::vector<std::uint32_t> offset_;    // of a node's unknowns
     std::vector<std::uint32_t> diagonal_;  // of a node's block in values_
-    std::vector<Place> place_;             // by edge
+    std::vector<BlockStrides> place_;      // by edge
     std::vector<Pivot> pivots_;            // in order of elimination
     std::vector<Below> below_;             // of each pivot, in order of elimination
     std::vector<std::uint32_t> targets_;

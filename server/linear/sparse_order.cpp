@@ -71,6 +71,11 @@ void SparseBlocks::eliminate_from_graph(std::uint32_t node)
     }
 }
 
+/// Minimum degree: always eliminates the node with the fewest remaining neighbours, because n neighbours become n (n - 1) / 2 pairs, and
+/// each pair without an edge is a new block. The elimination is carried out on the graph, so the blocks of the factor are known before
+/// any number is. Joints wait for their bodies (eligible): the diagonal block of a joint is 0, or a small compliance, until a body beside
+/// it has been eliminated, which subtracts J M^-1 J^T from it. In a tree of joints, the leaves have the least degree and are eliminated
+/// first, without any fill.
 void SparseBlocks::order_nodes(std::span<const SparseEdge> edges)
 {
     start_order(edges);
@@ -125,6 +130,7 @@ std::uint32_t SparseBlocks::find(std::uint32_t i, std::uint32_t j) const
     return static_cast<std::uint32_t>(found - below_.begin());
 }
 
+/// Lists the blocks that each elimination changes, so that the numeric factorisation needs no search.
 void SparseBlocks::find_targets()
 {
     targets_.clear();
@@ -146,7 +152,7 @@ void SparseBlocks::find_places(std::span<const SparseEdge> edges)
     for (const SparseEdge& e : edges)
     {
         const std::uint32_t at = below_[find(e.a, e.b)].offset;
-        place_.push_back(rank_[e.a] < rank_[e.b] ? Place{at, 1, nodes_[e.a].size} : Place{at, nodes_[e.b].size, 1});
+        place_.push_back(rank_[e.a] < rank_[e.b] ? BlockStrides{at, 1, nodes_[e.a].size} : BlockStrides{at, nodes_[e.b].size, 1});
     }
 }
 

@@ -23,7 +23,7 @@ struct PluginInfo
 };
 
 /// Plugins stay loaded as long as the library exists; everything that uses their types must be destroyed before it. Types may be
-/// requested from any thread; who reads loaded() meanwhile must know that no other thread loads.
+/// requested from any thread; a caller of loaded() must know that no other thread loads meanwhile.
 class PluginLibrary final : public model::TypeSource
 {
 public:

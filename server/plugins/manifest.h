@@ -1,4 +1,4 @@
-/// Manifests: which types a plugin has and what they declare, told without loading it.
+/// Manifests: which types a plugin has and what they declare, known without loading it.
 ///
 ///   plab-manifest 3
 ///   plugin  fields
@@ -6,7 +6,7 @@
 ///   role    between  body  1  4294967295  bodies that ...      name, accepts, least, most, doc
 ///   field   gravity  param  vector  m/s^2  0 0 -9.81  ...      name, kind, value type, unit, default, required, rule, doc
 ///
-/// Cells are parted by tabs; in a cell "\\" is a backslash and "\x09" the character of that code. Roles and fields belong
+/// Cells are separated by tabs; in a cell "\\" is a backslash and "\x09" the character of that code. Roles and fields belong
 /// to the type above them. "fields.manifest" speaks for "fields.so" in the same folder.
 #pragma once
 

@@ -33,7 +33,7 @@ struct CommandOutline
     const OptionOutline* option(const std::string& name) const;
 };
 
-/// Options that the help does not tell are left out.
+/// Options that the help does not show are left out.
 CommandOutline outline_of(const CLI::App& app);
 
 }  // namespace plab::program

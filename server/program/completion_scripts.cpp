@@ -1,4 +1,4 @@
-// What a shell has to know: whom to ask, and what to do with the answer.
+// What a shell has to know: which program to call, and what to do with its answer.
 #include "program/completion.h"
 
 namespace plab::program

@@ -8,11 +8,11 @@
 namespace plab::publish
 {
 
-Busy words_of(const simulation::Progress::Look& look, std::uint64_t now_ns)
+Busy words_of(const simulation::Progress::Reading& reading, std::uint64_t now_ns)
 {
     Busy out;
-    const std::string step = "step " + std::to_string(look.step);
-    switch (look.activity)
+    const std::string step = "step " + std::to_string(reading.step);
+    switch (reading.activity)
     {
         case simulation::Activity::Nothing:
         case simulation::Activity::Step:
@@ -28,17 +28,17 @@ Busy words_of(const simulation::Progress::Look& look, std::uint64_t now_ns)
             out.what = step + " again";
             break;
     }
-    out.what += ": " + std::string(simulation::kStepTree[look.node].name);
-    out.seconds = now_ns > look.since_ns ? 1e-9 * static_cast<double>(now_ns - look.since_ns) : 0;
-    out.work = look.work;
+    out.what += ": " + std::string(simulation::kStepTree[reading.node].name);
+    out.seconds = now_ns > reading.since_ns ? 1e-9 * static_cast<double>(now_ns - reading.since_ns) : 0;
+    out.work = reading.work;
     return out;
 }
 
 Busy busy_of(const simulation::Progress& progress, double least)
 {
-    const simulation::Progress::Look look = progress.look();
-    if (look.activity == simulation::Activity::Nothing) return {};
-    Busy out = words_of(look, simulation::now_ns());
+    const simulation::Progress::Reading reading = progress.read();
+    if (reading.activity == simulation::Activity::Nothing) return {};
+    Busy out = words_of(reading, simulation::now_ns());
     return out.seconds < least ? Busy{} : out;
 }
 

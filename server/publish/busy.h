@@ -18,7 +18,7 @@ struct Busy
 /// The activity that has lasted for at least `least` seconds. For any thread.
 Busy busy_of(const simulation::Progress& progress, double least = 0.5);
 /// The same for a given observation, which may be over by now.
-Busy words_of(const simulation::Progress::Look& look, std::uint64_t now_ns);
+Busy words_of(const simulation::Progress::Reading& reading, std::uint64_t now_ns);
 /// "step 12: locate, for 3.2 s, 51234 evaluations and queries".
 std::string text_of(const Busy& busy);
 

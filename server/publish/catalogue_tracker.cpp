@@ -85,7 +85,7 @@ void CatalogueTracker::compare(const simulation::Simulation& s, Tick boundary)
 }
 
 /// Whether `spec` changes along with the components that are already known to change.
-bool CatalogueTracker::touch_what_follows(const world::World& world, const model::ComponentSpec& spec)
+bool CatalogueTracker::mark_dependent(const world::World& world, const model::ComponentSpec& spec)
 {
     if (touched_.contains(spec.id)) return false;
     const auto is_touched_shape = [&](const std::string& id)
@@ -111,7 +111,7 @@ void CatalogueTracker::spread(const simulation::Simulation& s)
     for (bool grown = true; grown;)
     {
         grown = false;
-        for (const model::ComponentSpec& spec : s.world().scene().components) grown = touch_what_follows(s.world(), spec) || grown;
+        for (const model::ComponentSpec& spec : s.world().scene().components) grown = mark_dependent(s.world(), spec) || grown;
     }
 }
 

@@ -38,7 +38,7 @@ public:
 private:
     void compare(const simulation::Simulation& simulation, Tick boundary);
     void spread(const simulation::Simulation& simulation);
-    bool touch_what_follows(const world::World& world, const model::ComponentSpec& spec);
+    bool mark_dependent(const world::World& world, const model::ComponentSpec& spec);
     void mark_loaded_types(const world::World& world);
 
     Roster roster_;

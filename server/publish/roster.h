@@ -34,7 +34,7 @@ public:
         bool other_kind = false;  ///< the id now denotes a component of another kind
     };
     /// An object by its row in the host's table.
-    struct Place
+    struct ObjectRow
     {
         std::uint32_t handle = 0, row = 0;
     };
@@ -48,15 +48,15 @@ public:
     const Member* find(const std::string& id) const;
     const std::map<std::string, Member>& members() const { return members_; }
     /// In order of their ids, static objects included.
-    const std::vector<Place>& bodies() const { return bodies_; }
-    const std::vector<Place>& shafts() const { return shafts_; }
+    const std::vector<ObjectRow>& bodies() const { return bodies_; }
+    const std::vector<ObjectRow>& shafts() const { return shafts_; }
     std::size_t count(Kind kind) const { return counts_[static_cast<std::size_t>(kind)]; }
 
 private:
     void welcome(const world::Component& component, Member& member, Tick boundary);
 
     std::map<std::string, Member> members_;
-    std::vector<Place> bodies_, shafts_;
+    std::vector<ObjectRow> bodies_, shafts_;
     std::size_t counts_[3] = {};
     std::uint32_t next_handle_ = 1;
 };

@@ -25,10 +25,10 @@ void fill_frame(const simulation::Simulation& s, const Roster& roster, wire::Fra
     // Overwrites what the frame held before, so that existing entries are not rebuilt.
     frame.bodies.resize(roster.bodies().size());
     std::size_t count = 0;
-    for (const Roster::Place& body : roster.bodies())
+    for (const Roster::ObjectRow& body : roster.bodies())
         if (bodies.motion[body.row] != Motion::Static) frame.bodies[count++] = state_of(bodies, body.row, body.handle);
     frame.bodies.resize(count);
-    for (const Roster::Place& shaft : roster.shafts())
+    for (const Roster::ObjectRow& shaft : roster.shafts())
         frame.shafts.push_back({shaft.handle, shafts.angle[shaft.row], shafts.speed[shaft.row]});
 }
 

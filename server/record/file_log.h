@@ -27,7 +27,7 @@ public:
     std::string damage() const override;
 
 private:
-    explicit FileLog(recording::Reader reader) : reader_(std::move(reader)) {}
+    explicit FileLog(recording::McapReader reader) : reader_(std::move(reader)) {}
     /// A part of the time line in which a run has messages.
     struct Span
     {
@@ -38,7 +38,7 @@ private:
     Result<void> each(const recording::Query& query, Use use);
     recording::Query query_of(const char* topic, std::uint64_t run) const;
 
-    recording::Reader reader_;
+    recording::McapReader reader_;
     recording::Decoder decoder_;
     std::vector<RecordedSnapshot> snapshots_;
     std::map<std::uint64_t, std::uint64_t> begin_of_run_;  ///< log_time of its first snapshot

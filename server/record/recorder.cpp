@@ -15,7 +15,7 @@ namespace
 constexpr std::size_t kSpareFrames = 64;
 
 /// The metadata and the attachment that the file starts with.
-Result<void> introduce(recording::Writer& writer, const RecordOptions& o, const wire::Identity& self)
+Result<void> introduce(recording::McapWriter& writer, const RecordOptions& o, const wire::Identity& self)
 {
     const recording::Origin origin{.recorder = "plabd",
                                    .server = o.server,
@@ -83,7 +83,7 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const RecordOptions& options)
     return std::unique_ptr<Recorder>(new Recorder(options, file, writer.take()));
 }
 
-Recorder::Recorder(const RecordOptions& options, const recording::AsyncWriterOptions& file, recording::Writer writer)
+Recorder::Recorder(const RecordOptions& options, const recording::AsyncWriterOptions& file, recording::McapWriter writer)
     : options_(options),
       topics_(wire::identify(options.server, options.version), options.topics, options.moved_only),
       spare_(kSpareFrames),

@@ -39,7 +39,7 @@ public:
 private:
     /// Vital: what no replay is possible without.
     using Weight = recording::Weight;
-    Recorder(const RecordOptions& options, const recording::AsyncWriterOptions& file, recording::Writer writer);
+    Recorder(const RecordOptions& options, const recording::AsyncWriterOptions& file, recording::McapWriter writer);
     bool push(Entry::Body&& body, std::size_t bytes, Weight weight);
     void push(std::optional<wire::Hashes> record);
 

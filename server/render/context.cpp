@@ -12,7 +12,7 @@ constexpr GLsizei kDummySize = 16;
 
 }  // namespace
 
-Result<Context> Context::make()
+Result<OffscreenContext> OffscreenContext::make()
 {
     constexpr int wanted[] = {OSMESA_FORMAT,
                               OSMESA_RGBA,
@@ -25,15 +25,15 @@ Result<Context> Context::make()
                               0};
     const OSMesaContext made = OSMesaCreateContextAttribs(wanted, nullptr);
     if (!made) return reason("OSMesa cannot create an OpenGL 3.3 context; Mesa 17 or newer with llvmpipe or softpipe is needed");
-    return Context(made);
+    return OffscreenContext(made);
 }
 
-Context::~Context()
+OffscreenContext::~OffscreenContext()
 {
     if (context_) OSMesaDestroyContext(context_);
 }
 
-Result<void> Context::acquire()
+Result<void> OffscreenContext::acquire()
 {
     // Shared by all contexts of a thread; it is never read.
     thread_local std::array<std::uint8_t, 4 * kDummySize * kDummySize> dummy;
@@ -42,6 +42,6 @@ Result<void> Context::acquire()
     return {};
 }
 
-void Context::release() { OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
+void OffscreenContext::release() { OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
 
 }  // namespace plab::render

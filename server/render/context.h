@@ -9,24 +9,24 @@
 namespace plab::render
 {
 
-class Context
+class OffscreenContext
 {
 public:
     /// A core profile of OpenGL 3.3 or newer.
-    static Result<Context> make();
+    static Result<OffscreenContext> make();
 
-    Context(Context&& other) noexcept : context_(std::exchange(other.context_, nullptr)) {}
-    Context& operator=(Context&&) = delete;
-    Context(const Context&) = delete;
-    Context& operator=(const Context&) = delete;
-    ~Context();
+    OffscreenContext(OffscreenContext&& other) noexcept : context_(std::exchange(other.context_, nullptr)) {}
+    OffscreenContext& operator=(OffscreenContext&&) = delete;
+    OffscreenContext(const OffscreenContext&) = delete;
+    OffscreenContext& operator=(const OffscreenContext&) = delete;
+    ~OffscreenContext();
 
     /// Makes it current for the calling thread, until `release`. Another thread that used it must have released it.
     Result<void> acquire();
     static void release();
 
 private:
-    explicit Context(OSMesaContext context) : context_(context) {}
+    explicit OffscreenContext(OSMesaContext context) : context_(context) {}
 
     OSMesaContext context_ = nullptr;
 };

@@ -57,7 +57,7 @@ public:
     Current() = default;
     Current(const Current&) = delete;
     Current& operator=(const Current&) = delete;
-    ~Current() { Context::release(); }
+    ~Current() { OffscreenContext::release(); }
 };
 
 /// Everything that lives in the context; destroyed before it.
@@ -73,7 +73,7 @@ struct Parts
 class OsmesaRenderer final : public Renderer
 {
 public:
-    OsmesaRenderer(Context context, Parts parts, std::uint32_t width, std::uint32_t height)
+    OsmesaRenderer(OffscreenContext context, Parts parts, std::uint32_t width, std::uint32_t height)
         : context_(std::move(context)), parts_(std::make_unique<Parts>(std::move(parts))), captions_(height), width_(width), height_(height)
     {
     }
@@ -82,7 +82,7 @@ public:
         // OpenGL objects can only be deleted while a context is current; without one they are released with it.
         const bool current = context_.acquire().ok();
         parts_.reset();
-        if (current) Context::release();
+        if (current) OffscreenContext::release();
     }
     OsmesaRenderer(const OsmesaRenderer&) = delete;
     OsmesaRenderer& operator=(const OsmesaRenderer&) = delete;
@@ -97,7 +97,7 @@ private:
     void draw_plane(const Frame& frame, const Pose& pose, const Vec3& color, double opacity) const;
     void draw_plane_shadow(const Frame& frame, const Vec3& origin, const Vec3& normal) const;
 
-    Context context_;
+    OffscreenContext context_;
     std::unique_ptr<Parts> parts_;
     CaptionPainter captions_;
     std::uint32_t width_, height_;
@@ -249,7 +249,7 @@ Result<std::unique_ptr<Renderer>> make_renderer(std::uint32_t width, std::uint32
     if (width < kLeastSize || width > kMostSize || height < kLeastSize || height > kMostSize)
         return reason("a picture must have from 16 to 8192 pixels in each direction, not " + std::to_string(width) + " x " +
                       std::to_string(height));
-    auto context = Context::make();
+    auto context = OffscreenContext::make();
     if (!context) return context.error();
     if (auto done = context->acquire(); !done) return done.error();
     const Current current;

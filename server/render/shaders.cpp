@@ -143,12 +143,12 @@ uniform mat4 clip_from_E;
 out vec4 result;
 void main()
 {
-    // The ray's nearest point to the middle, and half the way that it takes through the ball.
+    // The ray's nearest point to the middle, and half its chord through the ball.
     vec3 direction = normalize(ray);
     float along = dot(direction, middle);
     vec3 miss = direction * along - middle;
-    float off = dot(miss, miss), half_way = sqrt(max(radius * radius - off, 0.0));
-    vec3 point = direction * (along - half_way);
+    float off = dot(miss, miss), half_chord = sqrt(max(radius * radius - off, 0.0));
+    vec3 point = direction * (along - half_chord);
     vec4 clip = clip_from_E * vec4(point, 1.0);
     gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
     float coverage = clamp((radius - sqrt(off)) / pixel + 0.5, 0.0, 1.0);

@@ -93,7 +93,7 @@ private:
     Result<void> begin(const record::RecordedSnapshot& snapshot);
     Result<void> run(std::uint64_t run);
     Result<void> read_journal(std::uint64_t run);
-    void look_for_gaps(std::uint64_t run);
+    void find_gaps(std::uint64_t run);
     Result<void> ask_what_is_due();
     Result<void> verify(std::uint64_t run);
     bool over()
@@ -139,13 +139,13 @@ Result<void> Replay::read_journal(std::uint64_t run)
     auto journal = log_->journal(run);
     if (!journal) return journal.errors();
     journal_ = journal.take(), next_ = 0;
-    look_for_gaps(run);
+    find_gaps(run);
     // The run's first snapshot already includes a request that begins a run.
     std::erase_if(journal_, [](const wire::Journal& j) { return control::begins_a_run(j.operations); });
     return {};
 }
 
-void Replay::look_for_gaps(std::uint64_t run)
+void Replay::find_gaps(std::uint64_t run)
 {
     for (const wire::Journal& entry : journal_)
     {

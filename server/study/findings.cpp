@@ -127,15 +127,15 @@ void report_failures(const StudyResult& r, std::vector<std::string>& out)
         out.push_back(line + (labels.size() > 1 ? ". The first: " : ": ") + why[outcome] + ".");
     }
     int missed = 0;
-    std::string who;
+    std::string combinations;
     for (const Point& p : r.points)
     {
         if (!p.contacts.known || p.contacts.missed == 0) continue;
-        who += (missed == 0 ? "" : ", ") + p.combination.label() + " (" + std::to_string(p.contacts.missed) + " of " +
-               std::to_string(p.contacts.expected) + ")";
+        combinations += (missed == 0 ? "" : ", ") + p.combination.label() + " (" + std::to_string(p.contacts.missed) + " of " +
+                        std::to_string(p.contacts.expected) + ")";
         if (++missed == 4) break;
     }
-    if (missed > 0) out.push_back("Impacts of the reference that were missed: " + who + ".");
+    if (missed > 0) out.push_back("Impacts of the reference that were missed: " + combinations + ".");
 }
 
 void report_energy(const StudyResult& r, std::vector<std::string>& out)

@@ -207,7 +207,7 @@ Result<Reference> exact_reference(model::TypeSource& types, const model::SceneSp
     }
     out.knows_contacts = solution.knows_contacts();
     if (out.knows_contacts)
-        for (const exact::Touch& c : solution.contacts(until)) out.contacts.push_back({c.kind, c.a, c.b, c.time});
+        for (const exact::ContactStart& c : solution.contacts(until)) out.contacts.push_back({c.kind, c.a, c.b, c.time});
     return out;
 }
 

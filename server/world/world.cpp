@@ -196,20 +196,20 @@ std::vector<World::Created> World::create_from(std::size_t first, Errors& errors
 
 std::vector<World::Created> World::in_order_of_preparation(const std::vector<Created>& created) const
 {
-    struct Place
+    struct PreparationRank
     {
         int order;
         std::uint32_t rank, index;
     };
-    std::vector<Place> places;
+    std::vector<PreparationRank> places;
     places.reserve(created.size());
     for (std::uint32_t k = 0; k < created.size(); ++k)
         places.push_back({prepare_order(created[k].component), rank_[created[k].component], k});
     std::sort(places.begin(), places.end(),
-              [](const Place& a, const Place& b) { return std::pair(a.order, a.rank) < std::pair(b.order, b.rank); });
+              [](const PreparationRank& a, const PreparationRank& b) { return std::pair(a.order, a.rank) < std::pair(b.order, b.rank); });
     std::vector<Created> out;
     out.reserve(created.size());
-    for (const Place& place : places) out.push_back(created[place.index]);
+    for (const PreparationRank& place : places) out.push_back(created[place.index]);
     return out;
 }
 

@@ -78,7 +78,7 @@ public:
     /// Adds all components of `fragment`; ids must be new. Binds roles and prepares rows. After an error the world is unusable until a
     /// backup is restored.
     Result<void> add(const model::SceneSpec& fragment);
-    /// The same for a scene that somebody put together in advance: `whole` consists of the components that are here, followed by those to
+    /// The same for a scene that was put together in advance: `whole` consists of the components that are here, followed by those to
     /// be added.
     Result<void> add(const Shared<model::SceneSpec>& whole);
     /// Removes a component. The caller has checked that no component refers to it. Its row stays parked until release_parked().
@@ -145,7 +145,7 @@ public:
     HostTables& host() { return host_; }
     const HostTables& host() const { return host_; }
     const model::SceneSpec& scene() const { return *scene_; }
-    /// The present scene, for any thread. Whoever holds it can tell by its address whether the scene has changed since.
+    /// The present scene, for any thread. Its holder recognises by its address whether the scene has changed since.
     std::shared_ptr<const model::SceneSpec> lend_scene() const { return scene_.lend(); }
     /// Sets the settings and the file name; to be called before components are added.
     void describe(const model::SceneSettings& settings, const std::string& file);

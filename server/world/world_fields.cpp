@@ -17,8 +17,8 @@ std::uint32_t World::find(const std::string& id) const
 
 const std::string& World::id_of(std::uint32_t component) const
 {
-    static const std::string nobody;
-    return component < components().size() ? directory_->components[component].id : nobody;
+    static const std::string no_id;
+    return component < components().size() ? directory_->components[component].id : no_id;
 }
 
 const model::ComponentType* World::type_of(std::uint32_t component) const

@@ -1,4 +1,4 @@
-/// The architecture as data: who may include whom. The only place in the tests that says so.
+/// The architecture as data: which folder may include which. The only place in the tests that states it.
 #pragma once
 
 #include <string_view>
@@ -116,7 +116,7 @@ inline const std::vector<Layer>& layers()
         {"interactions/managers", {"server/sdk", "server/linear"}, {}},
         {"interactions/scripts", {"server/sdk"}, {"lua.hpp"}},
         {"interactions/*", {"server/sdk"}, {}},
-        {"idl/values", {}, {}},  // plain values: who includes them sees no DDS
+        {"idl/values", {}, {}},  // plain values: files that include them see no DDS
         {"idl/recording",
          {"idl"},
          {"dds/", "zlib.h", "zstd.h", "lz4frame.h", "fcntl.h", "unistd.h", "sys/stat.h", "pthread.h", "semaphore.h"}},

@@ -35,7 +35,7 @@ std::string state_of(Server& server)
     const std::size_t before = server.process().output().size();
     std::this_thread::sleep_for(Milliseconds(300));
     const std::string said = server.process().errors();
-    return "nobody answers; hashes in 0.3 s: " + std::to_string(server.process().output().size() - before) + " bytes; plab-bus ended " +
+    return "no answer; hashes in 0.3 s: " + std::to_string(server.process().output().size() - before) + " bytes; plab-bus ended " +
            std::to_string(count(said, "it will be restarted in")) +
            " times; last words: " + said.substr(said.size() - std::min<std::size_t>(said.size(), 3000));
 }

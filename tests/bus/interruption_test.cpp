@@ -69,7 +69,7 @@ TEST_CASE("shutdown ends a server at once, also a paused one")
     }
 }
 
-TEST_CASE("a waiting request is withdrawn by cancel, and its client is told")
+TEST_CASE("a waiting request is withdrawn by cancel, and its client gets a reply")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     const link::Session session = server.session();

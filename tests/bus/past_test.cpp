@@ -20,15 +20,15 @@ Json parse(const Outcome& outcome)
     return out;
 }
 
-struct Place
+struct StepHash
 {
     std::int64_t step = -1;
     std::uint64_t hash = 0;
-    bool operator==(const Place&) const = default;
+    bool operator==(const StepHash&) const = default;
 };
 
 /// The present state of a server: a new reader of snapshots gets one.
-Place place_of(const std::string& server)
+StepHash hash_of(const std::string& server)
 {
     link::SessionOptions options;
     options.server = server;
@@ -36,7 +36,7 @@ Place place_of(const std::string& server)
     REQUIRE_MESSAGE(session.ok(), session.error().text());
     auto reader = session->reader<plab_v2_Snapshot>();
     REQUIRE(reader.ok());
-    Place out;
+    StepHash out;
     for (int i = 0; i < 50 && out.step < 0; ++i)
     {
         (void)session->wait(*reader, Seconds(0.1));
@@ -98,13 +98,13 @@ Json shown(const std::string& name)
 TEST_CASE("a snapshot has a name, is listed, and is restored bit for bit")
 {
     Server server = at_sixty();
-    const Place before = place_of(server.name());
+    const StepHash before = hash_of(server.name());
     REQUIRE(before.step == 60);
     CHECK(control(server, {"snapshot", "before"}).code == 0);
     for (const char* name : {"a/b", "a b", ""}) CHECK(control(server, {"snapshot", name}).code == 2);
     CHECK(control(server, {"snapshot", std::string(65, 'a')}).code == 2);
     step(server.name(), 60, 90);
-    CHECK(place_of(server.name()).hash != before.hash);
+    CHECK(hash_of(server.name()).hash != before.hash);
     const Json kept = parse(control(server, {"snapshots", "--json"}));
     REQUIRE(kept["snapshots"].size() == 1);
     CHECK(kept["snapshots"][0]["name"] == "before");
@@ -112,7 +112,7 @@ TEST_CASE("a snapshot has a name, is listed, and is restored bit for bit")
     CHECK(kept["rewind_from"] == 0);
     CHECK(control(server, {"restore", "befor"}).code == 4);
     CHECK(control(server, {"restore", "before"}).code == 0);
-    CHECK(place_of(server.name()) == before);
+    CHECK(hash_of(server.name()) == before);
     // A negative number does not say how far back to go.
     for (const char* option : {"--to", "--by"})
     {
@@ -122,7 +122,7 @@ TEST_CASE("a snapshot has a name, is listed, and is restored bit for bit")
     }
     step(server.name(), 60, 84);
     CHECK(control(server, {"rewind", "--by", "0.1"}).code == 0);
-    CHECK(place_of(server.name()) == before);
+    CHECK(hash_of(server.name()) == before);
     CHECK(server.end() == 0);
 }
 
@@ -134,12 +134,12 @@ TEST_CASE("a branch appears beside its server and continues from the same state"
     const Stranger branch(born["process"].get<int>());
     CHECK(born["server"] == name);
     CHECK(born["step"] == 60);
-    CHECK(place_of(name) == place_of(server.name()));
+    CHECK(hash_of(name) == hash_of(server.name()));
     CHECK(has(shown(name)["scene_file"].get<std::string>(), "fan_and_balloons.xml"));
     step(name, 60, 90);
-    CHECK(place_of(server.name()).step == 60);
+    CHECK(hash_of(server.name()).step == 60);
     step(server.name(), 60, 90);
-    CHECK(place_of(name) == place_of(server.name()));
+    CHECK(hash_of(name) == hash_of(server.name()));
     CHECK(run({program("plabctl"), "--server", name, "shutdown"}).code == 0);
     CHECK(control(server, {"branch", server.name(), "--log", log}).code == 1);  // the name is taken
     CHECK(server.end() == 0);
@@ -149,7 +149,7 @@ TEST_CASE("a branch appears beside its server and continues from the same state"
 TEST_CASE("a shadow reports what a swap would do, without doing it")
 {
     Server server = at_sixty();
-    const Place before = place_of(server.name());
+    const StepHash before = hash_of(server.name());
     const Json reported = parse(control(server, {"shadow", "contact.response", "--with", "Response/None", "--for", "0.2", "--json"}));
     CHECK(reported["steps"] == 48);
     CHECK(reported["differences"].back()["time"].get<double>() == doctest::Approx(0.45));
@@ -159,7 +159,7 @@ TEST_CASE("a shadow reports what a swap would do, without doing it")
     CHECK(reported["differences"][0]["distance"] == 0.0);
     CHECK(reported["differences"][0]["turn"] == 0.0);
     CHECK(control(server, {"shadow", "contact.response", "--with", "Field/Gravity"}).code == 1);
-    CHECK(place_of(server.name()) == before);
+    CHECK(hash_of(server.name()) == before);
     CHECK(server.end() == 0);
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("a snapshot is saved to a file, and a run from there equals the origin
     Server server = at_sixty();
     REQUIRE(control(server, {"snapshot", "keep", "-o", file}).code == 0);
     step(server.name(), 60, 66);
-    const Place after = place_of(server.name());
+    const StepHash after = hash_of(server.name());
     const Outcome loaded = run({program("plabd"), "--load", file, "--no-bus", "--until", "0.275", "--hashes"});
     REQUIRE_MESSAGE(loaded.code == 0, loaded.errors);
     char last[40];

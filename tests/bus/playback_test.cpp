@@ -24,9 +24,9 @@ std::string fresh(const std::string& name)
     return file;
 }
 
-recording::Reader open_file(const std::string& file)
+recording::McapReader open_file(const std::string& file)
 {
-    auto reader = recording::Reader::open(file);
+    auto reader = recording::McapReader::open(file);
     REQUIRE_MESSAGE(reader.ok(), reader.error().text());
     return reader.take();
 }
@@ -34,7 +34,7 @@ recording::Reader open_file(const std::string& file)
 /// All messages of a topic, in their order.
 std::vector<recording::Bytes> messages_of(const std::string& file, const std::string& topic)
 {
-    const recording::Reader reader = open_file(file);
+    const recording::McapReader reader = open_file(file);
     std::vector<recording::Bytes> out;
     recording::Cursor cursor = reader.messages({{topic}});
     for (auto next = cursor.next(); next && *next; next = cursor.next())

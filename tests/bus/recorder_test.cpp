@@ -60,7 +60,7 @@ struct Content
 Content read_whole(const std::string& file, bool may_have_gaps = false)
 {
     Content out;
-    auto reader = recording::Reader::open(file);
+    auto reader = recording::McapReader::open(file);
     REQUIRE_MESSAGE(reader.ok(), reader.error().text());
     CHECK(reader->index().troubles.empty());
     out.is_closed = reader->index().is_closed;
@@ -98,7 +98,7 @@ std::int64_t wall_ns()
 class Witness
 {
 public:
-    void take(wire::Reader<plab_v2_Frame>& frames)
+    void take(wire::DataReader<plab_v2_Frame>& frames)
     {
         frames.take(
             [&](const plab_v2_Frame& frame, const dds_sample_info_t& info)

@@ -167,7 +167,7 @@ TEST_CASE("load, reset, dt and shutdown")
     CHECK(server.process().wait(Milliseconds(5000)) == 0);
 }
 
-TEST_CASE("clients with waiting requests are told when the server ends, and it ends with success")
+TEST_CASE("clients with waiting requests get a reply when the server ends, and it ends with success")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     Client client(server);

@@ -57,7 +57,7 @@ std::map<std::int64_t, std::string> hashes_in(const std::string& text)
 }
 
 /// Seconds until a frame of a later step than any before has arrived.
-double seconds_to_frame(const link::Session& session, wire::Reader<plab_v2_Frame>& frames)
+double seconds_to_frame(const link::Session& session, wire::DataReader<plab_v2_Frame>& frames)
 {
     std::int64_t last = -1;
     const auto note = [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
@@ -70,7 +70,7 @@ double seconds_to_frame(const link::Session& session, wire::Reader<plab_v2_Frame
 }
 
 /// Kinds of events received.
-std::vector<std::string> kinds(wire::Reader<plab_v2_Events>& events)
+std::vector<std::string> kinds(wire::DataReader<plab_v2_Events>& events)
 {
     std::vector<std::string> out;
     (void)events.take(
@@ -87,7 +87,7 @@ class EventCount
 {
 public:
     explicit EventCount(std::string kind) : kind_(std::move(kind)) {}
-    void take(wire::Reader<plab_v2_Events>& events)
+    void take(wire::DataReader<plab_v2_Events>& events)
     {
         (void)events.take(
             [&](const plab_v2_Events& batch, const dds_sample_info_t& info)
@@ -335,7 +335,7 @@ TEST_CASE("plab-bus ends with plabd, however that ends, and can be started by no
     CHECK(has(alone.errors, "plab-bus is started by plabd"));
 }
 
-TEST_CASE("a signal to the whole process group ends plab-bus only after clients have been told of the end")
+TEST_CASE("a signal to the whole process group ends plab-bus only after clients have been informed of the end")
 {
     Server server(kScene, {"--paused"});
     const link::Session session = server.session();

@@ -15,7 +15,7 @@ namespace
 /// Requests that the file says were carried out, but for those of the clock: "RUN STEP VERB ORIGIN", a line each.
 std::string journal_of(const std::string& file)
 {
-    auto reader = recording::Reader::open(file);
+    auto reader = recording::McapReader::open(file);
     REQUIRE_MESSAGE(reader.ok(), reader.error().text());
     std::string out;
     recording::Decoder decoder;

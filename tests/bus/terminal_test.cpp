@@ -53,7 +53,7 @@ public:
     bool shows(const std::string& text)
     {
         const auto end = Clock::now() + std::chrono::seconds(8);
-        while (seen_.find(text) == std::string::npos && Clock::now() < end) look();
+        while (seen_.find(text) == std::string::npos && Clock::now() < end) read_screen();
         const auto at = seen_.find(text);
         if (at == std::string::npos) return false;
         seen_.erase(0, at + text.size());
@@ -64,7 +64,7 @@ public:
     {
         int status = 0;
         const auto end = Clock::now() + std::chrono::seconds(8);
-        while (waitpid(pid_, &status, WNOHANG) == 0 && Clock::now() < end) look();
+        while (waitpid(pid_, &status, WNOHANG) == 0 && Clock::now() < end) read_screen();
         pid_ = -1;
         return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     }
@@ -91,7 +91,7 @@ private:
         (void)execv(arguments[0], arguments.data());
         _exit(127);
     }
-    void look()
+    void read_screen()
     {
         pollfd input{master_, POLLIN, 0};
         std::array<char, 1024> bytes{};

@@ -35,7 +35,7 @@ void check_unit(const Field& field)
     if (field.unit == unit::one) return;
     CHECK(can_have_unit(field.type));
     const auto parsed = model::parse_unit(field.unit.symbol);
-    REQUIRE_MESSAGE(parsed.ok(), "nobody can write the unit '", field.unit.symbol, "'");
+    REQUIRE_MESSAGE(parsed.ok(), "no blueprint can contain the unit '", field.unit.symbol, "'");
     CHECK(model::unit_fits(parsed->dimension, field.unit.dimension));
     CHECK_MESSAGE(parsed->to_si(1) == 1, field.unit.symbol, " is no SI unit");
 }
@@ -71,7 +71,7 @@ void check_command(const CommandInfo& command)
     CHECK(is_doc(command.doc));
 }
 
-/// What somebody who chooses among the algorithms of a family has to know.
+/// What a user has to know to choose among the algorithms of a family.
 void check_algorithm(const TypeInfo& info)
 {
     CHECK_MESSAGE((info.order > 0 || is_doc(info.accuracy)), "neither an order nor an accuracy");

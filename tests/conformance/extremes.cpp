@@ -28,7 +28,7 @@ constexpr double kEnough = 5;
 /// s of real time after which loading, or a step, counts as endless; machines may be busy.
 constexpr unsigned kEndless = 60;
 
-/// What a child tells its parent.
+/// What a child process reports to its parent.
 struct Progress
 {
     std::size_t at = 0;  ///< case that is being run

@@ -1,4 +1,4 @@
-// A command that is called for nobody does nothing: no row, no effect, no crash.
+// A command that is called without rows does nothing: no row, no effect, no crash.
 #include "subjects.h"
 #include "world/host_tables.h"
 
@@ -32,7 +32,7 @@ struct NoReactions final : ShaftReactions
     std::optional<double> torque(std::uint32_t) const override { return {}; }
 };
 
-/// A group in which nobody moves.
+/// A group in which no object moves.
 struct EmptySystem final : DynamicSystem
 {
     std::span<double> coordinates() override { return {}; }

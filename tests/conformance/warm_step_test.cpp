@@ -95,7 +95,7 @@ TEST_CASE("a warm step in which nothing happens asks for no memory")
     }
 }
 
-TEST_CASE("every figure stays finite, and nobody complains")
+TEST_CASE("every figure stays finite, and no warning is reported")
 {
     for (const Subject& subject : subjects())
     {

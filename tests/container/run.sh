@@ -120,7 +120,7 @@ check_viewer() {
     echo "picture: $work/now.png, $(stat -c %s "$file") bytes"
 }
 
-# SIGTERM to process 1; who has not ended after 3 s is killed, which is exit code 137.
+# SIGTERM to process 1; a process that has not ended after 3 s is killed, which is exit code 137.
 stop_and_expect() {
     local begin
     begin=$(now)

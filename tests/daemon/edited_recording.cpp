@@ -12,7 +12,7 @@ namespace
 
 using recording::ChannelId;
 
-Result<std::map<ChannelId, ChannelId>> copy_channels(const recording::Reader& reader, recording::Writer& writer)
+Result<std::map<ChannelId, ChannelId>> copy_channels(const recording::McapReader& reader, recording::McapWriter& writer)
 {
     std::map<ChannelId, ChannelId> out;
     for (const auto& [id, channel] : reader.channels())
@@ -30,7 +30,7 @@ Result<std::map<ChannelId, ChannelId>> copy_channels(const recording::Reader& re
     return out;
 }
 
-Result<void> copy_head(const recording::Reader& reader, recording::Writer& writer, const Edits& edits)
+Result<void> copy_head(const recording::McapReader& reader, recording::McapWriter& writer, const Edits& edits)
 {
     auto about = reader.metadata("plab");
     if (!about) return about.errors();
@@ -44,9 +44,9 @@ Result<void> copy_head(const recording::Reader& reader, recording::Writer& write
 
 Result<void> copy_recording(const std::string& from, const std::string& to, const Edits& edits)
 {
-    auto reader = recording::Reader::open(from);
+    auto reader = recording::McapReader::open(from);
     if (!reader) return reader.errors();
-    auto writer = recording::Writer::create(to, {}, recording::Overwrite::Yes);
+    auto writer = recording::McapWriter::create(to, {}, recording::Overwrite::Yes);
     if (!writer) return writer.errors();
     if (auto done = copy_head(*reader, *writer, edits); !done) return done;
     const auto channels = copy_channels(*reader, *writer);

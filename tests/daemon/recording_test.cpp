@@ -52,7 +52,7 @@ std::vector<std::string> lines_of(const std::string& text)
 template <class T>
 void read_last(const std::string& file, recording::Sample<T>& sample)
 {
-    auto reader = recording::Reader::open(file);
+    auto reader = recording::McapReader::open(file);
     REQUIRE(reader);
     auto last = reader->last_at(wire::topic_of<T>().name, std::numeric_limits<std::uint64_t>::max());
     REQUIRE(last);
@@ -70,7 +70,7 @@ std::int64_t wall_ns()
 bool has_hashes(const std::string& file)
 {
     if (!std::filesystem::exists(file)) return false;
-    const auto reader = recording::Reader::open(file);
+    const auto reader = recording::McapReader::open(file);
     return reader && !reader->channels_of({wire::topic_of<plab_v2_Hashes>().name}).empty();
 }
 
@@ -96,7 +96,7 @@ struct Newest
 
 Newest newest_in(const std::string& file)
 {
-    auto reader = recording::Reader::open(file);
+    auto reader = recording::McapReader::open(file);
     REQUIRE(reader);
     recording::Sample<plab_v2_Hashes> hashes;
     read_last(file, hashes);

@@ -121,7 +121,7 @@ TEST_CASE("a recording of format 1, whose types are plab::v1, is refused with th
     }
 }
 
-TEST_CASE("a journal with another value: step, object, column and both values are told")
+TEST_CASE("a journal with another value: step, object, column and both values are reported")
 {
     const auto change = [](const std::string& topic, recording::Bytes& data)
     {
@@ -177,11 +177,12 @@ TEST_CASE("one bit of a hash in the file, with and without a state beside it")
                                    });
         return true;
     };
-    const Outcome nobody = verify(edited("bit.mcap", {alone, nullptr}));
-    CHECK(nobody.code == 1);
-    CHECK_MESSAGE(has(nobody.output, "run 1, step 141: recorded hash "), nobody.output);
-    CHECK_MESSAGE(has(nobody.output, "the recorded frame of step 144 is identical: the difference is in data that frames do not contain"),
-                  nobody.output);
+    const Outcome alone_wrong = verify(edited("bit.mcap", {alone, nullptr}));
+    CHECK(alone_wrong.code == 1);
+    CHECK_MESSAGE(has(alone_wrong.output, "run 1, step 141: recorded hash "), alone_wrong.output);
+    CHECK_MESSAGE(
+        has(alone_wrong.output, "the recorded frame of step 144 is identical: the difference is in data that frames do not contain"),
+        alone_wrong.output);
     // And where nothing is recorded behind it.
     const auto last = [&](const std::string& topic, recording::Bytes& data) { return topic != "plab/states" && alone(topic, data); };
     const Outcome blind = verify(edited("bit.mcap", {last, nullptr}));
@@ -208,7 +209,7 @@ TEST_CASE("a journal that has a gap, or is not there, is named as the cause")
     CHECK_MESSAGE(has(nowhere.errors, "no snapshot to start from: it was made without plab/snapshots"), nowhere.errors);
 }
 
-TEST_CASE("who verifies nothing is told why, and does not read that something was verified")
+TEST_CASE("a verification without anything to compare states why, and does not claim that something was verified")
 {
     const Outcome late = verify(kGolden, {"--from", "100000"});
     CHECK(late.code == 1);
@@ -242,11 +243,11 @@ TEST_CASE("a recording of a different build is replayed with a warning before, o
     const std::string other = scratch_file("other.mcap");
     REQUIRE(copy_recording(file, other, {nullptr, [](recording::Pairs& about) { about["build"] = "plab 0.1.9"; }}));
     CHECK(has(verify(other).errors, "recorded by a different build: digits may differ\n  recorded: plab 0.1.9\n"));
-    // Recorded from the bus: its snapshots tell.
+    // Recorded from the bus: its snapshots show it.
     REQUIRE(copy_recording(file, other, {nullptr, [](recording::Pairs& about) { about.erase("build"); }}));
     CHECK(!has(verify(other).errors, "a different build"));
-    // What is told of the build names no place.
-    auto reader = recording::Reader::open(file);
+    // What is stated about the build names no place.
+    auto reader = recording::McapReader::open(file);
     REQUIRE(reader);
     const std::string build = reader->metadata("plab")->values.at("build");
     CHECK(has(build, "compiler "));

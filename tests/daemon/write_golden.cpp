@@ -27,7 +27,7 @@ int main(int argc, char** argv)
     using namespace plab::test;
     if (argc != 2) return std::fputs("usage: recording_golden FILE\n", stderr), 2;
     const std::string out = std::filesystem::absolute(argv[1]).string(), made = scratch_file("golden.mcap");
-    // The file tells how the scene was named.
+    // The file contains the name under which the scene was given.
     std::filesystem::current_path(std::string(PLAB_SOURCE_DIR) + "/tests/daemon/golden");
     const Outcome recorded =
         run({program("plabd"), "scene.xml", "--no-bus", "--until", "0.75", "--record", made, "--overwrite", "--record-states", "60",

@@ -42,7 +42,7 @@ constexpr Foreign kForeign[] = {
 constexpr std::string_view kForeignOptions[] = {"--format",  "--init",    "--no-healthcheck", "--component", "--network", "--internal",
                                                 "--compile", "--seconds", "--pile",           "--all",       "--print",   "--strip"};
 
-/// README.md of the root and of each folder, and server/docs without what is generated or tells of the past.
+/// README.md of the root and of each folder, and server/docs without what is generated or describes the past.
 std::vector<std::string> documents(const Declared& declared)
 {
     std::vector<std::string> out;

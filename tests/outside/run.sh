@@ -34,7 +34,7 @@ install_and_move() {
         fail "installed files name folders of the machine that made them"
 }
 
-# As it is written; only where pLab is, and whom else it must not meet, is said from outside.
+# As it is written; only where pLab is, and which other servers it must not meet, is set from outside.
 run_tutorial() {
     local tree=$work/tutorial
     write_tutorial "$tree"
@@ -67,13 +67,13 @@ run_pkg_config() {
 # What is refused, and how. A plugin that breaks its word does not conform: its doc ends with a full stop here.
 check_refusals() {
     local said
-    mkdir -p "$work/bent/conformance"
-    sed 's/"of the planet"/"of the planet."/' "$work/tutorial/inverse_square.cpp" >"$work/bent/inverse_square.cpp"
-    cp "$work"/tutorial/conformance/*.xml "$work/bent/conformance/"
-    sed -e '/exchange/d' -e '/configure_file/d' "$work/tutorial/CMakeLists.txt" >"$work/bent/CMakeLists.txt"
-    quietly bent_build bash -ec 'cmake -S "$1" -B "$1" -DCMAKE_PREFIX_PATH="$2" && cmake --build "$1"' - "$work/bent" "$prefix" || fail "bent plugin"
-    ! "$prefix/bin/plab-conformance" "$work/bent/inverse_square.so" >"$work/bent.log" 2>&1 || fail "a bent plugin conforms"
-    grep -q 'is_doc(field.doc)' "$work/bent.log" || fail "it is not said what is bent: $(tail "$work/bent.log")"
+    mkdir -p "$work/faulty/conformance"
+    sed 's/"of the planet"/"of the planet."/' "$work/tutorial/inverse_square.cpp" >"$work/faulty/inverse_square.cpp"
+    cp "$work"/tutorial/conformance/*.xml "$work/faulty/conformance/"
+    sed -e '/exchange/d' -e '/configure_file/d' "$work/tutorial/CMakeLists.txt" >"$work/faulty/CMakeLists.txt"
+    quietly faulty_build bash -ec 'cmake -S "$1" -B "$1" -DCMAKE_PREFIX_PATH="$2" && cmake --build "$1"' - "$work/faulty" "$prefix" || fail "faulty plugin"
+    ! "$prefix/bin/plab-conformance" "$work/faulty/inverse_square.so" >"$work/faulty.log" 2>&1 || fail "a faulty plugin conforms"
+    grep -q 'is_doc(field.doc)' "$work/faulty.log" || fail "the fault is not stated: $(tail "$work/faulty.log")"
     said=$("$prefix/bin/plab-conformance" "$work/no_such.so" 2>&1 || true)
     [[ $said == *"no_such.so"*"cannot be loaded"* ]] || fail "a plugin that is not there: $said"
     said=$(PLAB_PLUGIN_PATH=$work/tutorial/build:$work/pkg "$prefix/bin/plabd" --reference InverseSquare 2>&1 || true)
@@ -82,7 +82,7 @@ check_refusals() {
     [[ $said == *"plugin folder $work/nothing cannot be read"* ]] || fail "a plugin folder that is not there: $said"
 }
 
-# Pages of the manual are there and format; shells are told what may stand at the cursor.
+# Pages of the manual are there and format; shells get what may stand at the cursor.
 check_help() {
     local program shell said
     for program in plabd plab-bus plabctl plab-log plab-study plab-view plab-manifest plab-conformance; do

@@ -78,7 +78,7 @@ void write_frames(const std::string& path, const Setting& setting, const std::st
         const ByteView bytes = must(encoder.encode(frames.next()));
         samples.emplace_back(bytes.begin(), bytes.end());
     }
-    Writer writer = must(Writer::create(path, options_of(setting), Overwrite::Yes));
+    McapWriter writer = must(McapWriter::create(path, options_of(setting), Overwrite::Yes));
     const auto schema = must(writer.add_schema(must(schema_of<plab_v2_Frame>())));
     const auto channel = must(writer.add_channel(channel_of<plab_v2_Frame>(schema)));
     const double begin = cpu();
@@ -104,7 +104,7 @@ void write_frames(const std::string& path, const Setting& setting, const std::st
 void write_small(const std::string& path, const Setting& setting)
 {
     constexpr int kCount = 1'000'000;
-    Writer writer = must(Writer::create(path, options_of(setting), Overwrite::Yes));
+    McapWriter writer = must(McapWriter::create(path, options_of(setting), Overwrite::Yes));
     const auto channel = must(writer.add_channel({0, 0, "plab/hashes", "cdr", {}}));
     Bytes sample(48, 0);
     const double begin = cpu();
@@ -150,7 +150,7 @@ void read_large(const std::string& folder)
     test::WalkingFrames frames(1000, 1000, 1e-3);
     Encoder encoder;
     {
-        Writer writer = must(Writer::create(path, options_of({"zstd", Compression::Zstd, 1}), Overwrite::Yes));
+        McapWriter writer = must(McapWriter::create(path, options_of({"zstd", Compression::Zstd, 1}), Overwrite::Yes));
         const auto schema = must(writer.add_schema(must(schema_of<plab_v2_Frame>())));
         const auto channel = must(writer.add_channel(channel_of<plab_v2_Frame>(schema)));
         Clock::time_point now{};
@@ -162,7 +162,7 @@ void read_large(const std::string& folder)
         must(writer.close());
     }
     auto begin = Clock::now();
-    Reader reader = must(Reader::open(path));
+    McapReader reader = must(McapReader::open(path));
     print("open 1 GB", "ms", seconds_since(begin) * 1e3);
     print("open 1 GB", "chunks", static_cast<double>(reader.index().chunks.size()));
     double worst = 0;
@@ -182,7 +182,7 @@ void read_large(const std::string& folder)
     std::filesystem::rename(path, cut);
     std::filesystem::resize_file(cut, std::filesystem::file_size(cut) - 5'000'000);
     begin = Clock::now();
-    (void)must(Reader::open(cut));
+    (void)must(McapReader::open(cut));
     print("open 1 GB that was cut", "ms", seconds_since(begin) * 1e3);
     begin = Clock::now();
     (void)must(recover(cut, recovered, Overwrite::Yes));

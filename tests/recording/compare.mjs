@@ -81,7 +81,7 @@ async function compareIndexed(bytes, lines) {
     compareMessage(lines[next++], message, channel, reader.schemasById.get(channel.schemaId));
   }
   if (next !== lines.length) fail(`${next} messages, not ${lines.length}`);
-  if (reader.statistics.messageCount !== BigInt(lines.length)) fail(`statistics tell ${reader.statistics.messageCount} messages`);
+  if (reader.statistics.messageCount !== BigInt(lines.length)) fail(`statistics count ${reader.statistics.messageCount} messages`);
   for await (const record of reader.readMetadata()) if (!record.metadata.has("crc32")) fail(`metadata ${record.name} has no seal`);
 }
 

@@ -58,7 +58,7 @@ std::int64_t ns_of(Clock::time_point t) { return t.time_since_epoch().count(); }
 /// Records four messages each millisecond, until it is killed.
 [[noreturn]] void record(const std::string& path, Diary& diary)
 {
-    auto writer = Writer::create(path, {}, Overwrite::Yes).take();
+    auto writer = McapWriter::create(path, {}, Overwrite::Yes).take();
     const auto channel = writer.add_channel({0, 0, "numbers", "raw", {}}).take();
     for (std::uint64_t n = 0; n < kMostMessages; ++n)
     {
@@ -78,7 +78,7 @@ std::int64_t ns_of(Clock::time_point t) { return t.time_since_epoch().count(); }
 /// Messages of the file, which must be 0, 1, 2, ... without a gap.
 std::uint64_t count_messages(const std::string& path)
 {
-    auto reader = Reader::open(path);
+    auto reader = McapReader::open(path);
     REQUIRE(reader);
     CHECK(reader->index().troubles.empty());
     std::uint64_t n = 0;

@@ -84,7 +84,7 @@ Result<void> write(const std::string& path, const std::string& compression)
     if (!topics) return topics.errors();
     WriterOptions options;
     options.compression = compression_of(compression == "none" ? "" : compression).value_or(Compression::None);
-    auto writer = Writer::create(path, options, Overwrite::Yes);
+    auto writer = McapWriter::create(path, options, Overwrite::Yes);
     if (!writer) return writer.errors();
     if (auto done = writer->add_metadata({"plab", {{"format", "2"}, {"server", "pair"}}}); !done) return done;
 
@@ -130,7 +130,7 @@ Result<void> dump(const std::string& path)
 {
     auto topics = describe_topics();
     if (!topics) return topics.errors();
-    auto reader = Reader::open(path);
+    auto reader = McapReader::open(path);
     if (!reader) return reader.errors();
     Cursor messages = reader->messages();
     for (auto next = messages.next();; next = messages.next())

@@ -34,7 +34,7 @@ private:
     {
         WriterOptions options;
         options.compression = Compression::Lz4;
-        auto writer = Writer::create(path, options, Overwrite::Yes).take();
+        auto writer = McapWriter::create(path, options, Overwrite::Yes).take();
         const auto schema = writer.add_schema(*schema_of<plab_v2_Frame>()).take();
         const auto states = writer.add_channel(channel_of<plab_v2_Frame>(schema)).take();
         const auto rare = writer.add_channel({0, 0, "rare", "text", {}}).take();
@@ -72,7 +72,7 @@ TEST_CASE("opening a file of 1 GB and seeking to any time in it take less than a
         const double seconds = time_of(
             [&]
             {
-                auto reader = Reader::open(file.path);
+                auto reader = McapReader::open(file.path);
                 REQUIRE(reader);
                 REQUIRE(reader->index().has_summary);
                 auto found = reader->last_at("plab/states", time);
@@ -95,7 +95,7 @@ TEST_CASE("opening a file of 1 GB and seeking to any time in it take less than a
     const double seconds = time_of(
         [&]
         {
-            auto reader = Reader::open(file.path);
+            auto reader = McapReader::open(file.path);
             REQUIRE(reader);
             CHECK(!reader->index().has_summary);
             CHECK(reader->last_at("plab/states", file.end / 2)->has_value());

@@ -34,7 +34,7 @@ struct Hanging
 {
     double tension = 0, stretch = 0;  ///< relative to each link's load, the worst; m, of the whole
 };
-Hanging look_at_chain(const Scene& s, int links)
+Hanging measure_chain(const Scene& s, int links)
 {
     Hanging out;
     for (int i = 0; i <= links; ++i)
@@ -79,7 +79,7 @@ TEST_CASE("E5: a chain under a tonne, with every solver: it hangs still, so no o
         Scene s(heavy_chain(solver(algorithm), links), per_second(60));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.step(10);
-        const Hanging found = look_at_chain(s, links);
+        const Hanging found = measure_chain(s, links);
         MESSAGE(name << ": tension " << found.tension << " stretch " << found.stretch);
         CHECK(found.tension < 1.1e-14);  // twice the error reached
         CHECK(found.stretch < 1e-14);
@@ -107,8 +107,8 @@ TEST_CASE("E5: the same chain of ropes, with every manager")
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = s.keep_events = true;
         s.run(1);
-        const Hanging found = look_at_chain(s, 100);
-        MESSAGE(row.manager << ": tension " << found.tension << " stretch " << found.stretch << " told "
+        const Hanging found = measure_chain(s, 100);
+        MESSAGE(row.manager << ": tension " << found.tension << " stretch " << found.stretch << " reports "
                             << s.count("manager.not_converged"));
         CHECK(found.tension < 2 * row.tension);
         CHECK(found.stretch < 2 * row.stretch);

@@ -96,7 +96,7 @@ TEST_CASE("B1: explicit algorithms stay within the amplitude below their limit, 
             s.step(30);
             const double place = s.vec("mass", "position").x;
             const bool ended = s.count("state.not_finite") > 0;
-            MESSAGE(name << " " << k << ": " << place << std::string(ended ? ", told" : ""));
+            MESSAGE(name << " " << k << ": " << place << std::string(ended ? ", reported" : ""));
             if (k < 1e5)
             {
                 CHECK(std::fabs(place) < 1);

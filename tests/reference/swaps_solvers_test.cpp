@@ -41,11 +41,11 @@ struct PostingRows
 };
 Simulation* posts_to = nullptr;
 const Request* posted = nullptr;
-int looks = 0;
+int trials = 0;
 
 void bisect_and_post(const StepContext&, Row, const PostingRows&, plab::Trial& trial)
 {
-    ++looks;
+    ++trials;
     if (posts_to && trial.iteration == 5) std::exchange(posts_to, nullptr)->post(*posted);
     const double middle = 0.5 * (trial.begin + trial.end);
     trial.decision = trial.end - trial.begin <= 1e-12 ? plab::Trial::Decision::Accept : plab::Trial::Decision::Try;
@@ -163,14 +163,14 @@ TEST_CASE("H6: a request that comes while an impact is located waits for the bou
         Request request;
         request.operations = {operation};
         auto during = bouncing(types), after = bouncing(types);
-        looks = 0;
+        trials = 0;
         Tick hit = 0;
         posts_to = during.get(), posted = &request;
         while (posts_to) during->step(), ++hit;
-        REQUIRE(looks > 5);
+        REQUIRE(trials > 5);
         CHECK(during->take_replies().empty());
-        Simulation* nobody = nullptr;
-        posts_to = nobody;
+        Simulation* none = nullptr;
+        posts_to = none;
         for (Tick i = 0; i < hit; ++i) after->step();
         // The request has not affected the step with the impact.
         CHECK(during->state_hash() == after->state_hash());

@@ -55,7 +55,7 @@ TEST_CASE("the error of a solver of order 1 is its difference in one step from o
 
 TEST_CASE("shadow steps leave the run bit for bit as it is")
 {
-    const auto hashes = [](bool looks)
+    const auto hashes = [](bool measured)
     {
         Scene s = Scene::file("scenes/fan_and_balloons.xml");
         s.warnings_expected = true;
@@ -65,7 +65,7 @@ TEST_CASE("shadow steps leave the run bit for bit as it is")
         {
             s.step();
             out.push_back(s.hash());
-            if (looks) probe.follow(s.simulation(), std::int64_t{1} << (40 + i / 10));  // always due
+            if (measured) probe.follow(s.simulation(), std::int64_t{1} << (40 + i / 10));  // always due
         }
         return out;
     };

@@ -126,15 +126,15 @@ TEST_CASE("the progress of a long step can be read from another thread")
 {
     Scene s = long_step();
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    CHECK(s.simulation().progress().look().activity == Activity::Nothing);
+    CHECK(s.simulation().progress().read().activity == Activity::Nothing);
     Interruption interruption;
     s.simulation().obey(&interruption);
-    Progress::Look seen;
+    Progress::Reading seen;
     std::thread watcher(
         [&]
         {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
-            seen = s.simulation().progress().look();
+            seen = s.simulation().progress().read();
             interruption.ask();
         });
     CHECK(!s.simulation().step());
@@ -143,7 +143,7 @@ TEST_CASE("the progress of a long step can be read from another thread")
     CHECK(seen.step == 0);
     CHECK(seen.work > 100);
     CHECK(seen.since_ns > 0);
-    CHECK(s.simulation().progress().look().activity == Activity::Nothing);
+    CHECK(s.simulation().progress().read().activity == Activity::Nothing);
 }
 
 TEST_CASE("a pile that continues from a snapshot of any step moves as without it: no bit depends on earlier steps")

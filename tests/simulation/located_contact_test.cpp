@@ -172,7 +172,7 @@ TEST_CASE("a wall of touching bricks is released: its first step takes bounded w
         s.warnings_expected = true;
         s.step();
         MESSAGE(std::string(response), ": ", s.simulation().stepper().report().swept_rows, " rows, ",
-                s.simulation().stepper().report().trials, " looks");
+                s.simulation().stepper().report().trials, " trials");
         CHECK(s.simulation().stepper().report().swept_rows < kMostRows);
     }
 }

@@ -14,10 +14,10 @@ Case overlap()
     const std::vector<double> depths{0.01, 0.1, 0.3, 0.49, 0.9};
     Case c{"overlap",
            "Bodies that overlap at the start",
-           "A ball of 0.5 m radius and 1 kg starts the given depth in the floor, and in a second ball beside it; 2 s at 1/60 s, springs of "
-           "1e4 N/m "
-           "with restitution 0.2. Error: the largest kinetic energy relative to what a fall from twice its size would give (a spring gives "
-           "back what the overlap stored). Stable to 1, bounded to 1e3; through the floor is beyond all bounds.",
+           "A ball of 0.5 m radius and 1 kg overlaps the floor, and a second ball beside it, by the given depth; 2 s at 1/60 s. "
+           "Springs have 1e4 N/m and restitution 0.2, and return the energy that the overlap stored. "
+           "Error: the largest kinetic energy, relative to that of a fall from twice its size. "
+           "Stable to 1, bounded to 1e3; a ball that has fallen through the floor is beyond all bounds.",
            "contact",
            "depth, m",
            names_of(contact_algorithms()),
@@ -48,13 +48,11 @@ Case painleve()
     const std::vector<double> frictions{0.5, 1, 4.0 / 3, 2, 5};
     Case c{"painleve",
            "Painleve's rod",
-           "A rod of 2 m and 1 kg at 60 degrees touches the floor with its lower end, which slides ahead with 5 m/s: beyond a friction of "
-           "about 4/3 no "
-           "finite force solves its equations, and an impulse has to. 1 s at 1/240 s, no restitution. Error: deepest the rod's axis gets "
-           "below the "
-           "floor, m, or energy that it gains, relative. Stable to 0.03 (the distance of a step at 7.1 m/s, with which the upper end comes "
-           "down), "
-           "bounded to 0.1.",
+           "A rod of 2 m and 1 kg at 60 degrees touches the floor with its lower end, which slides ahead with 5 m/s; 1 s at 1/240 s, no "
+           "restitution. "
+           "With a friction above about 4/3 no finite force solves its equations, and an impulse is necessary. "
+           "Error: largest depth of the rod's axis below the floor, m, or the energy that it gains, relative. "
+           "Stable to 0.03, the distance that the upper end covers in a step when it lands with 7.1 m/s; bounded to 0.1.",
            "contact",
            "friction",
            names_of(contact_algorithms()),
@@ -101,10 +99,10 @@ Case zeno()
     const std::vector<double> restitutions{0, 0.5, 0.9, 0.99, 0.9999};
     Case c{"zeno",
            "Bounces without end",
-           "A ball of 0.1 m radius falls from 0.2 m with the given restitution; 8 s at 1/60 s: below 0.95 its infinitely many bounces are "
-           "over "
-           "by then. Error: distance from its rest, m, or where it still bounces, energy that it has gained, J. Stable to 1e-3, bounded to "
-           "0.1.",
+           "A ball of 0.1 m radius falls from 0.2 m with the given restitution; 8 s at 1/60 s. "
+           "Below 0.95, its infinitely many bounces have ended by then. "
+           "Error: distance from its rest, m; where it still bounces, the energy that it has gained, J. "
+           "Stable to 1e-3, bounded to 0.1.",
            "contact",
            "restitution",
            names_of(algorithms),

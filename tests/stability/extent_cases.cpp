@@ -31,9 +31,10 @@ Case sizes()
     const std::vector<double> extents{1e-6, 1e-3, 1, 1e3, 1e6};
     Case c{"size",
            "Sizes from a micrometre to a thousand kilometres",
-           "A cube of the given size and density 1000 falls from half its height on the floor under g = 9.81 m/s^2; 4 s at 1/60 s, both "
-           "times sqrt(size / "
-           "m). Error: distance from its rest at the end, relative to half its size. Stable to 1e-3, bounded to 1.",
+           "A cube of the given size and a density of 1000 kg/m^3 falls from half its height on the floor, g = 9.81 m/s^2. "
+           "4 s at 1/60 s, both multiplied by sqrt(size / m). "
+           "Error: distance from its rest at the end, relative to half its size. "
+           "Stable to 1e-3, bounded to 1.",
            "contact",
            "size, m",
            names_of(contact_algorithms()),
@@ -59,9 +60,9 @@ Case places()
     const std::vector<double> away{0, 1e3, 1e5, 1e7};
     Case c{"place",
            "Far from the origin",
-           "A cube of 1 m falls from half its height on the floor, at the given distance in x and y; 3 s at 1/60 s. Error: distance from "
-           "its rest, "
-           "relative to half its size, or how far it has wandered, m. Stable to 1e-3, bounded to 1.",
+           "A cube of 1 m falls from half its height on the floor, at the given distance in x and y; 3 s at 1/60 s. "
+           "Error: distance from its rest, relative to half its size, or how far it has moved sideways, m. "
+           "Stable to 1e-3, bounded to 1.",
            "contact",
            "distance, m",
            names_of(contact_algorithms()),
@@ -94,9 +95,9 @@ Case motion_steps()
     const auto solvers = algorithms_of("Solver");
     Case c{"step",
            "Steps from a microsecond to a tenth of a second",
-           "1 kg on a spring of 100 N/m, pulled by 0.1 m, that spins with 3 rad/s; 1 s, at most 10000 steps. Error: distance from the "
-           "closed form at "
-           "the end, relative to the amplitude. Stable to 1e-3, bounded to 3.",
+           "1 kg on a spring of 100 N/m that is stretched by 0.1 m at the start and rotates with 3 rad/s; 1 s, at most 10000 steps. "
+           "Error: distance from the closed form at the end, relative to the amplitude. "
+           "Stable to 1e-3, bounded to 3.",
            "solver",
            "step, s",
            solvers,
@@ -122,9 +123,10 @@ Case contact_steps()
 {
     Case c{"step_contact",
            "The same steps with contacts",
-           "A cube of 1 m rests on the floor and a ball of 0.5 m radius falls on it from 0.1 m; 1 s, at most 10000 steps. Error: how far "
-           "the cube has sunk or moved, and, once there was time to land, the ball is from its place on it, m. Stable to 1e-3, bounded to "
-           "0.5.",
+           "A cube of 1 m rests on the floor, and a ball of 0.5 m radius falls on it from 0.1 m; 1 s, at most 10000 steps. "
+           "Error: how far the cube has sunk or moved, m; if there was time to land, also the distance of the ball from its position on "
+           "the cube, m. "
+           "Stable to 1e-3, bounded to 0.5.",
            "contact",
            "step, s",
            names_of(contact_algorithms()),

@@ -38,17 +38,18 @@ Case spin()
 {
     const auto solvers = algorithms_of("Solver");
     const std::vector<double> speeds{1, 10, 1e2, 1e3, 1e4};
-    Case c{
-        "spin",
-        "A free body that spins fast",
-        "Inertia 1, 2, 2.5 kg m^2, spin about the middle axis with 1 % across; 2 s at 1/60 s. Error: largest relative change of energy and "
-        "angular momentum. Stable to 1e-3, bounded to 1.01 (with the momentum that it has, its energy is 0.8 to 2 times what it was).",
-        "solver",
-        "spin, rad/s",
-        solvers,
-        brief(speeds),
-        {},
-        {}};
+    Case c{"spin",
+           "A free body that spins fast",
+           "Inertia 1, 2, 2.5 kg m^2, spin about the middle axis with 1 % across it; 2 s at 1/60 s. "
+           "With its angular momentum, the energy is at least 0.8 and at most 2 times the initial one. "
+           "Error: largest relative change of energy and angular momentum. "
+           "Stable to 1e-3, bounded to 1.01.",
+           "solver",
+           "spin, rad/s",
+           solvers,
+           brief(speeds),
+           {},
+           {}};
     c.run = [solvers, speeds](std::size_t r, std::size_t v)
     {
         Trial t(body("top", 1, {1, 2, 2.5}, {}, attribute("angular_velocity", Vec3{0.01, 1, 0.01} * speeds[v])),
@@ -65,9 +66,9 @@ Case gyroscope()
     const std::vector<double> speeds{10, 1e2, 1e3, 1e4};
     Case c{"gyroscope",
            "A fast wheel in a hinge",
-           "A disc of 1 kg turns in a hinge on an arm that a ball joint holds at the other end, under its weight; 1 s at 1/240 s. Error: "
-           "the larger "
-           "of the drift of energy, relative to the wheel's, and the joints' gaps, m. Stable to 1e-3, bounded to 1.",
+           "A disc of 1 kg rotates in a hinge on an arm, whose other end is in a ball joint, under its weight; 1 s at 1/240 s. "
+           "Error: the larger of the drift of energy, relative to the wheel's, and the gaps in the joints, m. "
+           "Stable to 1e-3, bounded to 1.",
            "solver",
            "spin, rad/s",
            solvers,
@@ -125,17 +126,18 @@ Case degenerate()
                                             {"triangle by 1e-3", "1 1 2.002"}};
     std::vector<std::string> names;
     for (const Inertia& i : kinds) names.emplace_back(i.name);
-    Case c{
-        "inertia",
-        "Degenerate inertia",
-        "A free body that spins with 10 rad/s mostly about its third axis; 2 s at 1/60 s. What no body can have is refused by name. Error: "
-        "largest relative change of energy and angular momentum. Stable to 1e-3, bounded to 1 (a disc's energy doubles from axis to axis).",
-        "solver",
-        "inertia",
-        solvers,
-        names,
-        {},
-        {}};
+    Case c{"inertia",
+           "Degenerate inertia",
+           "A free body that spins with 10 rad/s mostly about its third axis; 2 s at 1/60 s. "
+           "An inertia that no body can have is refused with its name. The energy of a disc differs by a factor of 2 from axis to axis. "
+           "Error: largest relative change of energy and angular momentum. "
+           "Stable to 1e-3, bounded to 1.",
+           "solver",
+           "inertia",
+           solvers,
+           names,
+           {},
+           {}};
     c.run = [solvers](std::size_t r, std::size_t v)
     {
         Trial t(component("top", "State/RigidBody",
@@ -154,11 +156,12 @@ Case denormal()
     const std::vector<double> sizes{1e-100, 1e-160, 1e-300, 1e-310};
     Case c{"denormal",
            "Denormal numbers",
-           "A spring as above, k = 100 N/m, pulled by the given length about 0 (its anchor), and a slow spin of that many rad/s; 1 s at "
+           "A spring as above, k = 100 N/m, stretched by the given length about 0, its anchor, and a slow spin of that many rad/s; 1 s at "
            "1/60 s. "
-           "Error: of the place at the end, relative to the amplitude. Stable to 1e-1 (a denormal has few digits), bounded to 3. Below "
-           "1e-154 m the square of a length is 0: the spring has no direction and no force, and the body stays where it is. Speeds below "
-           "1e-150 m/s count as 0.",
+           "Below 1e-154 m the square of a length is 0: the spring has no direction and no force, and the body stays where it is. "
+           "Speeds below 1e-150 m/s count as 0. "
+           "Error: of the position at the end, relative to the amplitude. "
+           "Stable to 1e-1, because a denormal number has few digits; bounded to 3.",
            "solver",
            "amplitude, m",
            solvers,

@@ -54,11 +54,11 @@ Case ratios()
     const std::vector<double> factors{1e-6, 1e-4, 1, 1e4, 1e6};
     Case c{"gear_ratio",
            "Gear ratios",
-           "Two wheels of 1 kg m^2, a torque of 6 N m on the driver; 1 s at 1/60 s. Error: the larger of the driver's speed against that "
-           "with the "
-           "reflected inertia (with Assign it feels none, as it should), and of the driven's against factor times the driver's, both "
-           "relative. Stable "
-           "to 1e-9, bounded to 1.",
+           "Two wheels of 1 kg m^2 with a torque of 6 N m on the driver; 1 s at 1/60 s. "
+           "With Assign the driver does not feel the driven wheel, and its speed is compared with that of the driver alone. "
+           "Error: the larger of the driver's speed against that with the reflected inertia, and the driven speed against the factor times "
+           "the driver's; both relative. "
+           "Stable to 1e-9, bounded to 1.",
            "coupling",
            "factor",
            coupling_names(),
@@ -131,11 +131,13 @@ Case bad_gears()
 {
     Case c{"gear_contradiction",
            "Gears that contradict one another",
-           "Three wheels of 1 kg m^2 that turn with 10 rad/s at first: in a loop whose factors multiply to 1.2, or to 1.00002; two of them "
-           "joined by two factors; two whose speeds are both prescribed, otherwise than their gear asks. 1 s at 1/60 s. Error: the largest "
-           "of what each gear misses and of how far a wheel that is free, or prescribed, got away from 10 rad/s, relative to that (where "
-           "both speeds are prescribed, no gear can hold). Stable to 1e-9 (a loop that is locked rests), bounded to 10; beyond the "
-           "first, an event must say so.",
+           "Three wheels of 1 kg m^2 that turn with 10 rad/s at first; 1 s at 1/60 s. "
+           "They form a loop whose factors multiply to 1.2, or to 1.00002; or two of them are coupled by two different factors; or the "
+           "speeds of two are prescribed and do not fit their gear. "
+           "Error: the larger of the violation of each gear, and the deviation of each wheel that is prescribed or coupled to no other "
+           "from 10 rad/s; both relative to 10 rad/s. "
+           "Where both speeds are prescribed no gear can hold, so its violation is not counted. "
+           "Stable to 1e-9, bounded to 10; a locked loop comes to rest. Beyond the first bound an event must report it.",
            "coupling",
            "contradiction",
            coupling_names(),
@@ -152,11 +154,12 @@ Case bad_joints()
     const auto solvers = algorithms_of("Solver");
     Case c{"joint_contradiction",
            "Joints that contradict one another",
-           "A body of 1 kg under its weight, held by rods of 1 m to two points 3 m apart; in two hinges askew (it is locked, and five rows "
-           "are "
-           "redundant); by two motors of 1 and 2 rad/s in a hinge; by a hinge that gravity turns through a rod at its dead centre. 1 s at "
-           "1/240 s. Error: "
-           "largest distance from the start, m. Stable to 2.1, bounded to 10.",
+           "A body of 1 kg under its weight; 1 s at 1/240 s. "
+           "It is held by rods of 1 m to two points that are 3 m apart; or by two hinges whose axes are not parallel, which lock it with "
+           "five redundant rows; or by two motors of 1 and 2 rad/s in one hinge; or by a hinge that gravity turns through a rod at its "
+           "dead centre. "
+           "Error: largest distance from the start, m. "
+           "Stable to 2.1, bounded to 10.",
            "solver",
            "contradiction",
            solvers,

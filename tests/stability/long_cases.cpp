@@ -21,9 +21,9 @@ Case oscillator()
     const auto solvers = quick_solvers();
     Case c{"long_spring",
            "An oscillator for ten million steps",
-           "1 kg on a spring of 100 N/m, pulled by 0.1 m, steps of 1/240 s. Error: of the energy at the end, relative (a phase is lost "
-           "sooner, by the method's "
-           "order). Stable to 1e-2, bounded to 1.",
+           "1 kg on a spring of 100 N/m that is stretched by 0.1 m at the start, steps of 1/240 s. "
+           "Error: of the energy at the end, relative. The phase is lost sooner, depending on the order of the method. "
+           "Stable to 1e-2, bounded to 1.",
            "solver",
            "steps",
            solvers,
@@ -52,9 +52,9 @@ Case free_body()
     const auto solvers = quick_solvers();
     Case c{"long_body",
            "A free body for ten million steps",
-           "Inertia 1, 2, 2.5 kg m^2, spin 1, 2, 3 rad/s, steps of 1/240 s. Error: of energy and angular momentum at the end, relative. "
-           "Stable to 1e-2, "
-           "bounded to 3.",
+           "Inertia 1, 2, 2.5 kg m^2, spin 1, 2, 3 rad/s, steps of 1/240 s. "
+           "Error: of energy and angular momentum at the end, relative. "
+           "Stable to 1e-2, bounded to 3.",
            "solver",
            "steps",
            solvers,
@@ -84,9 +84,9 @@ Case pendulum()
     const std::vector<std::string> solvers{"RungeKutta4", "SemiImplicitEuler", "StoermerVerlet"};
     Case c{"long_pendulum",
            "A jointed body for ten million steps",
-           "A ball of 1 kg on a ball joint 0.5 m above it, released at 0.5 rad, steps of 1/240 s. Error: of the energy at the end, "
-           "relative to "
-           "that of the swing, or the joint's gap, m. Stable to 1e-2, bounded to 1.",
+           "A ball of 1 kg on a ball joint 0.5 m above it, released at 0.5 rad, steps of 1/240 s. "
+           "Error: of the energy at the end, relative to that of the swing, or the joint's gap, m. "
+           "Stable to 1e-2, bounded to 1.",
            "solver",
            "steps",
            solvers,
@@ -124,17 +124,17 @@ std::vector<ContactAlgorithm> quick_contacts()
 Case resting_cube()
 {
     const auto algorithms = quick_contacts();
-    Case c{
-        "long_rest",
-        "A cube on a slope for ten million steps",
-        "A cube of 1 m and 1 kg stands on a slope of 15 degrees with friction 0.5, steps of 1/240 s: eleven and a half hours. Error: the "
-        "displacement of its centre, m. Stable to 1e-6, bounded to 0.1.",
-        "contact",
-        "steps",
-        names_of(algorithms),
-        brief(kCounts),
-        {},
-        {}};
+    Case c{"long_rest",
+           "A cube on a slope for ten million steps",
+           "A cube of 1 m and 1 kg stands on a slope of 15 degrees with friction 0.5, steps of 1/240 s: eleven and a half hours. "
+           "Error: the displacement of its centre, m. "
+           "Stable to 1e-6, bounded to 0.1.",
+           "contact",
+           "steps",
+           names_of(algorithms),
+           brief(kCounts),
+           {},
+           {}};
     c.run = [algorithms](std::size_t r, std::size_t v)
     {
         const double slope = 15 * std::acos(-1.0) / 180;

@@ -19,13 +19,13 @@ using namespace plab::stability;
 namespace
 {
 
-struct Options
+struct StabilityOptions
 {
     bool all = false, print = false, update = false;
     std::string only, write;
 };
 
-bool parse(int argc, char** argv, Options& out)
+bool parse(int argc, char** argv, StabilityOptions& out)
 {
     for (int i = 1; i < argc; ++i)
     {
@@ -47,14 +47,14 @@ bool parse(int argc, char** argv, Options& out)
     return true;
 }
 
-bool takes_part(const Options& options, const Case& c, std::size_t r, std::size_t v)
+bool takes_part(const StabilityOptions& options, const Case& c, std::size_t r, std::size_t v)
 {
     if (!options.only.empty()) return c.name == options.only;
     return options.all || c.quick(r, v);
 }
 
 /// Runs the selected cells of one case; counts those that differ from the table.
-int run(const Options& options, const Case& c, Table& table)
+int run(const StabilityOptions& options, const Case& c, Table& table)
 {
     int differences = 0;
     for (std::size_t r = 0; r < c.algorithms.size(); ++r)
@@ -94,7 +94,7 @@ bool document_is_current(const std::string& page)
 
 int main(int argc, char** argv)
 {
-    Options options;
+    StabilityOptions options;
     if (!parse(argc, argv, options))
     {
         std::fprintf(stderr, "usage: stability [--all] [--case NAME] [--print] [--update] [--write FILE.md]\n");

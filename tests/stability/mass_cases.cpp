@@ -45,17 +45,18 @@ Outcome tower(const ContactAlgorithm& algorithm, const std::vector<double>& mass
 
 Case heavy_on_light()
 {
-    Case c{
-        "mass_pair",
-        "Heavy on light",
-        "A cube of 1 m with the given mass stands on one of 1 kg, on the floor; 1 s at 1/60 s. Springs are as stiff as the load asks for "
-        "(1e6 N/m per kg). Error: how far a cube is from where it should be, m. Stable to 1e-3, bounded to half a cube.",
-        "contact",
-        "mass ratio",
-        names_of(contact_algorithms()),
-        brief(kRatios),
-        {},
-        {}};
+    Case c{"mass_pair",
+           "Heavy on light",
+           "A cube of 1 m with the given mass stands on a cube of 1 kg, which stands on the floor; 1 s at 1/60 s. "
+           "Springs are as stiff as the load requires, 1e6 N/m per kg. "
+           "Error: distance of a cube from where it should be, m. "
+           "Stable to 1e-3, bounded to half a cube.",
+           "contact",
+           "mass ratio",
+           names_of(contact_algorithms()),
+           brief(kRatios),
+           {},
+           {}};
     c.run = [](std::size_t r, std::size_t v) { return tower(contact_algorithms()[r], {1, kRatios[v]}, kRatios[v]); };
     c.quick = [](std::size_t r, std::size_t v) { return r >= 3 && (v == 0 || v == 4); };
     return c;
@@ -63,17 +64,18 @@ Case heavy_on_light()
 
 Case head_on()
 {
-    Case c{
-        "mass_head_on",
-        "Head-on impact of unequal masses",
-        "A ball of the given mass meets one of 1 kg at rest with 1 m/s, restitution 1, no friction, no weight; 0.5 s at 1/60 s. Error: of "
-        "the speeds after, relative to 1 m/s. Stable to 1e-6, bounded to 1.",
-        "contact",
-        "mass ratio",
-        names_of(contact_algorithms()),
-        brief(kRatios),
-        {},
-        {}};
+    Case c{"mass_head_on",
+           "Head-on impact of unequal masses",
+           "A ball of the given mass hits a ball of 1 kg at rest with 1 m/s; 0.5 s at 1/60 s. "
+           "Restitution 1, no friction, no weight. "
+           "Error: of the speeds after the impact, relative to 1 m/s. "
+           "Stable to 1e-6, bounded to 1.",
+           "contact",
+           "mass ratio",
+           names_of(contact_algorithms()),
+           brief(kRatios),
+           {},
+           {}};
     c.run = [](std::size_t r, std::size_t v)
     {
         const ContactAlgorithm& algorithm = contact_algorithms()[r];
@@ -113,9 +115,10 @@ Case heavy_chain()
     const auto solvers = algorithms_of("Solver");
     Case c{"mass_chain",
            "A chain that carries a heavy body",
-           "Five links of 1 m in ball joints, let go from the level; the last one has the given mass, the others 1 kg; 0.5 s at 1/240 s. "
-           "Error: the "
-           "larger of the drift of energy relative to the weight's work, and the gap in a joint, m. Stable to 1e-3, bounded to 1.",
+           "Five links of 1 m in ball joints are released from the horizontal; 0.5 s at 1/240 s. "
+           "The last link has the given mass, the others 1 kg. "
+           "Error: the larger of the drift of energy, relative to the work of the weight, and the gap in a joint, m. "
+           "Stable to 1e-3, bounded to 1.",
            "solver",
            "mass ratio",
            solvers,
@@ -150,9 +153,10 @@ Case stack()
     const std::vector<int> heights{10, 20, 50, 100};
     Case c{"stack",
            "Stacks",
-           "Cubes of 1 m and 1 kg stand on one another; 1 s at 1/60 s; springs of 1e6 N/m per contact point (1e8 N/m^1.5). Error: how far "
-           "a cube is from where it should be, m. Stable to 1e-3, "
-           "bounded to half a cube.",
+           "Cubes of 1 m and 1 kg stand on one another; 1 s at 1/60 s. "
+           "Springs have 1e6 N/m per contact point; those of Hunt and Crossley have 1e8 N/m^1.5. "
+           "Error: distance of a cube from where it should be, m. "
+           "Stable to 1e-3, bounded to half a cube.",
            "contact",
            "cubes",
            names_of(contact_algorithms()),

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdio>
+#include <sstream>
 
 namespace plab::stability
 {
@@ -14,6 +15,31 @@ std::string figure(const Outcome& cell)
     char text[32];
     std::snprintf(text, sizeof text, cell.figure < kRounding ? "~0" : "%.0e", cell.figure);
     return text;
+}
+
+constexpr std::size_t kLineWidth = 130;
+
+/// Breaks a paragraph into lines; `indent` of the second and later ones.
+std::string wrapped(const std::string& paragraph, std::size_t indent = 0)
+{
+    std::istringstream words(paragraph);
+    std::string out, word;
+    for (std::size_t column = 0; words >> word;)
+    {
+        const bool is_first = out.empty(), fits = column + 1 + word.size() <= kLineWidth;
+        if (!is_first) out += fits ? " " : "\n" + std::string(indent, ' ');
+        column = is_first || fits ? column + (is_first ? 0 : 1) + word.size() : indent + word.size();
+        out += word;
+    }
+    return out + "\n";
+}
+
+/// The text of a case: what is simulated, then as list entries how the error is measured and which errors count as stable and bounded.
+std::string description(const Case& c)
+{
+    const std::size_t error = c.text.find("Error: "), bounds = c.text.find("Stable to ");
+    return wrapped(c.text.substr(0, error)) + "\n" + wrapped("- " + c.text.substr(error, bounds - error), 2) +
+           wrapped("- " + c.text.substr(bounds), 2);
 }
 
 /// Why a cell is not stable, as a footnote number: equal reasons share one.
@@ -53,7 +79,7 @@ std::string cell_text(const Outcome* cell, Notes& notes)
 
 std::string section(const Case& c, const Table& table)
 {
-    std::string out = "## " + c.title + "\n\n" + c.text + "\n\n| " + c.algorithm + " \\ " + c.parameter + " |", line = "|---|";
+    std::string out = "## " + c.title + "\n\n" + description(c) + "\n| " + c.algorithm + " \\ " + c.parameter + " |", line = "|---|";
     for (const std::string& v : c.values) out += " " + v + " |", line += "---|";
     out += "\n" + line + "\n";
     Notes notes;
@@ -83,25 +109,30 @@ std::string summary(const std::vector<Case>& cases, const Table& table)
 
 std::string page(const std::vector<Case>& cases, const Table& table)
 {
-    std::string out =
-        "# Stability: stiff and extreme cases\n\n"
+    std::string out = "# Stability: stiff and extreme cases\n\n";
+    out += wrapped(
         "What each algorithm does where things get stiff, fast, tiny, huge or senseless. Written by `build/bin/stability --write "
-        "server/docs/stability.md` from `tests/stability/expected.txt`; a test holds that table against what is measured.\n\n"
-        "A number alone is a stable cell and its error. *Degraded*: finite and bounded, but wrong by more than the case's bound, or with a "
-        "warning. *Refused*: not accepted, with a message. **Diverged**: beyond all bounds, and the named event said so. **SILENT**: "
-        "beyond all "
-        "bounds without a word, a hang or a crash; a defect. `~0` is below 1e-11. *Slow*: the cell's budget of force evaluations was used "
-        "up.\n\n"
-        "Events that tell, beside those of the component that failed (`solver.gave_up`, `constraint.contradiction`, `contact.stiff`, "
-        "`script.error` ...):\n\n"
-        "- `state.not_finite`: an object left the range of numbers that a step can compute with (1e150); it is put back to the start of "
-        "the step.\n"
-        "- `motion.diverged`: energy a hundred times what was there or put in, or a speed that doubles every few steps, on and on. The "
-        "motion goes on; its numbers are worth nothing. Energy is counted anew after each request.\n"
-        "- `contact.missed`: a body passed through another between two looks. Told by its centre of mass: a corner that passes is not "
-        "seen.\n"
-        "- `contact.deep`: bodies stay sunk into one another, where impulses or rows should hold them.\n\n"
-        "Cells: " +
+        "server/docs/stability.md` from `tests/stability/expected.txt`; a test compares that table with what is measured.");
+    out +=
+        "\nHow to read a cell:\n\n| cell | meaning |\n|---|---|\n"
+        "| a number | stable; the number is its error, and `~0` is below 1e-11 |\n"
+        "| *degraded* | finite and bounded, but the error exceeds the bound for stable, or there was a warning |\n"
+        "| refused | not accepted, with a message |\n"
+        "| **diverged** | beyond all bounds, and an event reported it |\n"
+        "| **SILENT** | beyond all bounds without an event, a hang or a crash: a defect |\n"
+        "| a note with *slow* | the cell's budget of force evaluations was used up |\n\n"
+        "Events that report a failure, beside those of the component that failed, such as `solver.gave_up` or `contact.stiff`:\n\n"
+        "| event | meaning |\n|---|---|\n"
+        "| `state.not_finite` | an object left the range of numbers in which a step can compute (1e150); it is put back to the start of "
+        "the "
+        "step |\n"
+        "| `motion.diverged` | the energy is a hundred times what was present or added, or a speed keeps doubling every few steps; the "
+        "motion "
+        "continues, but its numbers are meaningless |\n"
+        "| `contact.missed` | a body passed through another between two detections; its centre of mass is checked, so a corner that passes "
+        "is not noticed |\n"
+        "| `contact.deep` | bodies remain deep inside one another, where impulses or rows should hold them |\n\n"
+        "The energy is counted anew after each request.\n\nCells: " +
         summary(cases, table) + ".\n\n";
     for (const Case& c : cases) out += section(c, table);
     out.pop_back();

@@ -41,9 +41,9 @@ Case scripts()
     const auto solvers = algorithms_of("Solver");
     Case c{"script",
            "Scripts that fail",
-           "A script acts on one body of 1 kg that moves with 1 m/s; another falls freely. 2 s at 1/60 s. Error: of the other's speed, "
-           "relative, which "
-           "no failure may touch. Stable to 1e-9, bounded to 1; a body that is not finite is beyond all bounds.",
+           "A script acts on one body of 1 kg that moves with 1 m/s, and another body falls freely; 2 s at 1/60 s. "
+           "Error: of the other body's speed, relative, which no failure may affect. "
+           "Stable to 1e-9, bounded to 1; a body that is not finite is beyond all bounds.",
            "solver",
            "fault",
            solvers,

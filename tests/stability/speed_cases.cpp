@@ -35,25 +35,24 @@ Case wall(bool spins)
     const auto all = algorithms();
     std::vector<std::string> names;
     for (const Algorithm& r : all) names.push_back(r.name);
-    Case c{
-        spins ? "wall_corner" : "wall",
-        spins ? "A spinning box against a thin wall" : "A ball against a thin wall",
-        spins
-            ? "A box of 1 m x 2 cm x 2 cm that turns with the given speed, in rad/s, 0.3 m from a wall of 1 cm, no weight, restitution 1; "
-              "0.1 s "
-              "at 1/60 s: its ends would be through the wall and out again many times. Error: how far its middle has gone through the "
-              "wall, or "
-              "how deep it is in it at the end, m; 1 where its ends should have hit the wall and did not. Stable to 1e-6, bounded to 1: "
-              "what "
-              "looks only at the ends of a step (None, the bisections, springs) or at speeds of gaps then (Speculative) can miss a corner."
-            : "A ball of 5 cm radius flies at a wall of 1 cm, restitution 1, no weight; 20 steps of 1/60 s. Error: how far its surface is "
-              "through the wall's front at the end, m, or the speed that it lacks, relative. Stable to 1e-6, bounded to 0.5.",
-        "resolution, response",
-        spins ? "spin, rad/s" : "speed, m/s",
-        names,
-        brief(kSpeeds),
-        {},
-        {}};
+    Case c{spins ? "wall_corner" : "wall",
+           spins ? "A spinning box against a thin wall" : "A ball against a thin wall",
+           spins ? "A box of 1 m x 2 cm x 2 cm rotates with the given speed, in rad/s, 0.3 m from a wall of 1 cm; 0.1 s at 1/60 s. "
+                   "Restitution 1, no weight. Within a step its ends would pass through the wall and back many times. "
+                   "Algorithms that test only the ends of a step can miss a corner: None, the bisections and springs test overlaps there, "
+                   "and Speculative the speeds of gaps. "
+                   "Error: how far its centre has passed through the wall, or its depth in the wall at the end, m; 1 where its ends should "
+                   "have hit the wall and did not. "
+                   "Stable to 1e-6, bounded to 1."
+                 : "A ball of 5 cm radius flies at a wall of 1 cm, restitution 1, no weight; 20 steps of 1/60 s. "
+                   "Error: how far its surface is through the wall's front at the end, m, or the speed that it has lost, relative. "
+                   "Stable to 1e-6, bounded to 0.5.",
+           "resolution, response",
+           spins ? "spin, rad/s" : "speed, m/s",
+           names,
+           brief(kSpeeds),
+           {},
+           {}};
     c.run = [all, spins](std::size_t r, std::size_t v)
     {
         const double speed = kSpeeds[v];

@@ -26,18 +26,19 @@ std::string oscillator(double k, double c)
 Case spring()
 {
     const auto solvers = algorithms_of("Solver");
-    Case c{
-        "spring",
-        "A spring of any stiffness",
-        "1 kg on a spring, pulled by 0.1 m; 1 s at 1/60 s, so that a stiffness of 1e4 N/m makes the product of rate and step 1.7. Error: "
-        "largest distance from the closed form, relative to the amplitude: up to 2 the phase is lost and the amplitude is not. Stable to "
-        "1e-3, bounded to 3.",
-        "solver",
-        "k, N/m",
-        solvers,
-        brief(kStiffness),
-        {},
-        {}};
+    Case c{"spring",
+           "A spring of any stiffness",
+           "1 kg on a spring that is stretched by 0.1 m at the start; 1 s at 1/60 s. "
+           "A stiffness of 1e4 N/m makes the product of frequency and step 1.7. "
+           "Error: largest distance from the closed form, relative to the amplitude. Where it is at most 2, the phase is lost and the "
+           "amplitude is not. "
+           "Stable to 1e-3, bounded to 3.",
+           "solver",
+           "k, N/m",
+           solvers,
+           brief(kStiffness),
+           {},
+           {}};
     c.run = [solvers](std::size_t r, std::size_t v)
     {
         const double k = kStiffness[v];
@@ -58,16 +59,17 @@ Case spring()
 Case damped_spring()
 {
     const auto solvers = algorithms_of("Solver");
-    Case c{
-        "spring_damped",
-        "A spring with its critical damper",
-        "As before, with c = 2 sqrt(k m): the motion dies within a step where k is large. Error as before. Stable to 1e-3, bounded to 3.",
-        "solver",
-        "k, N/m",
-        solvers,
-        brief(kStiffness),
-        {},
-        {}};
+    Case c{"spring_damped",
+           "A spring with its critical damper",
+           "As before, with c = 2 sqrt(k m): the motion dies out within a step where k is large. "
+           "Error: as before. "
+           "Stable to 1e-3, bounded to 3.",
+           "solver",
+           "k, N/m",
+           solvers,
+           brief(kStiffness),
+           {},
+           {}};
     c.run = [solvers](std::size_t r, std::size_t v)
     {
         const double w = std::sqrt(kStiffness[v]);
@@ -91,9 +93,9 @@ Case drag()
     const std::vector<double> drags{1e-2, 1, 1e2, 1e4, 1e8, 1e12};
     Case c{"drag",
            "Drag that stops at once",
-           "1 kg at 1 m/s in a medium with linear drag c; 1 s at 1/60 s. Error: largest distance of the speed from exp(-c t / m), m/s. "
-           "Stable to "
-           "1e-3, bounded to 2.",
+           "1 kg at 1 m/s in a medium with linear drag c; 1 s at 1/60 s. "
+           "Error: largest deviation of the speed from exp(-c t / m), m/s. "
+           "Stable to 1e-3, bounded to 2.",
            "solver",
            "c, kg/s",
            solvers,
@@ -117,18 +119,18 @@ Case drag()
 Case penalty()
 {
     const auto solvers = algorithms_of("Solver");
-    Case c{
-        "penalty",
-        "Spring contacts of any stiffness",
-        "A ball of 1 kg comes down on a Response/Penalty with 1 m/s, no weight, no loss; 0.5 s at 1/60 s. A soft floor keeps it for longer "
-        "than that: then the closed form is that of the spring. Error: of speed and place at the end, relative to 1 m/s and 1 m. Stable to "
-        "1e-6, bounded to 1.",
-        "solver",
-        "k, N/m",
-        solvers,
-        brief(kStiffness),
-        {},
-        {}};
+    Case c{"penalty",
+           "Spring contacts of any stiffness",
+           "A ball of 1 kg hits a floor with Response/Penalty at 1 m/s, without weight and without loss; 0.5 s at 1/60 s. "
+           "A soft floor holds it for longer than that; then the closed form is that of the spring. "
+           "Error: of speed and position at the end, relative to 1 m/s and 1 m. "
+           "Stable to 1e-6, bounded to 1.",
+           "solver",
+           "k, N/m",
+           solvers,
+           brief(kStiffness),
+           {},
+           {}};
     c.run = [solvers](std::size_t r, std::size_t v)
     {
         const double k = kStiffness[v], w = std::sqrt(k), gap = 1.37 * kStep;

@@ -51,7 +51,7 @@ TEST_CASE("a study writes its report, tables and pictures, and says what it foun
                                 "box.angular_velocity", "--until", "2", "--repeat", "2", "-o", where});
     REQUIRE_MESSAGE(done.code == 0, done.errors);
     CHECK(has(done.output, "RungeKutta4 at 1/100 s is the most accurate"));
-    CHECK_MESSAGE(done.errors.empty(), done.errors);  // progress is for a terminal, or for who asks
+    CHECK_MESSAGE(done.errors.empty(), done.errors);  // progress is for a terminal, or on request
     for (const char* file : {"report.html", "results.csv", "results.json", "reference.csv", "work-precision.svg", "work-precision.png",
                              "convergence.svg", "convergence.png", "energy.svg", "digits.svg", "digits.png"})
         CHECK_MESSAGE(std::filesystem::file_size(where + "/" + file) > 100, file);

@@ -34,7 +34,7 @@ struct SampleBody
         s.param(material, "material", unit::one, "name of the material").or_else("");
         s.output(kinetic_energy, "kinetic_energy", unit::joule, "of the body");
         s.role(shape, "shape", {Facet::Shape}, "its shape").optional();
-        s.role(solver, "solver", {Facet::Component}, "who advances it").family("Solver/").optional();
+        s.role(solver, "solver", {Facet::Component}, "the solver that advances it").family("Solver/").optional();
     }
 };
 
@@ -66,8 +66,8 @@ struct SampleShaft
         s.param(inertia, "inertia", unit::kilogram_metre2, "about the axle").positive();
         s.param(position, "position", unit::metre, "a point of the axle").or_else({});
         s.param(axis, "axis", unit::one, "direction of the axle").or_else({0, 0, 1}).unit_length();
-        s.param(prescribed, "prescribed", unit::one, "turns as told").or_else(false);
-        s.role(solver, "solver", {Facet::Component}, "who advances it").family("Solver/").optional();
+        s.param(prescribed, "prescribed", unit::one, "its motion is prescribed").or_else(false);
+        s.role(solver, "solver", {Facet::Component}, "the solver that advances it").family("Solver/").optional();
     }
 };
 
@@ -162,8 +162,8 @@ struct SampleScript
     {
         s.param(code, "code", unit::one, "Lua text");
         s.state(state, "state", unit::one, "values that live across steps");
-        s.role(driver, "driver", {Facet::Body, Facet::Shaft}, "whom it reads").optional();
-        s.role(driven, "driven", {Facet::Body, Facet::Shaft}, "whom it moves").optional().writes();
+        s.role(driver, "driver", {Facet::Body, Facet::Shaft}, "the object that it reads").optional();
+        s.role(driven, "driven", {Facet::Body, Facet::Shaft}, "the object that it moves").optional().writes();
     }
 };
 

@@ -35,7 +35,7 @@ std::string seconds_text(std::uint64_t time)
 }
 
 /// The requested part of the recording.
-Result<Span> choose_span(const recording::Reader& reader, const PlaybackOptions& options)
+Result<Span> choose_span(const recording::McapReader& reader, const PlaybackOptions& options)
 {
     const Span all = span_of(reader.index());
     Span out = all;
@@ -52,7 +52,7 @@ Result<Span> choose_span(const recording::Reader& reader, const PlaybackOptions&
     return Span{all.within(out.from), all.within(out.to)};
 }
 
-Result<std::string> choose_name(const recording::Reader& reader, const std::string& asked)
+Result<std::string> choose_name(const recording::McapReader& reader, const std::string& asked)
 {
     if (!asked.empty()) return asked;
     const auto about = reader.metadata(recording::kAbout);
@@ -78,7 +78,7 @@ Result<std::unique_ptr<Player>> Player::open(const PlaybackOptions& options)
     return out;
 }
 
-Player::Player(recording::Reader reader, ServerFacade front, const Pace& pace, const PlaybackOptions& options)
+Player::Player(recording::McapReader reader, ServerFacade front, const Pace& pace, const PlaybackOptions& options)
     : reader_(std::move(reader)),
       facade_(std::move(front)),
       pace_(pace),
@@ -170,7 +170,7 @@ void Player::begin(Clock::time_point now)
 
 Result<void> Player::step(Clock::time_point now)
 {
-    if (const auto why = facade_.look_for_rival()) return reason(*why);
+    if (const auto why = facade_.find_rival()) return reason(*why);
     facade_.answer(state_);
     if (!has_begun_ && readers() < wanted_readers_)
     {
@@ -180,7 +180,7 @@ Result<void> Player::step(Clock::time_point now)
     }
     if (!has_begun_) begin(now);
     send_due(now);
-    look_at_readers();
+    serve_new_readers();
     report_status(now, false);
     return {};
 }

@@ -67,7 +67,7 @@ public:
     const std::vector<std::string>& foreign() const { return foreign_; }
 
 private:
-    Player(recording::Reader reader, ServerFacade front, const Pace& pace, const PlaybackOptions& options);
+    Player(recording::McapReader reader, ServerFacade front, const Pace& pace, const PlaybackOptions& options);
     Result<void> join(const PlaybackOptions& options);
     Result<void> make_tracks();
     void show_scene();
@@ -89,12 +89,12 @@ private:
     void take_gone(recording::ByteView bytes);
     void dispose(const std::set<InstanceKey>& places);
     void note_place(recording::Peek& peek, recording::ByteView bytes);
-    void look_at_readers();
+    void serve_new_readers();
     bool has_newcomers(const std::string& topic);
     void report_status(Clock::time_point now, bool at_once);
     Track* track_of(const std::string& topic);
 
-    recording::Reader reader_;
+    recording::McapReader reader_;
     ServerFacade facade_;
     Pace pace_;
     bool loop_, moved_only_ = false;

@@ -210,7 +210,7 @@ void Player::note_place(recording::Peek& peek, recording::ByteView bytes)
 }
 
 /// New readers get at once what a server would send them: of a paused playback its state, and a snapshot.
-void Player::look_at_readers()
+void Player::serve_new_readers()
 {
     if (has_newcomers(states()) && pace_.is_paused())
     {

@@ -58,7 +58,7 @@ Result<std::set<InstanceKey>> RetainedSamples::remove(recording::ByteView gone)
     return out;
 }
 
-RetainedSamples retained_at(const recording::Reader& reader, std::uint64_t time)
+RetainedSamples retained_at(const recording::McapReader& reader, std::uint64_t time)
 {
     recording::Query query{{gone_topic()}, 0, time};
     for (const wire::Topic* topic : catalogue_topics()) query.topics.emplace_back(topic->name);

@@ -36,6 +36,6 @@ private:
 };
 
 /// The samples retained after everything up to and including `time`. Damaged ones are skipped.
-RetainedSamples retained_at(const recording::Reader& reader, std::uint64_t time);
+RetainedSamples retained_at(const recording::McapReader& reader, std::uint64_t time);
 
 }  // namespace plab::playback

@@ -31,10 +31,10 @@ Result<ServerFacade> ServerFacade::open(std::uint32_t domain, const std::string&
 
 Result<void> ServerFacade::join(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber)
 {
-    if (auto done = take_into(replies_, wire::Writer<plab_v2_Reply>::make(participant, publisher)); !done) return done;
-    if (auto done = take_into(requests_, wire::Reader<plab_v2_Request>::make(participant, subscriber)); !done) return done;
-    if (auto done = take_into(others_, wire::Reader<plab_v2_Server>::make(participant, subscriber)); !done) return done;
-    return take_into(status_, wire::Writer<plab_v2_Server>::make(participant, publisher));
+    if (auto done = take_into(replies_, wire::DataWriter<plab_v2_Reply>::make(participant, publisher)); !done) return done;
+    if (auto done = take_into(requests_, wire::DataReader<plab_v2_Request>::make(participant, subscriber)); !done) return done;
+    if (auto done = take_into(others_, wire::DataReader<plab_v2_Server>::make(participant, subscriber)); !done) return done;
+    return take_into(status_, wire::DataWriter<plab_v2_Server>::make(participant, publisher));
 }
 
 Result<void> ServerFacade::use(recording::ByteView status) { return decoder_.decode(status, *recorded_); }
@@ -84,7 +84,7 @@ void ServerFacade::refuse(const plab_v2_Request& request, const PlaybackState& s
     ++refused_;
 }
 
-std::optional<std::string> ServerFacade::look_for_rival()
+std::optional<std::string> ServerFacade::find_rival()
 {
     std::optional<std::string> why;
     const auto compare = [&](const plab_v2_Server& other, const dds_sample_info_t& info)

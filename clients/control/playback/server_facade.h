@@ -37,7 +37,7 @@ public:
     /// Refuses the requests that have arrived.
     void answer(const PlaybackState& state);
     /// Why this playback has to end, if it must: the server that started first keeps the name.
-    std::optional<std::string> look_for_rival();
+    std::optional<std::string> find_rival();
     /// Disposes of its instances; waits at most this long.
     void leave(dds_duration_t longest);
 
@@ -56,10 +56,10 @@ private:
     std::string file_;
     recording::Decoder decoder_;
     std::unique_ptr<recording::Sample<plab_v2_Server>> recorded_ = std::make_unique<recording::Sample<plab_v2_Server>>();
-    wire::Writer<plab_v2_Server> status_;
-    wire::Reader<plab_v2_Server> others_;
-    wire::Reader<plab_v2_Request> requests_;
-    wire::Writer<plab_v2_Reply> replies_;
+    wire::DataWriter<plab_v2_Server> status_;
+    wire::DataReader<plab_v2_Server> others_;
+    wire::DataReader<plab_v2_Request> requests_;
+    wire::DataWriter<plab_v2_Reply> replies_;
     std::uint64_t refused_ = 0;
 };
 

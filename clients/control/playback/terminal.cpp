@@ -14,7 +14,7 @@ constexpr tcflag_t kLines = ICANON | ECHO;
 
 }  // namespace
 
-void Terminal::look()
+void Terminal::set_up()
 {
     // In the background, changing the terminal would stop the program.
     if (is_given_back_ || isatty(STDIN_FILENO) != 1 || tcgetpgrp(STDIN_FILENO) != getpgrp()) return;
@@ -28,7 +28,7 @@ void Terminal::look()
 
 std::string Terminal::read()
 {
-    look();
+    set_up();
     if (!before_ || tcgetpgrp(STDIN_FILENO) != getpgrp()) return {};
     std::array<char, 64> bytes{};
     pollfd input{STDIN_FILENO, POLLIN, 0};

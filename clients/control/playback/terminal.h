@@ -14,7 +14,7 @@ class Terminal
 {
 public:
     /// Standard input, if it is a terminal and this program is in its foreground; otherwise there are no keys.
-    Terminal() { look(); }
+    Terminal() { set_up(); }
     ~Terminal() { give_back(); }
     Terminal(const Terminal&) = delete;
     Terminal& operator=(const Terminal&) = delete;
@@ -24,7 +24,7 @@ public:
     void give_back();
 
 private:
-    void look();
+    void set_up();
 
     std::optional<termios> before_;  ///< the original settings; empty: the terminal is not changed
     bool is_given_back_ = false;

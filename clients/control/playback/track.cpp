@@ -55,7 +55,7 @@ template <class T>
 class TrackOf final : public Track
 {
 public:
-    TrackOf(wire::Writer<T> writer, bool moved_only) : writer_(std::move(writer)), moved_only_(moved_only) {}
+    TrackOf(wire::DataWriter<T> writer, bool moved_only) : writer_(std::move(writer)), moved_only_(moved_only) {}
 
     Result<void> send(recording::ByteView bytes, const Changes& changes) override
     {
@@ -92,7 +92,7 @@ private:
         return *sample_;
     }
 
-    wire::Writer<T> writer_;
+    wire::DataWriter<T> writer_;
     recording::Decoder decoder_;
     recording::Sample<T> sample_;
     recording::WholeFrame whole_;
@@ -111,7 +111,7 @@ template <class T>
 bool make_if(const wire::Topic& topic, const Ends& ends, Result<std::unique_ptr<Track>>& out)
 {
     if (std::strcmp(wire::topic_of<T>().name, topic.name) != 0) return false;
-    auto writer = wire::Writer<T>::make(ends.participant, ends.publisher);
+    auto writer = wire::DataWriter<T>::make(ends.participant, ends.publisher);
     if (writer)
         out = std::unique_ptr<Track>(std::make_unique<TrackOf<T>>(writer.take(), ends.moved_only));
     else

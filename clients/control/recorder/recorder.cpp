@@ -11,7 +11,7 @@ namespace plab::recorder
 namespace
 {
 
-constexpr std::chrono::seconds kTellEvery(1);  ///< gaps of one topic are reported together
+constexpr std::chrono::seconds kReportEvery(1);  ///< gaps of one topic are reported together
 /// Times that differ by less are the same (s): far below any step, far above the rounding of n * dt.
 constexpr double kSameTime = 1e-9;
 
@@ -96,7 +96,7 @@ Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::str
     return out;
 }
 
-Recorder::Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::Writer writer)
+Recorder::Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::McapWriter writer)
     : options_(options),
       started_ns_(server.started_ns),
       run_(server.run),
@@ -147,7 +147,7 @@ State Recorder::step(link::Seconds longest)
     take_all();
     const auto now = Clock::now();
     write(disposals_.take(now));
-    if (now - reported_at_ >= kTellEvery) reported_at_ = now, tell_gaps();
+    if (now - reported_at_ >= kReportEvery) reported_at_ = now, report_gaps();
     return state_;
 }
 
@@ -156,7 +156,7 @@ Result<void> Recorder::close()
     if (state_ == State::Goes) take_all();
     // The latest disposals count, except those of a server's end.
     if (state_ == State::Goes || state_ == State::Done) write(disposals_.take(Clock::time_point::max()));
-    tell_gaps();
+    report_gaps();
     return writer_.close();
 }
 
@@ -168,7 +168,7 @@ void Recorder::take_all()
     for (Track& track : tracks_) take(track);
     const auto earlier = [](const Arrived& a, const Arrived& b) { return a.written_ns < b.written_ns; };
     std::stable_sort(arrived_.begin(), arrived_.end(), earlier);
-    for (Arrived& sample : arrived_) look_at(sample);
+    for (Arrived& sample : arrived_) process(sample);
 }
 
 void Recorder::take(Track& track)
@@ -188,10 +188,10 @@ void Recorder::take(Track& track)
     } while (batch > 0 && taken < kMost);
 }
 
-void Recorder::look_at(Arrived& sample)
+void Recorder::process(Arrived& sample)
 {
     if (state_ != State::Goes) return;
-    if (sample.is_gone) return look_at_gone(sample);
+    if (sample.is_gone) return process_gone(sample);
     if (!sample.has_value) return;
     Track& track = *sample.track;
     const auto header = track.peek->at(sample.data);
@@ -208,8 +208,8 @@ void Recorder::look_at(Arrived& sample)
     track.last_log_time = log_time;
     const auto stamp_ns = static_cast<std::uint64_t>(header->stamp_ns > 0 ? header->stamp_ns : sample.written_ns);
     if (!is_left_out(track, *header)) keep(track, *header, log_time, {track.topic, stamp_ns, std::move(sample.data)});
-    const bool tells_time = is_topic<plab_v2_Frame>(*track.topic) || is_topic<plab_v2_Server>(*track.topic);
-    if (options_.until && tells_time && *header->time >= *options_.until - kSameTime) state_ = State::Done;
+    const bool has_time = is_topic<plab_v2_Frame>(*track.topic) || is_topic<plab_v2_Server>(*track.topic);
+    if (options_.until && has_time && *header->time >= *options_.until - kSameTime) state_ = State::Done;
 }
 
 void Recorder::keep(const Track& track, const recording::SampleHeader& header, std::uint64_t log_time, Message&& message)
@@ -229,7 +229,7 @@ void Recorder::put(std::uint64_t log_time, Message&& message)
     (void)writer_.push({log_time, std::move(message)}, bytes, recording::Weight::Essential);  // what finds no room is counted there
 }
 
-void Recorder::look_at_gone(const Arrived& sample)
+void Recorder::process_gone(const Arrived& sample)
 {
     const wire::Topic& topic = *sample.track->topic;
     if (is_topic<plab_v2_Server>(topic))
@@ -284,7 +284,7 @@ void Recorder::write(const std::vector<Disposal>& disposals)
     }
 }
 
-void Recorder::tell_gaps()
+void Recorder::report_gaps()
 {
     for (Track& track : tracks_)
     {

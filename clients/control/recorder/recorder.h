@@ -93,7 +93,7 @@ private:
         std::uint64_t last_log_time = 0;
     };
 
-    Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::Writer writer);
+    Recorder(const RecorderOptions& options, const link::ServerInfo& server, recording::McapWriter writer);
     Result<void> subscribe(const link::Session& session, const std::vector<const wire::Topic*>& topics);
     /// A sample that has arrived and is not processed yet.
     struct Arrived
@@ -107,15 +107,15 @@ private:
 
     void take_all();
     void take(Track& track);
-    void look_at(Arrived& sample);
+    void process(Arrived& sample);
     void keep(const Track& track, const recording::SampleHeader& header, std::uint64_t log_time, Message&& message);
     void put(std::uint64_t log_time, Message&& message);
-    void look_at_gone(const Arrived& sample);
+    void process_gone(const Arrived& sample);
     void note_server(const recording::SampleHeader& header);
     void note_gap(Track& track, const recording::SampleHeader& header, std::uint64_t writer, std::uint64_t log_time);
     bool is_left_out(const Track& track, const recording::SampleHeader& header);
     void write(const std::vector<Disposal>& disposals);
-    void tell_gaps();
+    void report_gaps();
 
     RecorderOptions options_;
     std::int64_t started_ns_ = 0;  ///< of the server that is recorded

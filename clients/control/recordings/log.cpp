@@ -34,7 +34,7 @@ Result<Log> Log::open(const std::string& path, const recording::Watch& watch)
     const auto note = [watch, interrupted](double share) { return !(*interrupted = *interrupted || !watch(share)); };
     auto reader = recording::open_recording(path, watch ? recording::Watch(note) : recording::Watch());
     if (!reader) return reader.errors();
-    Log log(std::make_unique<recording::Reader>(reader.take()));
+    Log log(std::make_unique<recording::McapReader>(reader.take()));
     log.interrupted_ = interrupted;
     for (const recording::MetadataIndex& place : log.reader_->index().metadata)
     {

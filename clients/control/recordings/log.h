@@ -30,7 +30,7 @@ public:
     /// everything made from the log is incomplete (is_interrupted()).
     static Result<Log> open(const std::string& path, const recording::Watch& watch = {});
 
-    const recording::Reader& reader() const { return *reader_; }
+    const recording::McapReader& reader() const { return *reader_; }
     const std::string& path() const { return reader_->name(); }
     /// The metadata record "plab": server, version, host, started ..; empty if there is none.
     const recording::Pairs& head() const { return head_; }
@@ -47,9 +47,9 @@ public:
     static recording::Query query(const std::vector<std::string>& topics, const Span& span);
 
 private:
-    explicit Log(std::unique_ptr<recording::Reader> reader) : reader_(std::move(reader)) {}
+    explicit Log(std::unique_ptr<recording::McapReader> reader) : reader_(std::move(reader)) {}
 
-    std::unique_ptr<recording::Reader> reader_;  // its address stays the same for the streams
+    std::unique_ptr<recording::McapReader> reader_;  // its address stays the same for the streams
     recording::Pairs head_;
     Things things_;
     Runs runs_;

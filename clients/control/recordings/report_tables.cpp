@@ -51,9 +51,9 @@ std::string joined(const plab_v2_Operation& o)
 
 Row row_of(const plab_v2_EventInfo& e, std::int64_t step, double log_time)
 {
-    const std::string who =
+    const std::string participants =
         std::string(e.component_id) + (*e.a != 0 ? std::string(" ") + e.a : "") + (*e.b != 0 ? std::string(" ") + e.b : "");
-    return {moment(log_time), whole_cell(step), text_cell(e.severity), text_cell(e.kind), text_cell(who), text_cell(e.message)};
+    return {moment(log_time), whole_cell(step), text_cell(e.severity), text_cell(e.kind), text_cell(participants), text_cell(e.message)};
 }
 
 std::string with_unit(const Segment& s) { return short_number(s.largest_error) + (s.error_unit.empty() ? "" : " " + s.error_unit); }
@@ -147,7 +147,7 @@ void add_events(Page& page, const Log& log, const Summary& summary)
     }
     if (rows.empty()) return;
     page.heading("Warnings and failures");
-    add_table(page, text_cells({"at, s", "step", "severity", "kind", "who", "what"}), rows, all);
+    add_table(page, text_cells({"at, s", "step", "severity", "kind", "objects", "message"}), rows, all);
 }
 
 void add_runs(Page& page, const Summary& summary)

@@ -8,7 +8,7 @@ namespace plab::recordings
 namespace
 {
 
-/// Steps and times of most types; collisions, events and hashes tell the step only.
+/// Steps and times of most types; collisions, events and hashes contain the step only.
 template <class T>
 RunPosition place_in(const T& sample)
 {

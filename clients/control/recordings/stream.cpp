@@ -61,7 +61,7 @@ const std::map<std::string_view, Stream::Decode>& Stream::table()
     return made;
 }
 
-Stream::Stream(const recording::Reader& reader, const recording::Query& query)
+Stream::Stream(const recording::McapReader& reader, const recording::Query& query)
     : reader_(&reader), cursor_(reader.messages(query)), samples_(std::make_unique<Samples>())
 {
 }

@@ -59,7 +59,7 @@ class Stream
 {
 public:
     /// The reader must outlive the stream and must not move.
-    Stream(const recording::Reader& reader, const recording::Query& query);
+    Stream(const recording::McapReader& reader, const recording::Query& query);
     ~Stream();
     Stream(Stream&&) noexcept;
     Stream& operator=(Stream&&) = delete;
@@ -78,7 +78,7 @@ private:
     static const std::map<std::string_view, Decode>& table();
     Decode decode_for(const recording::Channel& channel);
 
-    const recording::Reader* reader_;
+    const recording::McapReader* reader_;
     recording::Cursor cursor_;
     std::unique_ptr<Samples> samples_;
     std::map<recording::ChannelId, Decode> decodes_;

@@ -30,12 +30,12 @@ Result<void> CoordinateRows::place_coordinate(Row row, const Bodies& bodies)
     return {};
 }
 
-Coordinate look_at(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now)
+Coordinate coordinate_of(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now)
 {
     Coordinate c;
     if (rows.turns(row))
     {
-        const Spin spin = rows.look(row, rows.b[row], rows.a[row], bodies, shafts);
+        const Spin spin = rows.spin_of(row, rows.b[row], rows.a[row], bodies, shafts);
         c.x = rows.angle_now(row, spin, now), c.speed = spin.speed;
         add_spin(spin, 1, c.row);
         return c;
@@ -50,13 +50,13 @@ Coordinate look_at(const CoordinateRows& rows, Row row, const Bodies& bodies, co
 
 void begin_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now)
 {
-    if (rows.turns(row)) rows.begin(row, rows.look(row, rows.b[row], rows.a[row], bodies, shafts), now);
+    if (rows.turns(row)) rows.begin(row, rows.spin_of(row, rows.b[row], rows.a[row], bodies, shafts), now);
 }
 
 void keep_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now)
 {
-    if (rows.turns(row)) rows.keep_spin(row, rows.look(row, rows.b[row], rows.a[row], bodies, shafts), now);
-    const Coordinate c = look_at(rows, row, bodies, shafts, now);
+    if (rows.turns(row)) rows.keep_spin(row, rows.spin_of(row, rows.b[row], rows.a[row], bodies, shafts), now);
+    const Coordinate c = coordinate_of(rows, row, bodies, shafts, now);
     rows.position[row] = c.x, rows.speed_now[row] = c.speed;
 }
 

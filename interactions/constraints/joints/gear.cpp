@@ -86,8 +86,8 @@ struct GearSpins
 GearSpins spins_of(const GearRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now)
 {
     GearSpins g;
-    g.driver = rows.driver_spin.look(row, rows.driver[row], base_of(rows, row, rows.driver[row]), bodies, shafts);
-    g.driven = rows.driven_spin.look(row, rows.driven[row], base_of(rows, row, rows.driven[row]), bodies, shafts);
+    g.driver = rows.driver_spin.spin_of(row, rows.driver[row], base_of(rows, row, rows.driver[row]), bodies, shafts);
+    g.driven = rows.driven_spin.spin_of(row, rows.driven[row], base_of(rows, row, rows.driven[row]), bodies, shafts);
     g.factor = rows.ratio[row].value;
     g.phase = rows.driven_spin.angle_now(row, g.driven, now) - g.factor * rows.driver_spin.angle_now(row, g.driver, now);
     g.speed = g.driven.speed - g.factor * g.driver.speed;
@@ -104,9 +104,9 @@ struct PlanetarySpins
 PlanetarySpins spins_of(const PlanetaryRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now)
 {
     PlanetarySpins p;
-    p.sun = rows.sun_spin.look(row, rows.sun[row], {}, bodies, shafts);
-    p.ring = rows.ring_spin.look(row, rows.ring[row], {}, bodies, shafts);
-    p.carrier = rows.carrier_spin.look(row, rows.carrier[row], {}, bodies, shafts);
+    p.sun = rows.sun_spin.spin_of(row, rows.sun[row], {}, bodies, shafts);
+    p.ring = rows.ring_spin.spin_of(row, rows.ring[row], {}, bodies, shafts);
+    p.carrier = rows.carrier_spin.spin_of(row, rows.carrier[row], {}, bodies, shafts);
     const auto sun = static_cast<double>(rows.sun_teeth[row]), ring = static_cast<double>(rows.ring_teeth[row]);
     p.sun_share = sun / (sun + ring), p.ring_share = ring / (sun + ring);
     p.phase = p.sun_share * rows.sun_spin.angle_now(row, p.sun, now) + p.ring_share * rows.ring_spin.angle_now(row, p.ring, now) -

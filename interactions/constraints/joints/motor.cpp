@@ -35,7 +35,7 @@ void constrain_motor(const StepContext& step, Rows which, const MotorRows& rows,
 {
     for (const Row row : which)
     {
-        Coordinate c = look_at(rows, row, bodies, shafts, step.time);
+        Coordinate c = coordinate_of(rows, row, bodies, shafts, step.time);
         c.row.kind = RowKind::Rate;
         c.row.rate = rows.speed[row];
         if (rows.mode[row] == "servo")
@@ -75,7 +75,7 @@ void apply_torsion(const StepContext& step, Rows which, const TorsionSpringRows&
 {
     for (const Row row : which)
     {
-        const Coordinate c = look_at(rows, row, bodies, shafts, step.time);
+        const Coordinate c = coordinate_of(rows, row, bodies, shafts, step.time);
         const double effort = effort_of(rows, row, c);
         wrenches.begin(step.component_of_row[row]);
         for (std::uint32_t k = 0; k < c.row.count; ++k)
@@ -98,7 +98,7 @@ void stored_by_torsion(const StepContext& step, Rows which, const TorsionSpringR
 {
     for (const Row row : which)
     {
-        const double stretch = look_at(rows, row, bodies, shafts, step.time).x - rows.rest[row];
+        const double stretch = coordinate_of(rows, row, bodies, shafts, step.time).x - rows.rest[row];
         stored.joule += 0.5 * rows.stiffness[row] * stretch * stretch;
     }
 }
@@ -108,7 +108,7 @@ void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows
     for (const Row row : which)
     {
         keep_coordinate(rows, row, bodies, shafts, step.time);
-        rows.effort[row] = effort_of(rows, row, look_at(rows, row, bodies, shafts, step.time));
+        rows.effort[row] = effort_of(rows, row, coordinate_of(rows, row, bodies, shafts, step.time));
     }
 }
 
@@ -138,7 +138,7 @@ namespace
 /// limits, or at twice the time that the present speed needs to reach it. If there is only one limit, or no distance between
 /// them, it is this fraction of 1 rad, or of the smaller body's radius of gyration. A limit reached unexpectedly acts in the
 /// next step.
-constexpr double kReach = 0x1p-9;
+constexpr double kActivation = 0x1p-9;
 
 double gyration(const Bodies& bodies, Ref r)
 {
@@ -147,18 +147,18 @@ double gyration(const Bodies& bodies, Ref r)
     return std::sqrt(0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2)) * bodies.inverse_mass[r.index]);
 }
 
-double reach_of(const LimitRows& rows, Row row, const Bodies& bodies)
+double activation_distance(const LimitRows& rows, Row row, const Bodies& bodies)
 {
     const double range = rows.upper[row] - rows.lower[row];
-    if (std::isfinite(range) && range > 0) return kReach * range;
-    if (rows.turns(row)) return kReach;
+    if (std::isfinite(range) && range > 0) return kActivation * range;
+    if (rows.turns(row)) return kActivation;
     const double size = std::fmin(gyration(bodies, rows.a[row]), gyration(bodies, rows.b[row]));
-    return std::isfinite(size) ? kReach * size : 0.0;
+    return std::isfinite(size) ? kActivation * size : 0.0;
 }
 
-void add_side(double reach, const StepContext& step, ConstraintRow side, double gap, double speed, double restitution, RowSink& sink)
+void add_side(double activation, const StepContext& step, ConstraintRow side, double gap, double speed, double restitution, RowSink& sink)
 {
-    if (gap > reach + 2 * step.dt * std::fmax(0.0, -speed)) return;
+    if (gap > activation + 2 * step.dt * std::fmax(0.0, -speed)) return;
     side.kind = RowKind::OneSided;
     side.error = gap, side.lower = 0, side.restitution = restitution;
     sink.add(side);
@@ -177,14 +177,14 @@ void constrain_limit(const StepContext& step, Rows which, const LimitRows& rows,
             c.row = stretch_row(s, 0, 1, 0), c.x = s.distance, c.speed = s.rate;
         }
         else
-            c = look_at(rows, row, bodies, shafts, step.time);
+            c = coordinate_of(rows, row, bodies, shafts, step.time);
         sink.begin(step.component_of_row[row]);
-        const double reach = reach_of(rows, row, bodies);
-        add_side(reach, step, c.row, c.x - rows.lower[row], c.speed, rows.restitution[row], sink);
+        const double activation = activation_distance(rows, row, bodies);
+        add_side(activation, step, c.row, c.x - rows.lower[row], c.speed, rows.restitution[row], sink);
         for (std::uint32_t k = 0; k < c.row.count; ++k)
             c.row.blocks[k].linear = -c.row.blocks[k].linear, c.row.blocks[k].angular = -c.row.blocks[k].angular;
         c.row.bias = -c.row.bias, c.row.feature = 1;
-        add_side(reach, step, c.row, rows.upper[row] - c.x, -c.speed, rows.restitution[row], sink);
+        add_side(activation, step, c.row, rows.upper[row] - c.x, -c.speed, rows.restitution[row], sink);
     }
 }
 

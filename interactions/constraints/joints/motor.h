@@ -31,7 +31,7 @@ struct Coordinate
     double x = 0, speed = 0;
     ConstraintRow row;
 };
-Coordinate look_at(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
+Coordinate coordinate_of(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
 /// Phase::Drive and Phase::Finish of coordinates that count turns.
 void begin_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
 void keep_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);

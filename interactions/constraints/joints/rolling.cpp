@@ -96,7 +96,7 @@ Result<void> check_rolling(const RollingRows& rows, Row row)
 void RollingRows::describe(Schema& s)
 {
     s.role(a, "a", {Facet::Body}, "the body with the surface; none: the world").optional().writes();
-    s.role(b, "b", {Facet::Body}, "who rolls").writes();
+    s.role(b, "b", {Facet::Body}, "the body that rolls").writes();
     s.param(semi_axes, "semi_axes", unit::metre, "half lengths of the ellipsoid; a ball: three times its radius").at_least(kLeastGiven);
     s.param(centre, "centre", unit::metre, "of the ellipsoid, in the frame of b").or_else({});
     s.param(axes, "axes", unit::one, "attitude of the ellipsoid's axes in b").or_else(Quat{});

@@ -46,7 +46,7 @@ Result<void> SpinColumns::place(Row row, Ref participant, Ref base, const Bodies
     return {};
 }
 
-Spin SpinColumns::look(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts) const
+Spin SpinColumns::spin_of(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts) const
 {
     Spin spin{participant, base, {1, 0, 0}, 0, 0, 0, false};
     if (participant.facet == Facet::Shaft)

@@ -31,7 +31,7 @@ struct SpinColumns : AxisColumns, MeterColumns
     void describe_spin(Schema& s, const std::string& prefix, const std::string& whose);
     /// Phase::Prepare: sets the axle from its parameter, if that is new.
     Result<void> place(Row row, Ref participant, Ref base, const Bodies& bodies);
-    Spin look(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts) const;
+    Spin spin_of(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts) const;
     /// Phase::Drive: the angle at the start of the first step.
     void begin(Row row, const Spin& spin, double now)
     {

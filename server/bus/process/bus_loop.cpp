@@ -119,9 +119,9 @@ Result<void> BusLoop::enter()
     if (!all) return all;
     // Create the writer first: a client that finds the reader and sends a request at once then has a writer to get its reply
     // from.
-    auto replies = wire::Writer<plab_v2_Reply>::make(participant_, publisher_);
+    auto replies = wire::DataWriter<plab_v2_Reply>::make(participant_, publisher_);
     if (!replies) return replies.errors();
-    auto requests = wire::Reader<plab_v2_Request>::make(participant_, subscriber_);
+    auto requests = wire::DataReader<plab_v2_Request>::make(participant_, subscriber_);
     if (!requests) return requests.errors();
     replies_ = replies.take(), requests_ = requests.take();
     return presence_.open(participant_, publisher_, subscriber_);
@@ -158,7 +158,7 @@ bool BusLoop::pass(Clock::time_point now)
     (void)writer_.flush();
     bool more = read_requests();
     if (now - second_ >= kSecond) each_second(now);
-    if (matched_.exchange(false, std::memory_order_acquire)) look_at_readers();
+    if (matched_.exchange(false, std::memory_order_acquire)) check_readers();
     more = receive() || more;
     presence_.send(now, dropped(), trouble_);
     outbox_.retry(now);
@@ -253,7 +253,7 @@ bool BusLoop::read_requests()
     const dds_return_t n = requests_.take(handle, 1);
     (void)trouble_.check(wire::topic_of<plab_v2_Request>().name, n < 0 ? n : DDS_RETCODE_OK);
     if (n > 0) arrived_.store(true, std::memory_order_relaxed);
-    if (const auto rival = presence_.look_for_rival()) report(Up::Lost, *rival);
+    if (const auto rival = presence_.find_rival()) report(Up::Lost, *rival);
     pass_on();
     return n > 0 && waiting_.empty();
 }
@@ -276,14 +276,14 @@ void BusLoop::pass_on()
     for (; !waiting_.empty() && writer_.ready(); waiting_.pop_front()) (void)writer_.send(Up::Request, waiting_.front());
 }
 
-void BusLoop::look_at_readers()
+void BusLoop::check_readers()
 {
     WantsMessage wants;
     bool changed = false;
     each(
         [&](publish::Stream s, auto& out)
         {
-            changed = out.look() || changed;
+            changed = out.check_readers() || changed;
             wants.wanted[static_cast<std::size_t>(s)] = out.wanted() ? 1 : 0;
             wants.joins[static_cast<std::size_t>(s)] = out.joins();
         });
@@ -303,7 +303,7 @@ void BusLoop::follow_scene()
     follow(collisions_, "CDetection/");
     follow(images_, "Camera/");
     // A deleted writer has no readers any more, and nothing else reports that.
-    look_at_readers();
+    check_readers();
 }
 
 std::vector<wire::DroppedSamples> BusLoop::dropped() const

@@ -27,7 +27,7 @@ class BusLoop
 public:
     /// Uses the descriptors of channel/inherited.h.
     BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const Bell& server, int lifeline, const StartMessage& start);
-    /// False if it cannot join the domain; plabd is told why.
+    /// False if it cannot join the domain; the reason goes to plabd.
     bool join();
     /// Runs until plabd announces the end. False if plabd has ended without an announcement: then no farewell is sent to
     /// clients.
@@ -44,7 +44,7 @@ private:
     bool read_requests();
     void keep(const plab_v2_Request& request);
     void pass_on();
-    void look_at_readers();
+    void check_readers();
     void follow_scene();
     void each_second(Clock::time_point now);
     void report_dds();
@@ -80,9 +80,9 @@ private:
     Stream<plab_v2_Snapshot, wire::Snapshot> snapshots_;
     CatalogueWriter catalogue_;
     Presence presence_;
-    wire::Reader<plab_v2_Request> requests_;
+    wire::DataReader<plab_v2_Request> requests_;
     std::deque<RequestMessage> waiting_;  ///< taken from the reader in one pass, and not passed on yet
-    wire::Writer<plab_v2_Reply> replies_;
+    wire::DataWriter<plab_v2_Reply> replies_;
     wire::SampleView<plab_v2_Reply> reply_sample_;
     Outbox outbox_;
     std::array<std::uint64_t, kStreams> ring_dropped_{};

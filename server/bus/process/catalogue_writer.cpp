@@ -9,7 +9,7 @@ namespace plab::bus
 template <class T, char* T::*Key, class Value, std::string Value::*KeyOf>
 Result<void> KeyedTopic<T, Key, Value, KeyOf>::open(const wire::Entity& participant, const wire::Entity& publisher)
 {
-    auto writer = wire::Writer<T>::make(participant, publisher);
+    auto writer = wire::DataWriter<T>::make(participant, publisher);
     if (!writer) return writer.errors();
     writer_ = writer.take();
     return {};
@@ -61,7 +61,7 @@ void KeyedTopic<T, Key, Value, KeyOf>::dispose_key(const std::string& id, Troubl
 
 Result<void> CatalogueWriter::open(const wire::Entity& participant, const wire::Entity& publisher)
 {
-    auto scene = wire::Writer<plab_v2_Scene>::make(participant, publisher);
+    auto scene = wire::DataWriter<plab_v2_Scene>::make(participant, publisher);
     if (!scene) return scene.errors();
     scene_ = scene.take();
     if (auto opened = objects_.open(participant, publisher); !opened) return opened;

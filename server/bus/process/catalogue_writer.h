@@ -31,7 +31,7 @@ public:
 private:
     void dispose_key(const std::string& id, Trouble& trouble);
 
-    wire::Writer<T> writer_;
+    wire::DataWriter<T> writer_;
     wire::SampleView<T> sample_;
     std::map<std::string, std::string> type_of_;  // id -> type, of the existing interactions
 };
@@ -52,7 +52,7 @@ private:
     void dispose_what_is_gone(const publish::CatalogueChange& change, Trouble& trouble);
 
     std::string server_;
-    wire::Writer<plab_v2_Scene> scene_;
+    wire::DataWriter<plab_v2_Scene> scene_;
     wire::SampleView<plab_v2_Scene> scene_sample_;
     KeyedTopic<plab_v2_SceneObject, &plab_v2_SceneObject::component_id, wire::SceneObject, &wire::SceneObject::component_id> objects_;
     KeyedTopic<plab_v2_Shape, &plab_v2_Shape::component_id, wire::Shape, &wire::Shape::component_id> shapes_;

@@ -54,7 +54,7 @@ int main(int argc, char** argv)
     if (argc > 1)
         if (const auto answer = plab::program::answer_about(outline(), PLAB_VERSION, argc, argv))
             return std::fputs(answer->c_str(), stdout) < 0 ? 1 : 0;
-    // plabd ends this process: a signal to the whole process group must not close the bus before clients have been told about
+    // plabd ends this process: a signal to the whole process group must not close the bus before clients have been informed of
     // the end.
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) (void)std::signal(signal, SIG_IGN);
     (void)std::signal(SIGPIPE, SIG_IGN);

@@ -13,9 +13,9 @@ constexpr std::chrono::seconds kHeartbeat(1);
 
 Result<void> Presence::open(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber)
 {
-    auto writer = wire::Writer<plab_v2_Server>::make(participant, publisher);
+    auto writer = wire::DataWriter<plab_v2_Server>::make(participant, publisher);
     if (!writer) return writer.errors();
-    auto reader = wire::Reader<plab_v2_Server>::make(participant, subscriber);
+    auto reader = wire::DataReader<plab_v2_Server>::make(participant, subscriber);
     if (!reader) return reader.errors();
     writer_ = writer.take(), reader_ = reader.take();
     return {};
@@ -41,7 +41,7 @@ Presence::Clock::duration Presence::due_in(Clock::time_point now) const
     return std::max<Clock::duration>(written_ + kHeartbeat - now, Clock::duration::zero());
 }
 
-std::optional<std::string> Presence::look_for_rival()
+std::optional<std::string> Presence::find_rival()
 {
     std::optional<std::string> why;
     const auto compare = [&](const plab_v2_Server& other, const dds_sample_info_t& info)

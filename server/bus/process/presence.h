@@ -25,14 +25,14 @@ public:
     /// Time until send() is due if the status does not change.
     Clock::duration due_in(Clock::time_point now) const;
     /// Why this server has to end, if it must: the server that started first keeps the name.
-    std::optional<std::string> look_for_rival();
+    std::optional<std::string> find_rival();
     void dispose(Trouble& trouble);
     dds_entity_t writer() const { return writer_.entity().get(); }
 
 private:
     wire::Identity identity_;
-    wire::Writer<plab_v2_Server> writer_;
-    wire::Reader<plab_v2_Server> reader_;
+    wire::DataWriter<plab_v2_Server> writer_;
+    wire::DataReader<plab_v2_Server> reader_;
     wire::SampleView<plab_v2_Server> sample_;
     std::optional<wire::Server> status_;
     bool is_new_ = false;

@@ -20,13 +20,13 @@ public:
         if (there == writer_.entity().valid()) return {};
         writer_ = {}, seen_ = 0;
         if (!there) return {};
-        auto writer = wire::Writer<T>::make(participant, publisher);
+        auto writer = wire::DataWriter<T>::make(participant, publisher);
         if (!writer) return writer.errors();
         writer_ = writer.take();
         return {};
     }
     /// Checks for readers. True if anything changed since the last check.
-    bool look()
+    bool check_readers()
     {
         const wire::Matched readers = writer_.entity().valid() ? writer_.matched() : wire::Matched{};
         const bool came = readers.ever > seen_ && readers.now > 0, was_wanted = is_wanted_;
@@ -51,7 +51,7 @@ public:
 private:
     Record record_;  ///< refilled each time, reusing its memory
     wire::SampleView<T> sample_;
-    wire::Writer<T> writer_;
+    wire::DataWriter<T> writer_;
     bool is_wanted_ = false;
     std::uint64_t joins_ = 0;
     std::uint32_t seen_ = 0;  ///< total number of readers of this writer, at the last check

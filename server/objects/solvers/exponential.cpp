@@ -15,7 +15,7 @@ constexpr double kCorrection = 32.0 / 9;
 constexpr double kRoundingOfNonlinearity = 1e-11;  ///< a smaller nonlinearity counts as none
 constexpr double kSlight = 1e-8;                   ///< with a nonlinearity below this the corrected step is as good as exact
 constexpr std::size_t kHuge = 16;
-constexpr double kAlike = 10;  ///< times what the bend at the node is, in other points
+constexpr double kAlike = 10;  ///< times the nonlinearity at the node, in other points
 constexpr Tolerance kTolerated{1e-9, 1e-11};
 constexpr Tolerance kRadauTolerance{1e-9, 1e-12};
 constexpr std::int64_t kRadauSubsteps = 100000;
@@ -36,16 +36,16 @@ public:
         ExponentialCounts out;
         out.fine = linearise();
         out.too_large = !out.fine && (m_.moving.size() > most_ || is_huge());
-        double bend = 0;
+        double nonlinearity = 0;
         if (out.fine)
         {
-            bend = correct();
-            out.linear = bend <= kRoundingOfNonlinearity, out.fine = std::isfinite(bend);
-            if (out.fine && only_linear) out.fine = is_as_good_as_linear(bend);
-            out.sways = out.fine && !is_steady();
-            out.fine = out.fine && !out.sways;
+            nonlinearity = correct();
+            out.linear = nonlinearity <= kRoundingOfNonlinearity, out.fine = std::isfinite(nonlinearity);
+            if (out.fine && only_linear) out.fine = is_as_good_as_linear(nonlinearity);
+            out.unsteady = out.fine && !is_steady();
+            out.fine = out.fine && !out.unsteady;
         }
-        if (out.fine && !(bend <= kSlight && book_by_moments())) book();
+        if (out.fine && !(nonlinearity <= kSlight && book_by_moments())) book();
         if (out.fine) along(0, 1, m_.work);
         out.fine = out.fine && all_finite(m_.work);
         flat_.write(out.fine ? m_.work : m_.y);
@@ -187,20 +187,20 @@ private:
             m_.other[i] = largest;
             if (i >= flat_.places()) largest_of_all = std::fmax(largest_of_all, largest / m_.units[i]);
         }
-        double bend = 0;
+        double nonlinearity = 0;
         for (std::size_t i = 0; i < n; ++i)
         {
             const double rounding = 1e-15 * largest_of_all * m_.units[i], beyond = std::fabs(m_.defect[i]) - rounding;
-            if (!(beyond <= 0)) bend = std::fmax(bend, beyond / (m_.other[i] + rounding));
+            if (!(beyond <= 0)) nonlinearity = std::fmax(nonlinearity, beyond / (m_.other[i] + rounding));
         }
-        return all_finite(m_.defect) ? bend : std::numeric_limits<double>::infinity();
+        return all_finite(m_.defect) ? nonlinearity : std::numeric_limits<double>::infinity();
     }
 
     double correct()
     {
         along(2, 3, m_.middle);
-        const double bend = find_defect(kInnerNode * h_, m_.middle);
-        if (!std::isfinite(bend) || bend <= kRoundingOfNonlinearity) return bend;
+        const double nonlinearity = find_defect(kInnerNode * h_, m_.middle);
+        if (!std::isfinite(nonlinearity) || nonlinearity <= kRoundingOfNonlinearity) return nonlinearity;
         along(0, 1, m_.plain);
         // Nonlinear forces may set numbers in motion that the linear ones left at rest.
         const std::size_t known = m_.moving.size();
@@ -209,15 +209,15 @@ private:
         std::copy(m_.defect.begin(), m_.defect.end(), m_.middle.begin());
         const bool fine = differentiate(known);
         std::copy(m_.middle.begin(), m_.middle.end(), m_.defect.begin());
-        return fine && exponentiate(true) ? bend : std::numeric_limits<double>::infinity();
+        return fine && exponentiate(true) ? nonlinearity : std::numeric_limits<double>::infinity();
     }
 
     /// Whether the nonlinearity is so small, or has so little effect on the result, that the step is as good as exact; tested at the node
     /// of `correct` and at three more points.
-    bool is_as_good_as_linear(double bend)
+    bool is_as_good_as_linear(double nonlinearity)
     {
-        if (bend > kSlight && !(effect() <= 1)) return false;
-        return bend_along() <= std::max(kSlight, kAlike * bend);
+        if (nonlinearity > kSlight && !(effect() <= 1)) return false;
+        return nonlinearity_along() <= std::max(kSlight, kAlike * nonlinearity);
     }
 
     /// Whether J has the same effect at the node. The lateral force of an oscillating spring that is not along an axis changes its sign
@@ -280,15 +280,15 @@ private:
     }
 
     /// The nonlinearity along the step, at points other than the node of `correct`.
-    double bend_along()
+    double nonlinearity_along()
     {
-        double bend = 0;
-        for (int i = 1; i <= 4 && std::isfinite(bend); ++i)
+        double nonlinearity = 0;
+        for (int i = 1; i <= 4 && std::isfinite(nonlinearity); ++i)
         {
             along(2, i, m_.middle);
-            if (i != 3) bend = std::fmax(bend, find_defect(0.25 * i * h_, m_.middle));
+            if (i != 3) nonlinearity = std::fmax(nonlinearity, find_defect(0.25 * i * h_, m_.middle));
         }
-        return bend;
+        return nonlinearity;
     }
 
     /// The work of linear forces, exact for any number of oscillations in the step. Their power is quadratic in the state, so its mean
@@ -309,14 +309,14 @@ private:
         const auto book_all = [&](double share)
         {
             const double t = point(0, 0);
-            double bend = find_defect(t, m_.middle, share * (1 - static_cast<double>(rank)));
+            double nonlinearity = find_defect(t, m_.middle, share * (1 - static_cast<double>(rank)));
             for (std::size_t j = 0; j < rank; ++j)
                 for (const double sign : {1.0, -1.0})
                 {
                     const double at = point(j, sign);
-                    bend = std::fmax(bend, find_defect(at, m_.middle, 0.5 * share));
+                    nonlinearity = std::fmax(nonlinearity, find_defect(at, m_.middle, 0.5 * share));
                 }
-            return bend;
+            return nonlinearity;
         };
         if (book_all(1) <= kSlight) return true;
         book_all(-1);
@@ -383,7 +383,7 @@ void advance_exponential(const StepContext& context, Row row, ExponentialRows& r
                             counts.too_large
                                 ? "the group has " + std::to_string(FlatSystem(system).size()) +
                                       " numbers (positions and speeds), of which more than max_size = " + std::to_string(most) + " move"
-                            : counts.sways ? "the lateral effect of stiff forces changes within the step"
+                            : counts.unsteady ? "the lateral effect of stiff forces changes within the step"
                                            : "the exponential of this step overflows");
     const Radau5Counts done = advance_by_radau(start.dt, kRadauTolerance, kRadauSubsteps, memory.radau, system);
     if (is_trial(start)) return;

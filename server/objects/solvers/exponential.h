@@ -44,7 +44,7 @@ struct ExponentialCounts
 {
     bool fine = false;                      ///< if false, nothing was changed
     bool linear = false;                    ///< the forces are linear to rounding along the step
-    bool too_large = false, sways = false;  ///< why it failed: too many numbers move; the derivatives change
+    bool too_large = false, unsteady = false;  ///< why it failed: too many numbers move; the derivatives change
     std::int64_t evaluations = 0;
 };
 

@@ -23,7 +23,7 @@ struct JacobianPoint
 /// very short increment would drown in: theirs is at least 1e-3 `relative` units. Quantities have none.
 void rough_jacobian(FlatSystem& system, const JacobianPoint& at, double relative, SquareMatrix<double>& out);
 
-/// One column, by differences as good as the equations allow. `out` has its size; columns of speeds look at those of places. Where f is
+/// One column, by differences as good as the equations allow. `out` has its size; columns of speeds use those of positions. Where f is
 /// linear in a component, a long increment has no truncation error: two lengths that agree prove it, and the derivative is right to
 /// rounding (two evaluations). Otherwise central differences with Richardson's extrapolation, over the lengths that agree best (at most 34
 /// evaluations).

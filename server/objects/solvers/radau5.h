@@ -39,7 +39,7 @@ struct Radau5Rows : ErrorControlRows
 /// One step over context.dt, from coordinates 0.
 void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, DynamicSystem& system);
 
-/// The method itself, for solvers that choose it. Tells of failure by reached < h.
+/// The method itself, for solvers that choose it. It has failed if reached < h.
 Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system);
 /// The event of an advance that did not reach its end; h in s.
 void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts);

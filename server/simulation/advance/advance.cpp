@@ -49,13 +49,13 @@ void Advance::collect_observed(std::span<const std::uint32_t> groups)
     group_flags_.assign(step_.groups.all.size(), 0);
     for (const std::uint32_t g : groups) group_flags_[g] = 1;
     observed_.clear();
-    const auto look = [&](std::uint32_t g)
+    const auto add_upstream = [&](std::uint32_t g)
     {
         for (const std::uint32_t up : step_.groups.all[g].upstream)
             if (!group_flags_[up]) group_flags_[up] = 1, observed_.push_back(up);
     };
-    for (const std::uint32_t g : groups) look(g);
-    for (std::size_t i = 0; i < observed_.size(); ++i) look(observed_[i]);
+    for (const std::uint32_t g : groups) add_upstream(g);
+    for (std::size_t i = 0; i < observed_.size(); ++i) add_upstream(observed_[i]);
     std::sort(observed_.begin(), observed_.end());
 }
 

@@ -11,6 +11,7 @@
 namespace plab::simulation
 {
 
+/// Selects the pairs and bodies of an island, before its pieces.
 void ContactForces::bind(std::span<const std::uint32_t> groups)
 {
     const auto inside = [&](Ref r)
@@ -38,6 +39,7 @@ std::vector<ForcePair>::iterator ContactForces::place_of(std::uint32_t detector,
                             [&](const ForcePair& p, const auto& k) { return key(p.detector, p.a, p.b) < k; });
 }
 
+/// Contacts are visited in the order in which the pairs are sorted, so the pair wanted is mostly the last one found, or the next.
 ForcePair* ContactForces::find_pair(std::uint32_t detector, Ref a, Ref b)
 {
     const auto is_it = [&](std::size_t i)
@@ -104,6 +106,8 @@ void ContactForces::fill_surface(FoundContact& f) const
     f.contact.friction = law.friction, f.contact.restitution = law.restitution;
 }
 
+/// Detects all contacts of the island at the present state, also those that do not push yet: the search for switching events needs their
+/// depths (contact_force_switch.cpp).
 void ContactForces::inspect(double margin, std::vector<Seen>& out)
 {
     found_.clear();
@@ -177,6 +181,7 @@ void ContactForces::gather(bool extrapolate)
     }
 }
 
+/// Evaluates the force laws of the gathered contacts, one call for each detector's response.
 void ContactForces::run_laws(const StepContext& context, Wrenches& wrenches)
 {
     StepContext own = context;
@@ -230,6 +235,7 @@ void ContactForces::clear_scratch()
             scratch_.force[r.index] = scratch_.torque[r.index] = {};
 }
 
+/// Books the work of the contacts of one stage, weighted by its share of the step, to their responses.
 void ContactForces::book(const StepContext& context, std::vector<double>& work, std::vector<double>& power, double share)
 {
     for (std::size_t k = 0; k < matched_.size(); ++k)
@@ -253,6 +259,7 @@ void ContactForces::evaluate_laws()
     clear_scratch();
 }
 
+/// Whether a damper has become slack or taut since the piece began: a switch, like the begin and the end of a contact.
 bool ContactForces::any_slack_change() const
 {
     const auto changed = [&](const auto& match)

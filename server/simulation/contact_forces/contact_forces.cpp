@@ -59,11 +59,13 @@ double ContactForces::positions_of(Ref a, Ref b) const
     return length(bodies.position[a.index]) + length(bodies.position[b.index]);
 }
 
-bool ContactForces::touches(Ref a, Ref b, std::uint32_t group) const { return step_.groups.of(a) == group || step_.groups.of(b) == group; }
+bool ContactForces::involves(Ref a, Ref b, std::uint32_t group) const { return step_.groups.of(a) == group || step_.groups.of(b) == group; }
 
+/// Copies what belongs to the pairs of a group, when the group is rewound or saved. A pair of two groups is copied with either of them;
+/// both are always rewound together, because near pairs join their groups to one scope (close_over).
 void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32_t group)
 {
-    const auto here = [&](const auto& x) { return touches(x.a, x.b, group); };
+    const auto here = [&](const auto& x) { return involves(x.a, x.b, group); };
     if (from.pairs.empty() && to.pairs.empty() && from.happenings.empty() && to.happenings.empty()) return;
     std::erase_if(to.pairs, here), std::erase_if(to.happenings, here);
     std::copy_if(from.pairs.begin(), from.pairs.end(), std::back_inserter(to.pairs), here);
@@ -73,6 +75,8 @@ void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32
     std::sort(to.pairs.begin(), to.pairs.end(), [&](const ForcePair& x, const ForcePair& y) { return key(x) < key(y); });
 }
 
+/// Prepares a step: copies the known contacts, evaluates once how far each body may move, and lists the pairs that may meet. Only these
+/// are detected at the stages of the solver.
 void ContactForces::begin_step()
 {
     live_.pairs = contacts_.cache().force_pairs();

@@ -1,6 +1,6 @@
 /// Force contacts (responses `by_force`): springs and dampers such as Response/Penalty, integrated by the solver of the bodies.
 ///
-/// A contact force has a kink at the touch: it is zero before and rises after it. An integrator of order p keeps its order only if the
+/// A contact force has a kink where the contact begins: it is zero before and rises after it. An integrator of order p keeps its order only if the
 /// right-hand side is smooth over each of its steps. Two measures achieve that:
 ///
 /// 1. Switching events. The step is divided into pieces, and within a piece the set of contact points that push is fixed. After each piece
@@ -133,7 +133,7 @@ private:
 
     // contact_forces.cpp
     void transfer(const ForceState& from, ForceState& to, std::uint32_t group);
-    bool touches(Ref a, Ref b, std::uint32_t group) const;
+    bool involves(Ref a, Ref b, std::uint32_t group) const;
     void make_room();
     void find_near();
     void fill_motion_margins(double h);

@@ -1,4 +1,4 @@
-/// State of force contacts (springs and dampers) over time: what is stored from the first touch to the end of the contact.
+/// State of force contacts (springs and dampers) over time: what is stored from the first contact to the end of the contact.
 #pragma once
 
 #include <array>
@@ -31,8 +31,8 @@ struct ForceContact
     double rest_depth = 0;  ///< m; and preload, N: see Contact. Nonzero if the spring took over from a hard contact
     double preload = 0;
     double open_depth = 0;        ///< m: depth at which the spring force is zero; below it the contact ends
-    double approach = 0;          ///< m/s: closing speed at the first touch
-    double begin = 0;             ///< s, time of the first touch
+    double approach = 0;          ///< m/s: closing speed at the first contact
+    double begin = 0;             ///< s, time of the first contact
     double depth = 0;             ///< m, as detected last
     double peak = 0;              ///< m: largest depth that is expected
     double half_period = 0;       ///< s: pi over the fastest rate of this contact by itself

@@ -66,6 +66,9 @@ std::uint32_t HeldIslands::manager_of(const PairState& pair) const
 
 // Which groups are held -----------------------------------------------------------------------------------------------
 
+/// Takes the groups out of `groups` that belong to an island with a manager: because one of its persistent contacts names the manager, or
+/// a joint row that may yield does. If an island's contacts and joints name several managers, the first one by id solves all of it, since
+/// an island cannot be solved in parts. All other groups advance by their solvers, with full order.
 void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands)
 {
     held_.clear();
@@ -143,6 +146,9 @@ void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets&
     for (HeldIsland* island : jointed_) run(std::span(&island, 1), island->groups, observed, from, to, book, trial);
 }
 
+/// Advances islands that share one system from `from` to `to`. Forces are evaluated once for all of them; then each island's manager moves
+/// its bodies by HeldMotion. The work of the forces is booked afterwards at the mean velocities of the moves, which are known only then.
+/// The moves of bodies that were advanced to the midpoint cover the whole step as well, so the displacement to the midpoint is subtracted.
 void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed,
                       double from, double to, WorkBook book, bool trial)
 {

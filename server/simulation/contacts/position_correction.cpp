@@ -14,8 +14,10 @@ constexpr int kCorrectionSweeps = 8, kEasingSweeps = 100;
 
 }  // namespace
 
-/// Removes the overlap of one pair.
-void PositionCorrection::part(std::span<const FoundContact> contacts)
+/// Removes the overlap of one pair by sweeps over its contact points. Each point is moved apart by its own remaining depth, which includes
+/// what the points before it have moved: nonlinear Gauss-Seidel. The displacements are collected in `a` and `b` and applied at the end, so
+/// that all points refer to the same poses; the sum of their rotations is small.
+void PositionCorrection::separate(std::span<const FoundContact> contacts)
 {
     Bodies& bodies = step_.world.host().bodies;
     const Ref first = contacts.front().contact.a, second = contacts.front().contact.b;
@@ -62,6 +64,8 @@ Vec3 PositionCorrection::force_on(Ref body)
     return known_force_[body.index].force;
 }
 
+/// One pair after the other, in the order of ids. Overlap up to the tolerance stays. Correcting one pair may press its bodies into others;
+/// the next detection finds that overlap, and the next step corrects it.
 void PositionCorrection::correct_positions()
 {
     const std::span<const FoundContact> found = contacts_.found();
@@ -72,7 +76,7 @@ void PositionCorrection::correct_positions()
             deepest = std::max(deepest, found[end].contact.depth - found[end].contact.rest_depth);
         const PairState* pair = contacts_.find_pair(found[i]);
         const bool by_impulses = pair && pair->resting && !contacts_.detectors()[found[i].detector].by_rows;
-        if (by_impulses && deepest > contacts_.overlap_tolerance(pair->a, pair->b)) part(found.subspan(i, end - i));
+        if (by_impulses && deepest > contacts_.overlap_tolerance(pair->a, pair->b)) separate(found.subspan(i, end - i));
     }
 }
 

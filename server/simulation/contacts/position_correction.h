@@ -41,7 +41,7 @@ private:
         Vec3 force;
         std::uint64_t serial = 0;  ///< of the step
     };
-    void part(std::span<const FoundContact> contacts);
+    void separate(std::span<const FoundContact> contacts);
     Vec3 force_on(Ref body);
     void ease_pair(PairState& pair);
     double share_of_overlap_left(const PairState& pair, std::span<const Eased> eased) const;

@@ -287,6 +287,13 @@ bool EventLocator::stop_bouncing(const Candidate& candidate, double time, double
     return true;
 }
 
+/// Answers the chosen pairs, with all groups of the scope at the time of the event:
+///   1. The contact points of each pair are completed at this state.
+///   2. Persistent contacts of the scope are added, because the impact propagates through them.
+///   3. The acceleration along each normal is evaluated, which distinguishes a bounce from coming to rest.
+///   4. Pairs whose sequence of bounces ends within the step lose their restitution (zeno.h).
+///   5. The response applies impulses to all of these contacts at once; joints are restored (event_joints.cpp).
+///   6. The outcome is recorded per pair and reported as events.
 void EventLocator::answer()
 {
     const Candidate& first = candidates_[chosen_.front()];

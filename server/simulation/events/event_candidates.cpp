@@ -7,6 +7,9 @@
 namespace plab::simulation
 {
 
+/// Bounds the motion of each body over the step from its states at both ends (motion_bound.h), and from that how far any of its points can
+/// travel. A box that is expanded by this distance contains the body at every time of the step, so two bodies whose expanded boxes do not
+/// overlap cannot meet, and the broad phase lists all pairs that may.
 void EventLocator::begin_motion_bounds()
 {
     const world::HostTables& host = step_.world.host();
@@ -56,6 +59,8 @@ void EventLocator::end_pieces()
         }
 }
 
+/// Makes candidates of all pairs whose expanded boxes overlap; with `only_rewound`, of those with a body whose trajectory the last answer
+/// changed. All others keep the bounds that they have.
 void EventLocator::find_near(bool only_rewound)
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -95,6 +100,8 @@ void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, st
     sort_contacts(found, step_.world);
 }
 
+/// Queues a pair at a time before which it cannot meet. Most listed pairs never come near one another within the step, and for them bounds
+/// by enclosing balls and half-spaces, which need no distance query, are enough: if they cover the rest of the step, the pair is dropped.
 void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
 {
     // If a piece begins inside the step, the rounding error of its bound is far below this fraction of the acceleration.

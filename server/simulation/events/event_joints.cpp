@@ -149,7 +149,8 @@ void EventLocator::compress(double time)
     for (int round = 0; round < kMostRowSearches && closing() > over; ++round) compress_once(time);
 }
 
-void EventLocator::give_back(double time)
+/// Poisson's hypothesis: each contact gives back e times the impulse that its compression took.
+void EventLocator::apply_restitution(double time)
 {
     jointed_.last.resize(impact_.size());
     add_impulses(1, true);
@@ -168,7 +169,7 @@ void EventLocator::respond(double time)
     note_resting_contacts();
     jointed_.last.assign(impact_.size(), Vec3{});
     compress(time);
-    give_back(time);
+    apply_restitution(time);
     for (std::size_t i = 0; i < impact_.size(); ++i)
     {
         Contact& c = impact_[i].contact;

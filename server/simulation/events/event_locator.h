@@ -201,7 +201,7 @@ private:
     void compress(double time);
     void compress_once(double time);
     void add_impulses(double share, bool of_all);
-    void give_back(double time);
+    void apply_restitution(double time);
 
     StepState& step_;
     GroupMotion& motion_;

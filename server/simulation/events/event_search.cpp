@@ -19,7 +19,7 @@ namespace
 {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-/// m: a gap of exactly 0 counts as an overlap; as a resolution tells the two apart by the sign, it gets this much below 0.
+/// m: a gap of exactly 0 counts as an overlap; a resolution distinguishes the two by the sign, so it gets this much below 0.
 constexpr double kNothing = 1e-300;
 /// A closing or separation speed below this fraction of the two speeds that it is the difference of counts as zero.
 constexpr double kNoGapRate = 1e-14;
@@ -320,7 +320,7 @@ bool EventLocator::meets(Candidate& candidate)
                 return true;
         }
         const double next = std::min(trial.next, sample.time + clear);
-        // The next time cannot be told from the present one; a pair that separates here is left to the next step.
+        // The next time is not distinguishable from the present one; a pair that separates here is left to the next step.
         if (!(next > sample.time)) return !(sample.rate > kNoGapRate * sample.speed);
         const DistanceSample ahead = sample_at(candidate, std::min(next, step));
         // The bound relies on estimated accelerations, so an overlap is possible after all. Then the two samples are a bracket.

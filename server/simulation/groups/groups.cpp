@@ -67,6 +67,7 @@ public:
 
     Groups build()
     {
+        // Sets consist of ranks in the order of ids, not of indices, so that neither load order nor row numbers affect the groups.
         sets_.reset(world_.in_id_order().size());
         for_each_interaction([&](std::uint32_t component, std::uint32_t, Row) { join_members(component); });
         make_groups();
@@ -92,6 +93,8 @@ private:
             for (const Row row : blocks[b].rows) visit(world_.tables()[blocks[b].table]->component_of_row()[row], b, row);
     }
 
+    /// Only dynamic objects are joined: nothing propagates through a body whose motion does not depend on forces. So all bodies that stand
+    /// on one static floor, or hang on one prescribed hook, stay independent of one another.
     void join_members(std::uint32_t component)
     {
         const Participation p = participation(world_, component);
@@ -119,6 +122,8 @@ private:
         return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), represents));
     }
 
+    /// Numbers the sets in the order in which the ids of their members appear, and sorts the objects into them. Prescribed objects were
+    /// joined with nothing, so each has a group of its own; static ones have none.
     void make_groups()
     {
         groups_.group_of_body.assign(world_.host().bodies.size(), kNoIndex);
@@ -155,6 +160,8 @@ private:
         }
     }
 
+    /// Gives each group the rows that act on its members, and lists the groups that those rows read. A row that acts on two objects of
+    /// different groups (a field that acts on each by itself, or a force between a dynamic and a prescribed object) is listed in both.
     void link_rows()
     {
         for (const Phase phase : {Phase::Force, Phase::Couple, Phase::Constrain})
@@ -195,6 +202,7 @@ private:
         }
     }
 
+    /// Clusters are the connected components of the relation "reads", whatever its direction.
     void make_clusters()
     {
         DisjointSets clusters(groups_.all.size());

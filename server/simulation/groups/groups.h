@@ -2,6 +2,12 @@
 ///
 /// Fields that act on each body separately connect nothing, and neither do static and prescribed bodies. A role that only reads an object
 /// orders two groups without joining them: the forces of the reading group need the state of the other one, but not vice versa.
+///
+/// The groups are the connected components of a graph: its vertices are the dynamic objects, and an interaction that couples the objects
+/// on which it acts connects all of them. They are found by union-find when the structure of the scene changes, not in each step. Contacts
+/// come and go, so they are not part of this graph: they join groups to islands within a step (held_islands.h, contact_forces.h). Groups
+/// that read one another form a cluster. Its groups have equations of their own but one solver, because a solver evaluates forces at
+/// stages inside the step, and a group can read the state of another one there only if that one has a stage at the same time.
 #pragma once
 
 #include <string>

@@ -154,6 +154,8 @@ void GroupMotion::save_segment(std::uint32_t g)
     if (memory_) memory_->save_segment(g);
 }
 
+/// Prescribed objects are saved at the end only: a system sets them from the time (GroupSystem::scatter_prescribed), so
+/// a rewind needs no earlier state of them.
 void GroupMotion::save_end(std::uint32_t g)
 {
     const Group& group = step_.groups.all[g];
@@ -176,6 +178,8 @@ void GroupMotion::restore_end(std::uint32_t g)
     if (memory_) memory_->restore_end(g);
 }
 
+/// One diverged object must not end the run: it goes back to the start of the step, at rest, while the other members of its system
+/// keep their results. The simulation then quarantines it (StepReport::frozen).
 void GroupMotion::freeze(const GroupSystem& system)
 {
     world::HostTables& host = step_.world.host();

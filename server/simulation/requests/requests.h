@@ -221,7 +221,7 @@ struct TrialReport
     Spread with_old, with_new;     ///< ns, of repeated trial steps of a swap, with warm caches; no samples: not measured
 };
 
-/// Changes that requests made to the structure and to parameters, for those who keep a copy of the catalogue.
+/// Changes that requests made to the structure and to parameters, for observers that keep a copy of the catalogue.
 struct Changes
 {
     bool everything = false;             ///< a new run

@@ -129,7 +129,7 @@ void CouplingWatch::report(const world::World& world, const ShaftSystem& system,
     report_conflict(world, done, reported);
     for (const Fault& fault : faults_) report_fault(fault, world.host().shafts, done, reported);
     misses_.clear();
-    for (std::size_t i = 0; i < pairs_.size(); ++i) look_at(i, world, system, reported);
+    for (std::size_t i = 0; i < pairs_.size(); ++i) check_pair(i, world, system, reported);
     if (!misses_.empty()) report_unsettled(world.host().shafts, done.sweeps, reported);
 }
 
@@ -162,7 +162,7 @@ void CouplingWatch::report_fault(const Fault& fault, const Shafts& shafts, const
 }
 
 /// Checks the speeds of one pair: they agree, or are reported at once if nothing can correct them, or are recorded as a miss.
-void CouplingWatch::look_at(std::size_t index, const world::World& world, const ShaftSystem& system, std::vector<std::uint8_t>& reported)
+void CouplingWatch::check_pair(std::size_t index, const world::World& world, const ShaftSystem& system, std::vector<std::uint8_t>& reported)
 {
     const CouplingPair& p = pairs_[index];
     if (p.one_way) return;  // conflicts are reported separately

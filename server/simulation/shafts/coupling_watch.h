@@ -52,7 +52,7 @@ private:
     void find_contradictions(const world::World& world, const ConstraintGraph& graph, const ShaftDirectory& directory);
     void report_fault(const Fault& fault, const Shafts& shafts, const CouplingReport& done, std::vector<std::uint8_t>& reported);
     void report_conflict(const world::World& world, const CouplingReport& done, std::vector<std::uint8_t>& reported);
-    void look_at(std::size_t pair, const world::World& world, const ShaftSystem& system, std::vector<std::uint8_t>& reported);
+    void check_pair(std::size_t pair, const world::World& world, const ShaftSystem& system, std::vector<std::uint8_t>& reported);
     void report_unsettled(const Shafts& shafts, int sweeps, std::vector<std::uint8_t>& reported);
     void emit(const char* kind, std::uint32_t component, std::string message, std::vector<double> values);
     bool is_faulty(std::uint32_t part, const ShaftSystem& system) const;

@@ -36,6 +36,9 @@ ContactsImage image_of(const ContactCache& cache)
     return out;
 }
 
+/// Copies values only, no structure that follows from them, and shares the scene and the directory of ids with the run, which replaces
+/// them when it changes (world/shared.h). So the cost is that of the numbers of the state, and the step thread can afford it. It is called
+/// between two steps: inside a step, groups may be at different times.
 Snapshot capture(const Run& run)
 {
     if (!run.live.world) return {};

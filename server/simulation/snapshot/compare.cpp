@@ -10,6 +10,9 @@ namespace plab::simulation
 namespace
 {
 
+// Two states are compared by their portraits: a list of named values for each component, in the order of ids, compared bit by bit. Indices
+// of rows do not appear in it, so states of different worlds can be compared, and a difference names its component and field.
+
 /// The kind of a value, by which a Comparison selects.
 enum class Weight : std::uint8_t
 {
@@ -253,7 +256,7 @@ public:
             else if (a == first.end() || b->first < a->first)
                 add(b++->first, "presence", "-", "there");
             else
-                look(a->first, a->second, b->second), ++a, ++b;
+                compare(a->first, a->second, b->second), ++a, ++b;
         }
     }
 
@@ -273,7 +276,7 @@ private:
         const auto at = std::find_if(facts.begin(), facts.end(), [&](const Fact& f) { return f.name == name; });
         return at == facts.end() ? nullptr : &*at;
     }
-    void look(const std::string& component, const Facts& first, const Facts& second)
+    void compare(const std::string& component, const Facts& first, const Facts& second)
     {
         for (const Fact& a : first)
         {

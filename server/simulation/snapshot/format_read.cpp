@@ -51,6 +51,11 @@ Result<void> refuse_unknown(const std::vector<Section>& sections)
 }
 
 /// Builds a snapshot from the sections of a file. Directory indices are rows of the section "components".
+///
+/// A file may be damaged or made with bad intent, and what is built here is later used without checks. So each part is checked when it is
+/// read: numbers of the clock against their ranges, references against the components that exist and their facets, counts against the
+/// rows that follow. The parts are read in the order in which they refer to one another: the scene gives the components, the components
+/// give the tables, and rows of the tables are what contacts refer to.
 class FileReader
 {
 public:

@@ -12,6 +12,8 @@ namespace plab::simulation::records
 {
 
 // The columns of each record: visit(name, member) for each. -----------------------------------------------------------------
+// The names are part of the file format and stay as they were first written ("told" is what has been reported, "way" the linear motion,
+// "lively" a speed of oscillation), because a reader refuses files with columns that it does not know.
 
 template <class V>
 void columns(ClockImage& c, V visit)

@@ -101,6 +101,15 @@ void restore_contacts(const ContactsImage& image, const world::Renumbering& now,
     std::sort(cache.force_pairs().begin(), cache.force_pairs().end(), before);
 }
 
+/// A restored run must continue with the same bits, although its world is a new one in which components and rows may have other numbers.
+/// This works because all orders of computation are derived from ids, never from indices: what is ordered by id is the same in both
+/// worlds, and indices only have to be translated (world::Renumbering). The order of the steps matters:
+///   1. The world is built from the snapshot's scene and gets the values of all fields; opaque values are rebuilt by their types.
+///   2. The stepper derives schedule, groups and constraint graph from that world. This also initialises tables of the server,
+///      such as the anchors of gear trains, so
+///   3. those tables are loaded after it, and overwrite what it has initialised.
+///   4. Contacts, ledgers and memories of the watches are translated and put in place.
+///   5. The hash of the result is compared with the captured one. It covers all states, so a mistake in steps 1 to 4 cannot stay unnoticed.
 Result<LiveScene> revive(const RunContext& context, const SnapshotContent& from)
 {
     LiveScene live;

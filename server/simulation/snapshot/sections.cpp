@@ -28,7 +28,7 @@ std::string_view type_name(const Value& value)
     return kNames[value.index()];
 }
 
-class Writer
+class SectionWriter
 {
 public:
     template <class T>
@@ -100,10 +100,10 @@ private:
 };
 
 /// Reads until the data ends; from then on all values are empty and fine() is false.
-class Reader
+class SectionReader
 {
 public:
-    explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+    explicit SectionReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
     bool fine() const { return fine_; }
     void fail() { fine_ = false; }
@@ -230,7 +230,7 @@ template <class T>
 bool read_data(std::span<const std::uint8_t> bytes, std::size_t rows, std::vector<T>& out)
 {
     if (rows > bytes.size() / kLeast<T>) return false;
-    Reader in(bytes);
+    SectionReader in(bytes);
     out.reserve(rows);
     for (std::size_t i = 0; i < rows && in.fine(); ++i)
     {
@@ -252,7 +252,7 @@ bool read_column(const std::string& type, std::span<const std::uint8_t> bytes, s
     return false;
 }
 
-Result<Section> read_section(Reader& in)
+Result<Section> read_section(SectionReader& in)
 {
     Section out;
     in.get(out.name);
@@ -284,7 +284,7 @@ const NamedColumn* Section::find(std::string_view column) const
 
 std::vector<std::uint8_t> write_sections(std::uint32_t version, std::span<const Section> sections)
 {
-    Writer out;
+    SectionWriter out;
     out.bytes.insert(out.bytes.end(), kSnapshotMagic.begin(), kSnapshotMagic.end());
     out.put(version);
     out.raw(std::uint64_t{0});
@@ -319,7 +319,7 @@ Result<SectionFile> read_sections(std::span<const std::uint8_t> bytes, std::uint
     if (bytes.size() < kPreamble + kEnding)
         return reason("the snapshot is truncated: it has only " + std::to_string(bytes.size()) + " bytes");
     SectionFile out;
-    Reader front(bytes.subspan(kSnapshotMagic.size()));
+    SectionReader front(bytes.subspan(kSnapshotMagic.size()));
     out.version = front.raw<std::uint32_t>();
     const auto length = front.raw<std::uint64_t>();
     if (out.version < 1 || out.version > newest)
@@ -327,9 +327,9 @@ Result<SectionFile> read_sections(std::span<const std::uint8_t> bytes, std::uint
     if (length != bytes.size())
         return reason("the snapshot should have " + std::to_string(length) + " bytes, but has " + std::to_string(bytes.size()));
     const auto body = bytes.first(bytes.size() - kEnding);
-    if (Reader(bytes.last(kEnding)).raw<std::uint64_t>() != world::hash_bytes(kHashStart, body))
+    if (SectionReader(bytes.last(kEnding)).raw<std::uint64_t>() != world::hash_bytes(kHashStart, body))
         return reason("the snapshot is damaged: its checksum does not match");
-    Reader in(body.subspan(kPreamble));
+    SectionReader in(body.subspan(kPreamble));
     while (in.left() > 0)
     {
         auto section = read_section(in);

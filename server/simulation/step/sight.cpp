@@ -88,7 +88,7 @@ void SightBuilder::learn(const world::World& world)
     known_ = true;
 }
 
-Sight SightBuilder::look(const world::World& world)
+Sight SightBuilder::view_of(const world::World& world)
 {
     if (!known_) learn(world);
     visuals_.clear();

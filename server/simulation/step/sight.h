@@ -16,7 +16,7 @@ public:
     /// Names, colours and geometry are looked up again before the next picture.
     void structure_changed() { known_ = false, ++revision_; }
     /// The present view of the world; valid until the next call.
-    Sight look(const world::World& world);
+    Sight view_of(const world::World& world);
 
 private:
     struct Thing

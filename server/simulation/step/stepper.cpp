@@ -102,7 +102,7 @@ void Stepper::finish()
 
 void Stepper::draw()
 {
-    const Sight sight = sight_.look(step_.world);
+    const Sight sight = sight_.view_of(step_.world);
     StepContext context = step_.context();
     context.time += step_.frame.step;
     PhaseCall call;

@@ -19,7 +19,7 @@ enum class Activity : std::uint8_t
 class Progress
 {
 public:
-    struct Look
+    struct Reading
     {
         Activity activity = Activity::Nothing;
         std::uint8_t node = 0;       ///< node of the step tree that is running
@@ -50,13 +50,13 @@ public:
     }
 
     // Any thread -------------------------------------------------------------------------------------------------------
-    Look look() const
+    Reading read() const
     {
         for (;;)
         {
             const std::uint32_t before = version_.load(std::memory_order_acquire);
-            Look out{activity_.load(relaxed), node_.load(relaxed),       step_.load(relaxed),
-                     since_.load(relaxed),    node_since_.load(relaxed), work_.load(relaxed)};
+            Reading out{activity_.load(relaxed), node_.load(relaxed),       step_.load(relaxed),
+                        since_.load(relaxed),    node_since_.load(relaxed), work_.load(relaxed)};
             std::atomic_thread_fence(std::memory_order_acquire);
             if (before % 2 == 0 && version_.load(relaxed) == before) return out;
         }

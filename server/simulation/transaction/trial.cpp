@@ -122,14 +122,14 @@ bool Trial::grow(TrialScope& scope, const Stepper& part) const
             grown = true;
         }
     };
-    const auto look = [&](const auto& p)
+    const auto extend = [&](const auto& p)
     {
         if (scope.holds(p.a) || scope.holds(p.b)) meet(p.a, p.b);
     };
-    for (const PairState& p : part.contacts().pairs()) look(p);
-    for (const ForcePair& p : part.contacts().force_pairs()) look(p);
+    for (const PairState& p : part.contacts().pairs()) extend(p);
+    for (const ForcePair& p : part.contacts().force_pairs()) extend(p);
     for (const Event& e : part.events())
-        if (e.a.facet == Facet::Body && e.b.facet == Facet::Body && e.a.valid() && e.b.valid()) look(e);
+        if (e.a.facet == Facet::Body && e.b.facet == Facet::Body && e.a.valid() && e.b.valid()) extend(e);
     return grown;
 }
 

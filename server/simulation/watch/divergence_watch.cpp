@@ -13,7 +13,7 @@ namespace plab::simulation
 namespace
 {
 
-constexpr double kMostGain = 100, kMostMade = 0.05, kLook = 4, kSmallTurn = 1e-3;
+constexpr double kMostGain = 100, kMostMade = 0.05, kGrowthToCheck = 4, kSmallTurn = 1e-3;
 constexpr int kMostDoublings = 24, kQuickSteps = 8, kPatience = 8;
 constexpr double kEnergyRounding = 0x1p-40;  // rad or m: relative rounding of positions, with a margin for what a step makes of it
 
@@ -51,27 +51,27 @@ bool sealed(const world::HostTables& host)
            std::none_of(host.shafts.motion.begin(), host.shafts.motion.end(), moved);
 }
 
-Event warning(const RunView& s, Ref who, const char* what, std::vector<double> values)
+Event warning(const RunView& s, Ref object, const char* what, std::vector<double> values)
 {
     Event e;
     e.tick = s.tick, e.time = s.time + s.dt, e.kind = "motion.diverged", e.severity = Severity::Warning;
-    e.component = s.world.host().component_of(who), e.a = who;
-    e.message = s.world.id_of(who) + " " + what + "; shorter steps, a softer law or another algorithm may prevent it";
+    e.component = s.world.host().component_of(object), e.a = object;
+    e.message = s.world.id_of(object) + " " + what + "; shorter steps, a softer law or another algorithm may prevent it";
     e.values = std::move(values);
     return e;
 }
 
 Ref fastest(const world::HostTables& host)
 {
-    Ref who;
+    Ref object;
     double most = -1;
-    const auto ask = [&](Ref ref, double energy)
+    const auto compare = [&](Ref ref, double energy)
     {
-        if (energy > most) who = ref, most = energy;
+        if (energy > most) object = ref, most = energy;
     };
-    for (std::uint32_t b = 0; b < host.bodies.size(); ++b) ask({Facet::Body, b}, host.bodies.kinetic_energy(b));
-    for (std::uint32_t s = 0; s < host.shafts.size(); ++s) ask({Facet::Shaft, s}, host.shafts.kinetic_energy(s));
-    return who;
+    for (std::uint32_t b = 0; b < host.bodies.size(); ++b) compare({Facet::Body, b}, host.bodies.kinetic_energy(b));
+    for (std::uint32_t s = 0; s < host.shafts.size(); ++s) compare({Facet::Shaft, s}, host.shafts.kinetic_energy(s));
+    return object;
 }
 
 }  // namespace
@@ -112,9 +112,9 @@ void DivergenceWatch::size_for(const RunView& s)
 }
 
 /// Marks the object as reported; true the first time.
-bool DivergenceWatch::tell(Ref who)
+bool DivergenceWatch::report_once(Ref object)
 {
-    std::uint8_t& reported = who.facet == Facet::Body ? m_.bodies_reported[who.index] : m_.shafts_reported[who.index];
+    std::uint8_t& reported = object.facet == Facet::Body ? m_.bodies_reported[object.index] : m_.shafts_reported[object.index];
     return std::exchange(reported, std::uint8_t{1}) == 0;
 }
 
@@ -195,10 +195,10 @@ void DivergenceWatch::watch_growth(const RunView& s, std::vector<Event>& events)
 {
     const world::HostTables& host = s.world.host();
     const double turn = kSmallTurn / s.dt;
-    const auto look = [&](DivergenceMemory::Growth& growth, double speed_squared, double least, Ref who)
+    const auto check = [&](DivergenceMemory::Growth& growth, double speed_squared, double least, Ref object)
     {
-        if (growth.runs_away(speed_squared, least) && tell(who))
-            events.push_back(warning(s, who, "keeps doubling its speed every few steps", {std::sqrt(speed_squared)}));
+        if (growth.runs_away(speed_squared, least) && report_once(object))
+            events.push_back(warning(s, object, "keeps doubling its speed every few steps", {std::sqrt(speed_squared)}));
     };
     // In the order of ids, which is also the order of events.
     for (const std::uint32_t i : s.world.in_id_order())
@@ -208,11 +208,11 @@ void DivergenceWatch::watch_growth(const RunView& s, std::vector<Event>& events)
         if (c.facet == Facet::Body && host.bodies.dynamic(k))
         {
             const double gyration = trace(host.bodies.inertia_B[k]) / 2 * host.bodies.inverse_mass[k];
-            look(m_.linear[k], length_squared(host.bodies.velocity[k]), gyration * turn * turn, c.ref(i));
-            look(m_.spin[k], length_squared(host.bodies.angular_velocity[k]), turn * turn, c.ref(i));
+            check(m_.linear[k], length_squared(host.bodies.velocity[k]), gyration * turn * turn, c.ref(i));
+            check(m_.spin[k], length_squared(host.bodies.angular_velocity[k]), turn * turn, c.ref(i));
         }
         if (c.facet == Facet::Shaft && host.shafts.dynamic(k))
-            look(m_.turn[k], host.shafts.speed[k] * host.shafts.speed[k], turn * turn, c.ref(i));
+            check(m_.turn[k], host.shafts.speed[k] * host.shafts.speed[k], turn * turn, c.ref(i));
     }
 }
 
@@ -220,12 +220,12 @@ void DivergenceWatch::watch_energy(const RunView& s, std::vector<Event>& events)
 {
     const world::HostTables& host = s.world.host();
     const double now = kinetic(host);
-    if (now <= kLook * m_.last_kinetic && m_.gaining_steps == 0) return;
+    if (now <= kGrowthToCheck * m_.last_kinetic && m_.gaining_steps == 0) return;
     if (!std::isfinite(now))
     {
         m_.reported = true;
-        if (const Ref who = fastest(host); tell(who))
-            events.push_back(warning(s, who, "moves so fast that its kinetic energy overflows", {now}));
+        if (const Ref object = fastest(host); report_once(object))
+            events.push_back(warning(s, object, "moves so fast that its kinetic energy overflows", {now}));
         return;
     }
     m_.last_kinetic = std::max(now, m_.last_kinetic);
@@ -243,8 +243,8 @@ void DivergenceWatch::watch_energy(const RunView& s, std::vector<Event>& events)
     std::snprintf(text, sizeof text,
                   "is the fastest object while energy is created: %.3g J since step %lld, compared with %.3g J present or added", gain,
                   static_cast<long long>(m_.gaining_since), scale);
-    if (const Ref who = fastest(host); tell(who))
-        events.push_back(warning(s, who, text, {gain, scale, static_cast<double>(m_.gaining_since)}));
+    if (const Ref object = fastest(host); report_once(object))
+        events.push_back(warning(s, object, text, {gain, scale, static_cast<double>(m_.gaining_since)}));
 }
 
 }  // namespace plab::simulation

@@ -71,7 +71,7 @@ private:
         double net = 0, gross = 0;  ///< J
     };
 
-    bool tell(Ref who);
+    bool report_once(Ref object);
     void size_for(const RunView& s);
     void watch_growth(const RunView& s, std::vector<Event>& events);
     void watch_energy(const RunView& s, std::vector<Event>& events);

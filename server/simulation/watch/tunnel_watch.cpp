@@ -70,7 +70,7 @@ bool crosses(const Vec3& a, const Vec3& b, const Geometry& g)
 
 }  // namespace
 
-void TunnelWatch::look_up(const RunView& s)
+void TunnelWatch::find_colliding_bodies(const RunView& s)
 {
     const world::World& world = s.world;
     const world::HostTables& host = world.host();
@@ -99,7 +99,7 @@ void TunnelWatch::look_up(const RunView& s)
 
 void TunnelWatch::before_step(const RunView& s)
 {
-    if (!ready_) look_up(s);
+    if (!ready_) find_colliding_bodies(s);
     if (crowds_.empty()) return;
     const Bodies& bodies = s.world.host().bodies;
     for (std::size_t b = 0; b < start_.size(); ++b) start_[b] = {bodies.position[b], bodies.orientation[b]};
@@ -209,8 +209,8 @@ void TunnelWatch::find_overlaps(const RunView& s, std::vector<Event>& events)
         if (d.by_force || (!d.responds && !d.by_rows)) continue;
         const double one = least_width_[c.a.index], two = least_width_[c.b.index];
         if (!(c.depth > kDeep * std::min(one > 0 ? one : two, two > 0 ? two : one))) continue;
-        const Ref who = bodies.dynamic(c.a.index) ? c.a : c.b;
-        TunnelMemory::Sinking& sinking = memory_.sinking[who.index];
+        const Ref sinks = bodies.dynamic(c.a.index) ? c.a : c.b;
+        TunnelMemory::Sinking& sinking = memory_.sinking[sinks.index];
         if (sinking.last == s.tick) continue;
         sinking.steps = sinking.last + 1 == s.tick ? sinking.steps + 1 : 1;
         sinking.last = s.tick;

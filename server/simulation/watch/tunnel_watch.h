@@ -71,7 +71,7 @@ private:
         friend auto operator<=>(const Passage&, const Passage&) = default;
     };
 
-    void look_up(const RunView& s);
+    void find_colliding_bodies(const RunView& s);
     bool find_swept_boxes(const RunView& s, const Crowd& crowd);
     void find_passages(const RunView& s, const Crowd& crowd);
     void report_passages(const RunView& s, const Crowd& crowd, std::vector<Event>& events);

@@ -179,8 +179,8 @@ void add_joint_cases(std::vector<Case>& out)
     out.push_back(gear_case());
     const std::vector<Step> fine = steps({60, 120, 240, 480, 1000, 2000, 4000});
     Case spring{"i-spring", "i: spring of 1000 rad/s on a slider, 1 s", {spring_on_slider()}, Sampling::EveryStep, {}, {}, fine};
-    spring.metrics = {{"rms", "1", "RMS error of the way, relative to the amplitude"},
-                      {"end", "1", "error of the way at the end, relative"}};
+    spring.metrics = {{"rms", "1", "RMS error of the displacement, relative to the amplitude"},
+                      {"end", "1", "error of the displacement at the end, relative"}};
     spring.measure = measure_spring;
     out.push_back(spring);
     Case pair{"i-pair", "i: spring between 1e-3 and 1e3 kg, 0.5 s", {unequal_pair()}, Sampling::EveryStep, {}, {}, fine};

@@ -115,7 +115,7 @@ Case slide()
     oblique.bodies[0].velocity = {3 * std::cos(angle), 3 * std::sin(angle), 0};
     Case c{"c", "c: sliding box, worse of 0 and 30 degrees", {along, oblique}, Sampling::End, {},
            {},  steps({60, 120, 240, 480, 1000, 2000, 4000})};
-    c.metrics = {{"distance", "1", "relative error of the way to the stop"},
+    c.metrics = {{"distance", "1", "relative error of the stopping distance"},
                  {"direction", "rad", "error of its direction"},
                  {"end_speed", "m/s", "speed at the end"}};
     c.measure = measure_slide;

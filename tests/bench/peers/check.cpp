@@ -53,7 +53,7 @@ Checked check(const Known& known)
         for (const Run& run : known.adapter(which, notes))
         {
             if (run.label() != known.run) continue;
-            const Measurement m = measure(which, run, Look::Figures);
+            const Measurement m = measure(which, run, Quantity::Figures);
             for (std::size_t i = 0; i < m.figures.size(); ++i)
                 if (which.metrics[i].name == known.metric) out.measured = m.figures[i];
         }

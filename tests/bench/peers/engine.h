@@ -38,7 +38,7 @@ struct Run
 {
     std::string engine;    ///< "ode", "bullet", "simbody", "plab"
     std::string settings;  ///< as in the results: "quick20", "RungeKutta4"
-    Step step;             ///< of a method that chooses its own steps: the time between two looks
+    Step step;             ///< of a method that chooses its own steps: the time between two samples
     std::string control;   ///< how such a method is controlled, e.g. "1e-6"; empty: fixed steps
     std::function<Result<std::unique_ptr<Engine>>(const Scene&)> make;
 

@@ -24,20 +24,21 @@ constexpr double kLeft = 72, kRight = 18, kTop = 34, kBottom = 52;          // p
 constexpr double kHead = 40, kFoot = 40;                                    // px
 constexpr double kLeastError = 1e-17, kMostError = 1e3, kLeastCost = 1e-6;  // where what is beyond stands
 
-struct Look
+struct EngineStyle
 {
     const char* engine;
     const char* text;
     int series;
     int shape;
 };
-constexpr std::array<Look, 4> kLooks{
+constexpr std::array<EngineStyle, 4> kEngineStyles{
     {{"ode", "ODE", 0, 1}, {"bullet", "Bullet", 2, 2}, {"simbody", "Simbody", 3, 3}, {"plab", "pLab", 5, 0}}};
 
-const Look& look_of(const std::string& engine)
+const EngineStyle& style_of(const std::string& engine)
 {
-    const auto found = std::find_if(kLooks.begin(), kLooks.end(), [&engine](const Look& l) { return engine == l.engine; });
-    return found == kLooks.end() ? kLooks.front() : *found;
+    const auto found =
+        std::find_if(kEngineStyles.begin(), kEngineStyles.end(), [&engine](const EngineStyle& l) { return engine == l.engine; });
+    return found == kEngineStyles.end() ? kEngineStyles.front() : *found;
 }
 
 /// One metric of a case, at its place in the drawing.
@@ -63,7 +64,7 @@ public:
         for (const Point& p : *points_)
             if (p.counts(metric_)) mark(p, false);
         draw_front(false, {Ink::Role::Muted});
-        draw_front(true, Ink::series(look_of("plab").series));
+        draw_front(true, Ink::series(style_of("plab").series));
     }
 
 private:
@@ -72,9 +73,9 @@ private:
     Spot place_of(const Point& p) const { return panel_.at(cost_of(p), error_of(p)); }
     void mark(const Point& p, bool filled)
     {
-        const Look& look = look_of(p.run.engine);
+        const EngineStyle& style = style_of(p.run.engine);
         drawing_->marker(
-            place_of(p), look.shape, filled ? 5 : 3.5, Ink::series(look.series), filled,
+            place_of(p), style.shape, filled ? 5 : 3.5, Ink::series(style.series), filled,
             p.run.label() + ": " + figures::short_number(p.figures[metric_]) + " at " + figures::short_number(p.cost) + " ms/s");
     }
     /// A staircase: the least error available at no more cost.
@@ -102,7 +103,7 @@ private:
         for (const std::size_t i : kept)
         {
             const Point& p = (*points_)[i];
-            const std::string name = of_plab ? p.run.settings : std::string(look_of(p.run.engine).text) + " " + p.run.settings;
+            const std::string name = of_plab ? p.run.settings : std::string(style_of(p.run.engine).text) + " " + p.run.settings;
             const Spot at = place_of(p);
             if (name == last || std::fabs(at.y - low) < 12) continue;
             const bool left = at.x + figures::text_width(name, 10) + 8 > panel_.right();
@@ -121,10 +122,10 @@ private:
 void draw_legend(Drawing& drawing, double y)
 {
     double x = kLeft;
-    for (const Look& look : kLooks)
+    for (const EngineStyle& style : kEngineStyles)
     {
-        drawing.marker({x, y - 4}, look.shape, 5, Ink::series(look.series), true);
-        drawing.words({x + 10, y}, look.text, {12, {Ink::Role::Text}});
+        drawing.marker({x, y - 4}, style.shape, 5, Ink::series(style.series), true);
+        drawing.words({x + 10, y}, style.text, {12, {Ink::Role::Text}});
         x += 84;
     }
     drawing.words({x, y}, "lines: least error at no more cost, pLab's and the peers'; hollow: behind", {12, {Ink::Role::Muted}});

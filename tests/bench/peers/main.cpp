@@ -31,7 +31,7 @@ constexpr const char* kUsage = R"(Usage: bench_peers [options]
 Writes DIR/results.csv, results.json, summary.md, and for each case CASE.svg and CASE.png.
 )";
 
-struct Options
+struct PeerOptions
 {
     std::vector<std::string> cases, engines;
     std::string only, folder = "peers";
@@ -54,7 +54,7 @@ std::vector<std::string> split(const std::string& text)
 }
 
 /// Takes the option `name` with its value; false if it is not an option of this program.
-bool take(Options& o, std::string_view name, const std::string& value)
+bool take(PeerOptions& o, std::string_view name, const std::string& value)
 {
     if (name == "--case") return o.cases = split(value), true;
     if (name == "--engine") return o.engines = split(value), true;
@@ -65,9 +65,9 @@ bool take(Options& o, std::string_view name, const std::string& value)
     return false;
 }
 
-Options parse(int argc, char** argv)
+PeerOptions parse(int argc, char** argv)
 {
-    Options o;
+    PeerOptions o;
     for (int i = 1; i < argc; ++i)
     {
         const std::string_view word = argv[i];
@@ -87,7 +87,7 @@ Options parse(int argc, char** argv)
     return o;
 }
 
-std::vector<Run> runs_of(const Case& which, const Options& options, std::vector<std::string>& notes)
+std::vector<Run> runs_of(const Case& which, const PeerOptions& options, std::vector<std::string>& notes)
 {
     struct Named
     {
@@ -135,14 +135,14 @@ void print_point(const Case& which, const Point& p)
     std::fflush(stdout);
 }
 
-CaseResult compare(const Case& which, const Options& options)
+CaseResult compare(const Case& which, const PeerOptions& options)
 {
     CaseResult result{which, {}, {}};
     std::vector<std::vector<double>> costs;
     std::vector<int> wanted;
     for (const Run& run : runs_of(which, options, result.notes))
     {
-        const Measurement m = measure(which, run, Look::Figures);
+        const Measurement m = measure(which, run, Quantity::Figures);
         result.points.push_back({run, m.outcome, m.why, m.figures, m.cost, m.cost, m.memory, 1});
         costs.push_back({m.cost});
         wanted.push_back(repetitions_for(m, which, options.repeat));
@@ -152,7 +152,7 @@ CaseResult compare(const Case& which, const Options& options)
         for (std::size_t i = 0; i < result.points.size(); ++i)
         {
             if (round >= wanted[i]) continue;
-            const Measurement m = measure(which, result.points[i].run, Look::Cost);
+            const Measurement m = measure(which, result.points[i].run, Quantity::Cost);
             if (m.outcome == Outcome::Done) costs[i].push_back(m.cost);
         }
     for (std::size_t i = 0; i < result.points.size(); ++i)
@@ -199,7 +199,7 @@ int print_checks()
 
 int main(int argc, char** argv)
 {
-    const Options options = parse(argc, argv);
+    const PeerOptions options = parse(argc, argv);
     if (options.help || !options.complaint.empty())
     {
         std::fputs(options.complaint.empty() ? "" : (options.complaint + "\n").c_str(), stderr);

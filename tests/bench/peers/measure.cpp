@@ -142,12 +142,12 @@ Result<double> time_warm(const Run& run, const Scene& scene, double about)
     return sum;
 }
 
-Result<void> run_scene(const Case& which, const Run& run, const Scene& scene, Look look, std::vector<double>& figures, double& cost)
+Result<void> run_scene(const Case& which, const Run& run, const Scene& scene, Quantity quantity, std::vector<double>& figures, double& cost)
 {
     auto engine = run.make(scene);
     if (!engine) return engine.errors();
     Stopwatch watch;
-    if (look == Look::Figures)
+    if (quantity == Quantity::Figures)
     {
         Trace trace;
         watch = record(which, run, scene, **engine, trace);
@@ -168,20 +168,21 @@ Result<void> run_scene(const Case& which, const Run& run, const Scene& scene, Lo
     return {};
 }
 
-void work(const Case& which, const Run& run, Look look, Outbox& out)
+void work(const Case& which, const Run& run, Quantity quantity, Outbox& out)
 {
     const double born = resident_megabytes();
     std::vector<double> figures;
     double cost = 0;
     for (const Scene& scene : which.scenes)
-        if (const auto done = run_scene(which, run, scene, look, figures, cost); !done) return out.say("refused " + done.error().text());
+        if (const auto done = run_scene(which, run, scene, quantity, figures, cost); !done)
+            return out.say("refused " + done.error().text());
     for (const double f : figures) out.say("figure", f);
     out.say("cost", cost);
     out.say("memory", resident_megabytes() - born);
     out.say("done");
 }
 
-[[noreturn]] void be_child(int to, const Case& which, const Run& run, Look look)
+[[noreturn]] void be_child(int to, const Case& which, const Run& run, Quantity quantity)
 {
     const auto seconds = static_cast<rlim_t>(std::ceil(which.cpu_limit * static_cast<double>(which.scenes.size()))) + 1;
     const rlimit limit{seconds, seconds + 1}, no_core{0, 0};
@@ -191,7 +192,7 @@ void work(const Case& which, const Run& run, Look look, Outbox& out)
     Outbox out;
     try
     {
-        work(which, run, look, out);
+        work(which, run, quantity, out);
     }
     catch (const std::exception& e)  // Simbody's report of a failed step
     {
@@ -268,7 +269,7 @@ const char* name_of(Outcome outcome)
     return "";
 }
 
-Measurement measure(const Case& which, const Run& run, Look look)
+Measurement measure(const Case& which, const Run& run, Quantity quantity)
 {
     int ends[2];
     if (pipe(ends) != 0) return failed(Outcome::Crashed, "no pipe to be had");
@@ -282,7 +283,7 @@ Measurement measure(const Case& which, const Run& run, Look look)
     if (child == 0)
     {
         ::close(ends[0]);
-        be_child(ends[1], which, run, look);
+        be_child(ends[1], which, run, quantity);
     }
     ::close(ends[1]);
     std::string text;

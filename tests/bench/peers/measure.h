@@ -27,7 +27,7 @@ struct Measurement
     double memory = 0;            ///< MB, largest resident set of the process beyond that at its start
 };
 
-enum class Look
+enum class Quantity
 {
     Figures,  ///< sampled; costs as well
     Cost,     ///< the step loop alone
@@ -37,6 +37,6 @@ enum class Look
 /// is that of the step loop alone. A loop that takes more than half a second is timed by the processor clock
 /// (CLOCK_PROCESS_CPUTIME_ID). That clock may count in ticks of 4 ms, so a shorter loop is made 3 to 20 times more, warm, in
 /// pieces of about 1 ms timed by the steady clock, and each piece's least time counts: the one that no other process interrupted.
-Measurement measure(const Case& which, const Run& run, Look look);
+Measurement measure(const Case& which, const Run& run, Quantity quantity);
 
 }  // namespace plab::peers

@@ -15,7 +15,7 @@ struct Placed
     const BodySpec* spec;
     Vec3 center;
     std::array<Vec3, 3> axes;  ///< of the box, in W
-    double reach;              ///< m, radius of the ball around it
+    double bounding_radius;    ///< m, radius of the ball around it
 };
 
 Placed place(const BodySpec& spec, const BodyState& s)
@@ -42,25 +42,26 @@ double overlap_along(const Placed& a, const Placed& b, const Vec3& n)
 double box_depth(const Placed& a, const Placed& b)
 {
     double least = 1e300;
-    const auto look = [&](const Vec3& axis)
+    const auto separate_along = [&](const Vec3& axis)
     {
         const double size = length(axis);
         if (size > 1e-6) least = std::fmin(least, overlap_along(a, b, axis / size));
         return least > 0;
     };
     for (const Vec3& axis : a.axes)
-        if (!look(axis)) return least;
+        if (!separate_along(axis)) return least;
     for (const Vec3& axis : b.axes)
-        if (!look(axis)) return least;
+        if (!separate_along(axis)) return least;
     for (const Vec3& u : a.axes)
         for (const Vec3& v : b.axes)
-            if (!look(cross(u, v))) return least;
+            if (!separate_along(cross(u, v))) return least;
     return least;
 }
 
 double pair_depth(const Placed& a, const Placed& b)
 {
-    if (a.spec->form == Form::Sphere && b.spec->form == Form::Sphere) return a.reach + b.reach - length(b.center - a.center);
+    if (a.spec->form == Form::Sphere && b.spec->form == Form::Sphere)
+        return a.bounding_radius + b.bounding_radius - length(b.center - a.center);
     return box_depth(a, b);
 }
 
@@ -92,16 +93,18 @@ Penetration penetration_of(const Scene& scene, std::span<const BodyState> states
 {
     std::vector<Placed> placed;
     for (std::size_t i = 0; i < states.size(); ++i) placed.push_back(place(scene.bodies[i], states[i]));
-    std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.center.x - a.reach < b.center.x - b.reach; });
+    std::sort(placed.begin(), placed.end(),
+              [](const Placed& a, const Placed& b) { return a.center.x - a.bounding_radius < b.center.x - b.bounding_radius; });
     Tally tally;
     for (std::size_t i = 0; i < placed.size(); ++i)
     {
         const Placed& a = placed[i];
         add_half_spaces(scene, a, tally);
-        for (std::size_t j = i + 1; j < placed.size() && placed[j].center.x - placed[j].reach < a.center.x + a.reach; ++j)
+        for (std::size_t j = i + 1; j < placed.size() && placed[j].center.x - placed[j].bounding_radius < a.center.x + a.bounding_radius;
+             ++j)
         {
-            const double reach = a.reach + placed[j].reach;
-            if (length_squared(placed[j].center - a.center) < reach * reach) tally.add(pair_depth(a, placed[j]));
+            const double bounding_radius = a.bounding_radius + placed[j].bounding_radius;
+            if (length_squared(placed[j].center - a.center) < bounding_radius * bounding_radius) tally.add(pair_depth(a, placed[j]));
         }
     }
     if (tally.result.pairs > 0) tally.result.mean = tally.sum / tally.result.pairs;

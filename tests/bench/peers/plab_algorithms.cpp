@@ -38,12 +38,12 @@ Algorithm smooth(const std::string& name, const std::string& attributes)
 Algorithm smooth(const std::string& name) { return smooth(name, solver(name)); }
 
 /// Methods that choose their own steps, at several tolerances, sampled at the times of the case.
-void add_adaptive(Entries& out, const std::string& name, const Step& look)
+void add_adaptive(Entries& out, const std::string& name, const Step& sampling)
 {
     for (const char* tolerance : {"1e-3", "1e-5", "1e-7", "1e-9", "1e-11"})
     {
         const std::string attributes = solver(name) + " relative_tolerance=\"" + tolerance + "\" absolute_tolerance=\"" + tolerance + "\"";
-        out.push_back({smooth(name, attributes), {look}, tolerance});
+        out.push_back({smooth(name, attributes), {sampling}, tolerance});
     }
 }
 

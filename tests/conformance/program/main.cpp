@@ -34,7 +34,7 @@ Exit codes: 0 it conforms, 1 it does not, 2 wrong use)";
     return out;
 }
 
-struct Options
+struct ConformanceOptions
 {
     std::string library;
     std::vector<std::string> scenes;
@@ -42,9 +42,9 @@ struct Options
 };
 
 /// Nothing: not to be understood.
-std::optional<Options> parse(const std::vector<std::string>& words)
+std::optional<ConformanceOptions> parse(const std::vector<std::string>& words)
 {
-    Options out;
+    ConformanceOptions out;
     for (std::size_t i = 0; i < words.size(); ++i)
         if (words[i] == "--scenes" && i + 1 < words.size())
             out.scenes.push_back(words[++i]);
@@ -60,7 +60,7 @@ std::optional<Options> parse(const std::vector<std::string>& words)
     return out;
 }
 
-void choose(const Options& options)
+void choose(const ConformanceOptions& options)
 {
     using namespace plab;
     const fs::path file = fs::weakly_canonical(options.library);

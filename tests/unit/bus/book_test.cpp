@@ -147,7 +147,7 @@ TEST_CASE("a shutdown for the next step finds room when nothing else does")
     CHECK(open(book, 1, 2, {.bytes = 50}).verdict == Verdict::New);
     CHECK(open(book, 1, 3).verdict == Verdict::Refused);
     CHECK(open(book, 1, 5, {.shutdown = true, .bytes = 500}).verdict == Verdict::New);        // by the client that used all of it
-    CHECK(open(book, 2, 1, {.names_step = true, .shutdown = true}).verdict == Verdict::New);  // to be told that it may not name a step
+    CHECK(open(book, 2, 1, {.names_step = true, .shutdown = true}).verdict == Verdict::New);  // refused: it may not name a step
     CHECK(book.waiting() == 4);
     CHECK(why(open(book, 3, 1, kShutdown)) == "2 requests to shut down are already waiting: one is enough");
     CHECK(book.close(answer(client(1), 5)));

@@ -57,7 +57,7 @@ class Alive
 {
 public:
     explicit Alive(const link::Session& session) : reader_(reader_of<T>(session)) {}
-    const Ids& look()
+    const Ids& ids()
     {
         (void)reader_.take(
             [&](const T& sample, const dds_sample_info_t& info)
@@ -72,14 +72,14 @@ public:
     }
     bool becomes(const Ids& expected)
     {
-        return eventually([&] { return look() == expected; });
+        return eventually([&] { return ids() == expected; });
     }
     std::size_t disposed() const { return disposed_; }
     /// Samples of instances that are not alive.
     std::size_t dead() const { return dead_; }
 
 private:
-    wire::Reader<T> reader_;
+    wire::DataReader<T> reader_;
     Ids ids_;
     std::size_t disposed_ = 0, dead_ = 0;
 };

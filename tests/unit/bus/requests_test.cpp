@@ -81,8 +81,8 @@ public:
     }
 
 private:
-    wire::Reader<plab_v2_Reply> replies_;
-    wire::Writer<plab_v2_Request> writer_;
+    wire::DataReader<plab_v2_Reply> replies_;
+    wire::DataWriter<plab_v2_Request> writer_;
 };
 
 }  // namespace

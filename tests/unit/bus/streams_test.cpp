@@ -13,7 +13,7 @@ namespace
 struct FrameLog
 {
     std::vector<std::uint64_t> numbers;
-    void take(wire::Reader<plab_v2_Frame>& reader)
+    void take(wire::DataReader<plab_v2_Frame>& reader)
     {
         (void)reader.take(
             [&](const plab_v2_Frame& frame, const dds_sample_info_t& info)
@@ -123,7 +123,7 @@ TEST_CASE("frames that come too fast are dropped, the oldest first: numbers incr
     CHECK(log.numbers.size() + dropped <= kFrames);
 }
 
-TEST_CASE("a reader that never takes samples delays nobody")
+TEST_CASE("a reader that never takes samples delays no other")
 {
     TestBus bus;
     const link::Session session = bus.session();

@@ -91,7 +91,7 @@ private:
 };
 
 template <class T>
-wire::Reader<T> reader_of(const link::Session& session)
+wire::DataReader<T> reader_of(const link::Session& session)
 {
     auto reader = session.reader<T>();
     REQUIRE(reader.ok());

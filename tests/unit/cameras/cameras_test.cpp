@@ -19,12 +19,12 @@ namespace
 
 struct Viewer final : ImageSink
 {
-    bool looks = true;
+    bool is_present = true;
     std::uint32_t component = kNoIndex;
     std::vector<std::vector<std::uint8_t>> pictures;
     std::uint32_t width = 0, height = 0;
 
-    bool wanted() const override { return looks; }
+    bool wanted() const override { return is_present; }
     void show(std::uint32_t camera, std::uint32_t w, std::uint32_t h, std::vector<std::uint8_t> rgba) override
     {
         component = camera, width = w, height = h;
@@ -100,11 +100,11 @@ TEST_CASE("pictures are drawn at their rate in simulated time, at most one per s
 TEST_CASE("without a viewer nothing is drawn and no renderer is created; the next picture is drawn as soon as there is one")
 {
     Room room;
-    room.viewer.looks = false;
+    room.viewer.is_present = false;
     for (int step = 1; step <= 10; ++step) room.step(step / 10.0);
     CHECK(room.viewer.pictures.empty());
     CHECK(room.camera.rows.studio[0].renderer == nullptr);
-    room.viewer.looks = true;
+    room.viewer.is_present = true;
     room.step(1.01);
     CHECK(room.viewer.pictures.size() == 1);
 }

@@ -28,7 +28,7 @@ CommandOutline program()
 {
     CommandOutline out;
     out.name = "prog", out.help = "prog: does things", out.footer = "Examples:\n  prog swap a --to B-C\nExit codes: 0 done,\n1 failed.\n";
-    out.options = {option({"-h", "--help"}, "", "help"), option({"-s", "--server"}, "NAME", "whom to ask"),
+    out.options = {option({"-h", "--help"}, "", "help"), option({"-s", "--server"}, "NAME", "which server to ask"),
                    option({"--mode"}, "WORD", "how\nor why")};
     out.options[2].words = {"slow", "fast"};
     CommandOutline swap, play;
@@ -121,7 +121,7 @@ TEST_CASE("the man page has all options and commands, and the titles of the foot
     const auto has = [&](const std::string& part) { return page.find(part) != std::string::npos; };
     CHECK(has(".TH PROG 1 \"\" \"pLab 1.2\""));
     CHECK(has("prog \\- does things\n"));
-    CHECK(has("\\fB\\-s\\fR, \\fB\\-\\-server\\fR \\fINAME\\fR\nwhom to ask\n"));
+    CHECK(has("\\fB\\-s\\fR, \\fB\\-\\-server\\fR \\fINAME\\fR\nwhich server to ask\n"));
     CHECK(has("\\fB\\-\\-mode\\fR \\fIslow|fast\\fR\nhow or why\n"));
     CHECK(has(".SS \\fBswap\\fR [\\fIID\\fR ...]\nexchange\n"));
     CHECK(has("\n\\&.new \\e type\n"));

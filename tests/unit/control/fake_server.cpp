@@ -45,23 +45,23 @@ struct FakeServer::Ends
 {
     wire::Participant participant;
     wire::Entity publisher, subscriber;
-    wire::Writer<plab_v2_Server> server;
-    wire::Writer<plab_v2_Scene> scene;
-    wire::Writer<plab_v2_SceneObject> objects;
-    wire::Writer<plab_v2_Shape> shapes;
-    wire::Writer<plab_v2_Interaction> interactions;
-    wire::Writer<plab_v2_Type> types;
-    wire::Writer<plab_v2_Frame> states;
-    wire::Writer<plab_v2_Collisions> collisions;
-    wire::Writer<plab_v2_Events> events;
-    wire::Writer<plab_v2_Metrics> metrics;
-    wire::Writer<plab_v2_Reply> replies;
-    wire::Reader<plab_v2_Request> requests;
+    wire::DataWriter<plab_v2_Server> server;
+    wire::DataWriter<plab_v2_Scene> scene;
+    wire::DataWriter<plab_v2_SceneObject> objects;
+    wire::DataWriter<plab_v2_Shape> shapes;
+    wire::DataWriter<plab_v2_Interaction> interactions;
+    wire::DataWriter<plab_v2_Type> types;
+    wire::DataWriter<plab_v2_Frame> states;
+    wire::DataWriter<plab_v2_Collisions> collisions;
+    wire::DataWriter<plab_v2_Events> events;
+    wire::DataWriter<plab_v2_Metrics> metrics;
+    wire::DataWriter<plab_v2_Reply> replies;
+    wire::DataReader<plab_v2_Request> requests;
 
     template <class T>
-    void open(wire::Writer<T>& writer)
+    void open(wire::DataWriter<T>& writer)
     {
-        writer = need(wire::Writer<T>::make(participant, publisher));
+        writer = need(wire::DataWriter<T>::make(participant, publisher));
     }
 };
 
@@ -73,7 +73,7 @@ FakeServer::FakeServer(std::uint32_t domain, std::string name) : name_(std::move
     e.subscriber = need(wire::make_subscriber(e.participant, name_));
     e.open(e.server), e.open(e.scene), e.open(e.objects), e.open(e.shapes), e.open(e.interactions), e.open(e.types);
     e.open(e.states), e.open(e.collisions), e.open(e.events), e.open(e.metrics), e.open(e.replies);
-    e.requests = need(wire::Reader<plab_v2_Request>::make(e.participant, e.subscriber));
+    e.requests = need(wire::DataReader<plab_v2_Request>::make(e.participant, e.subscriber));
     publish_catalogue();
     publish_types();
     publish_state();
@@ -158,7 +158,7 @@ void FakeServer::publish_catalogue()
 void FakeServer::publish_types()
 {
     std::vector<plab_v2_FieldInfo> fields{field("restitution", "", "0.5", "must be from 0 to 1", "how much it bounces")};
-    plab_v2_RoleInfo role{text("between"), text("body"), 2, 4294967295u, text("who collides")};
+    plab_v2_RoleInfo role{text("between"), text("body"), 2, 4294967295u, text("the bodies that collide")};
     for (const char* name : {"Response/Impulse", "Response/None", "State/RigidBody", "State/Shaft", "CDetection/ODE", "Shape/Sphere"})
     {
         plab_v2_Type type{};

@@ -5,10 +5,10 @@ using namespace plab::test;
 
 TEST_CASE("the command servers lists those of the domain, and it is an error if there are none")
 {
-    const Outcome nobody = plabctl("servers --json");
-    CHECK(nobody.code == 3);
-    CHECK(nobody.json()["servers"].empty());
-    CHECK(has(nobody.err, "no server was found in domain " + std::to_string(test_domain())));
+    const Outcome none = plabctl("servers --json");
+    CHECK(none.code == 3);
+    CHECK(none.json()["servers"].empty());
+    CHECK(has(none.err, "no server was found in domain " + std::to_string(test_domain())));
     FakeServer one(test_domain(), "one"), two(test_domain(), "two");
     const Outcome both = plabctl("servers --json");
     CHECK(both.code == 0);

@@ -29,7 +29,7 @@ std::vector<double> contact_times(const Scene& scene, const std::string& name, d
     const auto solution = make_solution(name, scene.simulation(), until);
     REQUIRE(solution.ok());
     std::vector<double> out;
-    for (const Touch& c : (*solution)->contacts(until)) out.push_back(c.time);
+    for (const ContactStart& c : (*solution)->contacts(until)) out.push_back(c.time);
     return out;
 }
 

@@ -96,7 +96,7 @@ struct Detection : OneRow<detection::OdeRows>
 {
     Sink sink;
     explicit Detection(const char* space = "tree") { rows.space[0] = space; }
-    const std::vector<Contact>& look(const Bodies& bodies, const Shapes& shapes, const StepContext& context = {})
+    const std::vector<Contact>& detect(const Bodies& bodies, const Shapes& shapes, const StepContext& context = {})
     {
         sink.contacts.clear();
         const auto done = detection::detect(context, 0, rows, bodies, shapes, sink);

@@ -34,7 +34,7 @@ struct Cloud
         }
     }
     /// Contacts with rows replaced by ids, sorted as the host would.
-    std::vector<Contact> look(const char* space, bool stir) const
+    std::vector<Contact> detect(const char* space, bool stir) const
     {
         Detection d(space);
         d.sink.rank = rank;
@@ -48,10 +48,10 @@ struct Cloud
                 for (std::uint32_t i = static_cast<std::uint32_t>(moved.size()); i-- > 1;)
                 {
                     moved.position[i].x += (i + k) % 3 ? 0.7 : -0.9;
-                    if ((i + k) % 4 == 0) d.look(moved, shapes);
+                    if ((i + k) % 4 == 0) d.detect(moved, shapes);
                 }
         }
-        std::vector<Contact> out = d.look(bodies, shapes);
+        std::vector<Contact> out = d.detect(bodies, shapes);
         for (Contact& c : out) c.a.index = rank[c.a.index], c.b.index = rank[c.b.index];
         std::sort(out.begin(), out.end(),
                   [](const Contact& x, const Contact& y) { return std::tie(x.a, x.b, x.feature) < std::tie(y.a, y.b, y.feature); });
@@ -80,7 +80,7 @@ struct BallOnPlane
         bodies.shapes[1] = {{Facet::Shape, add_shape(shapes, GeometryKind::Sphere, {0.1, 0, 0})}};
         d.between_all(bodies);
     }
-    const std::vector<Contact>& look(const StepContext& context = {}) { return d.look(bodies, shapes, context); }
+    const std::vector<Contact>& detect(const StepContext& context = {}) { return d.detect(bodies, shapes, context); }
 };
 
 struct Events final : EventSink
@@ -94,19 +94,19 @@ TEST_CASE("no order of creation or of moves, and no kind of space, affects the c
 {
     std::vector<std::uint32_t> order(40);
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto first = Cloud(order).look("simple", false);
+    const auto first = Cloud(order).detect("simple", false);
     CHECK(first.size() > 60);
-    CHECK(same(first, Cloud(order).look("simple", true)));
-    CHECK(same(first, Cloud(order).look("tree", true)));
-    CHECK(same(first, Cloud(order).look("sweep_and_prune", true)));
+    CHECK(same(first, Cloud(order).detect("simple", true)));
+    CHECK(same(first, Cloud(order).detect("tree", true)));
+    CHECK(same(first, Cloud(order).detect("sweep_and_prune", true)));
     std::uint64_t seed = 17;
     for (int i = 0; i < 5; ++i)
     {
         for (std::size_t k = order.size(); k-- > 1;) std::swap(order[k], order[next_random(seed) % (k + 1)]);
         for (const char* space : {"simple", "tree", "sweep_and_prune"})
         {
-            CHECK(same(first, Cloud(order).look(space, false)));
-            CHECK(same(first, Cloud(order).look(space, true)));
+            CHECK(same(first, Cloud(order).detect(space, false)));
+            CHECK(same(first, Cloud(order).detect(space, true)));
         }
     }
 }
@@ -131,7 +131,7 @@ TEST_CASE("the spaces lose no pair: they find all pairs of a brute-force search"
     {
         Detection d(space);
         d.between_all(bodies);
-        CHECK(d.look(bodies, shapes).size() == want);
+        CHECK(d.detect(bodies, shapes).size() == want);
         CHECK(d.rows.pairs[0] >= static_cast<std::int64_t>(want));
     }
 }
@@ -139,31 +139,31 @@ TEST_CASE("the spaces lose no pair: they find all pairs of a brute-force search"
 TEST_CASE("depth is exact to the last bit near the ground and to 1e-8 m ten thousand kilometres away")
 {
     BallOnPlane ball(0.1 - 1e-15);
-    REQUIRE(ball.look().size() == 1);
-    CHECK(ball.look()[0].depth == 0.1 - (0.1 - 1e-15));
-    CHECK(ball.look()[0].normal == Vec3{0, 0, 1});
-    CHECK(ball.d.rows.penetration[0] == ball.look()[0].depth);
+    REQUIRE(ball.detect().size() == 1);
+    CHECK(ball.detect()[0].depth == 0.1 - (0.1 - 1e-15));
+    CHECK(ball.detect()[0].normal == Vec3{0, 0, 1});
+    CHECK(ball.d.rows.penetration[0] == ball.detect()[0].depth);
     ball.bodies.position[1] = {1e7, 1e7, 0.1 - 1e-9};
-    REQUIRE(ball.look().size() == 1);
-    CHECK(std::fabs(ball.look()[0].depth - 1e-9) < 1e-16);
+    REQUIRE(ball.detect().size() == 1);
+    CHECK(std::fabs(ball.detect()[0].depth - 1e-9) < 1e-16);
 }
 
 TEST_CASE("a persistent pair is tested after its shift, and its gap is reported")
 {
     BallOnPlane ball(0.1 + 3e-10);
-    CHECK(ball.look().empty());
+    CHECK(ball.detect().empty());
     ball.d.sink.pairs = {{body(0), body(1), {0, 0, -1e-9}}};
-    REQUIRE(ball.look().size() == 1);
-    CHECK(ball.look()[0].depth == near(-3e-10, 1e-6));
+    REQUIRE(ball.detect().size() == 1);
+    CHECK(ball.detect()[0].depth == near(-3e-10, 1e-6));
     ball.bodies.position[1].z = 0.1 + 2e-9;
-    CHECK(ball.look().empty());
+    CHECK(ball.detect().empty());
     ball.bodies.position[1].z = 0.1 - 1e-6;
-    REQUIRE(ball.look().size() == 1);  // once, not twice
-    CHECK(ball.look()[0].depth == near(1e-6, 1e-9));
+    REQUIRE(ball.detect().size() == 1);  // once, not twice
+    CHECK(ball.detect()[0].depth == near(1e-6, 1e-9));
     ball.d.sink.pairs = {{body(1), body(0), {0, 0, 1e-9}}};  // the reverse order gives the same
-    REQUIRE(ball.look().size() == 1);
-    CHECK(ball.look()[0].a == body(0));
-    CHECK(ball.look()[0].depth == near(1e-6, 1e-9));
+    REQUIRE(ball.detect().size() == 1);
+    CHECK(ball.detect()[0].a == body(0));
+    CHECK(ball.detect()[0].depth == near(1e-6, 1e-9));
 }
 
 TEST_CASE("a resting box keeps its four corners, with the same features, despite rounding")
@@ -184,7 +184,7 @@ TEST_CASE("a resting box keeps its four corners, with the same features, despite
     {
         bodies.position[1] = Vec3{0.1, 0.2, 1} + random_vector(seed, 1e-12);
         bodies.orientation[1] = normalized(Quat{1, tilt(), tilt(), tilt()});
-        const std::vector<Contact> now = d.look(bodies, shapes);
+        const std::vector<Contact> now = d.detect(bodies, shapes);
         REQUIRE(now.size() == 4);
         if (first.empty()) first = now;
         for (std::size_t k = 0; k < 4; ++k)
@@ -202,14 +202,14 @@ TEST_CASE("only pairs with an active body are tested, and never two bodies that 
     add_body(ball.bodies, 0, {}, {0, 0, 0.02});
     ball.bodies.shapes[2] = ball.bodies.shapes[3] = ball.bodies.shapes[1];
     ball.d.between_all(ball.bodies);
-    CHECK(ball.look().size() == 5);  // 0-1 0-2 1-2 1-3 2-3, not 0-3
+    CHECK(ball.detect().size() == 5);  // 0-1 0-2 1-2 1-3 2-3, not 0-3
     const std::vector<std::uint8_t> active{0, 0, 1, 0};
     StepContext context;
     context.active_bodies = active;
-    for (const Contact& c : ball.look(context)) CHECK((c.a == body(2) || c.b == body(2)));
-    CHECK(ball.look(context).size() == 3);
+    for (const Contact& c : ball.detect(context)) CHECK((c.a == body(2) || c.b == body(2)));
+    CHECK(ball.detect(context).size() == 3);
     ball.bodies.motion[1] = Motion::Kinematic;
-    CHECK(ball.look().size() == 3);
+    CHECK(ball.detect().size() == 3);
 }
 
 TEST_CASE("`against` collides with `between` only")
@@ -226,36 +226,36 @@ TEST_CASE("`against` collides with `between` only")
     d.rows.between[0] = {body(1)};
     d.rows.against[0] = {body(0), body(1), body(2), body(3)};
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    for (const Contact& c : d.look(bodies, shapes)) pairs.emplace_back(c.a.index, c.b.index);
+    for (const Contact& c : d.detect(bodies, shapes)) pairs.emplace_back(c.a.index, c.b.index);
     CHECK(pairs == std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {1, 2}, {1, 3}});
     d.rows.between[0].clear();
-    CHECK(d.look(bodies, shapes).empty());
+    CHECK(d.detect(bodies, shapes).empty());
 }
 
 TEST_CASE("a change of shape, pose or membership takes effect at the next detection")
 {
     BallOnPlane ball(0.15);
-    CHECK(ball.look().empty());
+    CHECK(ball.detect().empty());
     ball.shapes.geometry[1].size.x = 0.2;
-    CHECK(ball.look().size() == 1);
+    CHECK(ball.detect().size() == 1);
     ball.shapes.geometry[1].pose.p = {0, 0, 0.1};
-    CHECK(ball.look().empty());
+    CHECK(ball.detect().empty());
     ball.shapes.geometry[1] = mesh_of(box_corners({0.2, 0.2, 0.2}));
-    CHECK(ball.look().size() == 4);
+    CHECK(ball.detect().size() == 4);
     ball.shapes.geometry[1].vertices[0].z = -3;
-    CHECK(ball.look().size() > 0);
+    CHECK(ball.detect().size() > 0);
     CHECK(ball.d.rows.penetration[0] == near(2.85, 1e-12));
     ball.shapes.geometry[1].hull_collides = false;
-    CHECK(ball.look().empty());
+    CHECK(ball.detect().empty());
     ball.shapes.geometry[1].hull_collides = true;
     ball.bodies.shapes[1].push_back(ball.bodies.shapes[1][0]);
-    const std::size_t twice = ball.look().size();
+    const std::size_t twice = ball.detect().size();
     ball.bodies.shapes[1].pop_back();
-    CHECK(twice == 2 * ball.look().size());
+    CHECK(twice == 2 * ball.detect().size());
     detection::prepare(0, ball.d.rows);
-    CHECK(ball.look().size() * 2 == twice);
+    CHECK(ball.detect().size() * 2 == twice);
     ball.d.rows.between[0].pop_back();
-    CHECK(ball.look().empty());
+    CHECK(ball.detect().empty());
 }
 
 TEST_CASE("a plane tilts with its body, and a centre of mass off the origin is taken into account")
@@ -266,9 +266,9 @@ TEST_CASE("a plane tilts with its body, and a centre of mass off the origin is t
     ball.bodies.center_B[1] = {0, 0, 0.05};
     ball.bodies.position[1] = {0, -0.1 * std::sin(angle), 0.1 * std::cos(angle) + 0.05};  // the ball's centre 0.05 below
     ball.bodies.position[1] += rotate(ball.bodies.orientation[0], {0, 0, -1e-3});
-    REQUIRE(ball.look().size() == 1);
-    CHECK(ball.look()[0].depth == near(1e-3, 1e-12));
-    CHECK(length(ball.look()[0].normal - Vec3{0, -std::sin(angle), std::cos(angle)}) < 1e-15);
+    REQUIRE(ball.detect().size() == 1);
+    CHECK(ball.detect()[0].depth == near(1e-3, 1e-12));
+    CHECK(length(ball.detect()[0].normal - Vec3{0, -std::sin(angle), std::cos(angle)}) < 1e-15);
 }
 
 TEST_CASE("a mesh without volume is reported, once per build")
@@ -278,8 +278,8 @@ TEST_CASE("a mesh without volume is reported, once per build")
     Events events;
     StepContext context;
     context.events = &events;
-    CHECK(ball.look(context).empty());
-    ball.look(context);
+    CHECK(ball.detect(context).empty());
+    ball.detect(context);
     REQUIRE(events.all.size() == 1);
     CHECK(events.all[0].message == "the shape does not collide: the vertices lie in a plane: their hull has no volume");
     CHECK(events.all[0].a == Ref{Facet::Shape, 1});
@@ -288,11 +288,11 @@ TEST_CASE("a mesh without volume is reported, once per build")
 TEST_CASE("two scenes in one process do not affect one another")
 {
     BallOnPlane one(0.05), two(0.07);
-    const Contact alone = one.look()[0];
-    two.look();
-    const Contact together = one.look()[0];
+    const Contact alone = one.detect()[0];
+    two.detect();
+    const Contact together = one.detect()[0];
     CHECK(alone.depth == together.depth);
-    CHECK(two.look()[0].depth == near(0.03, 1e-12));
+    CHECK(two.detect()[0].depth == near(0.03, 1e-12));
 }
 
 TEST_CASE("ten thousand bodies in a heap of cells")
@@ -309,6 +309,6 @@ TEST_CASE("ten thousand bodies in a heap of cells")
     {
         Detection d(space);
         d.between_all(bodies);
-        CHECK(d.look(bodies, shapes).size() == 2 * 99 * 100);
+        CHECK(d.detect(bodies, shapes).size() == 2 * 99 * 100);
     }
 }

@@ -220,7 +220,7 @@ TEST_CASE("a compound's parts collide, each with features of its own")
     bodies.shapes[0] = {{Facet::Shape, floor}}, bodies.shapes[1] = {{Facet::Shape, both}};
     Detection detection;
     detection.between_all(bodies);
-    auto found = detection.look(bodies, shapes);
+    auto found = detection.detect(bodies, shapes);
     REQUIRE(found.size() == 2);
     CHECK(found[0].feature != found[1].feature);
     for (const Contact& c : found)
@@ -229,5 +229,5 @@ TEST_CASE("a compound's parts collide, each with features of its own")
         CHECK(std::fabs(c.point.x) == doctest::Approx(0.5).epsilon(1e-13));
     }
     shapes.geometry[right].pose.p.z = 1;  // a change of a part takes effect
-    CHECK(detection.look(bodies, shapes).size() == 1);
+    CHECK(detection.detect(bodies, shapes).size() == 1);
 }

@@ -60,11 +60,11 @@ TEST_CASE("all kinds of search give the same contacts, also the quadtree while b
     for (Detection& d : spaces) d.between_all(crowd.bodies);
     for (int round = 0; round < 8; ++round)
     {
-        const std::vector<Contact> want = spaces[0].look(crowd.bodies, crowd.shapes);
+        const std::vector<Contact> want = spaces[0].detect(crowd.bodies, crowd.shapes);
         CHECK(want.size() > 20);
         for (std::size_t k = 1; k < spaces.size(); ++k)
         {
-            const std::vector<Contact>& got = spaces[k].look(crowd.bodies, crowd.shapes);
+            const std::vector<Contact>& got = spaces[k].detect(crowd.bodies, crowd.shapes);
             REQUIRE(got.size() == want.size());
             for (std::size_t i = 0; i < want.size(); ++i)
             {
@@ -80,7 +80,7 @@ TEST_CASE("all kinds of search give the same contacts, also the quadtree while b
     }
 }
 
-TEST_CASE("the pairs that may meet are all those whose bounds, expanded by their reach, overlap; half-spaces too")
+TEST_CASE("the pairs that may meet are all those whose bounds, expanded by their motion, overlap; half-spaces too")
 {
     for (const char* space : {"simple", "tree", "sweep_and_prune", "quadtree"})
     {
@@ -126,7 +126,7 @@ TEST_CASE("gaps: sphere, box and plane, apart and overlapping")
     bodies.position[1] = {1, 0, 0.35}, bodies.position[2] = {0, 0, 0.5};
     Detection d;
     d.between_all(bodies);
-    (void)d.look(bodies, shapes);
+    (void)d.detect(bodies, shapes);
     const auto gap = [&](std::uint32_t a, std::uint32_t b)
     {
         GapQuery q;

@@ -56,7 +56,7 @@ TEST_CASE("rotating corners, springs that push back, steep and flat gaps: few ev
         double step, want;
         double (*gap)(double);
         double (*rate)(double);
-        int looks;
+        int most_evaluations;
     };
     const Case cases[] = {
         {0.05, std::asin(0.5) / 40, [](double t) { return 0.5 - std::sin(40 * t); }, [](double t) { return -40 * std::cos(40 * t); }, 9},
@@ -68,7 +68,7 @@ TEST_CASE("rotating corners, springs that push back, steep and flat gaps: few ev
     {
         const Trial t = close_in(c.step, c.gap, c.rate);
         CHECK(std::fabs(t.begin - c.want) < 1e-14 * c.step);
-        CHECK(t.iteration <= c.looks);
+        CHECK(t.iteration <= c.most_evaluations);
     }
 }
 

@@ -263,5 +263,5 @@ TEST_CASE("surfaces without a front do not collide, and this is reported")
     CHECK(Collider(flat).complaint() == "a surface needs at least one triangle that has an area");
     Geometry twice = grid(1, 1);
     twice.triangles.insert(twice.triangles.end(), {0, 1, 3});
-    CHECK(Collider(twice).complaint() == "an edge of more than two triangles, or of two that face opposite ways, has no front");
+    CHECK(Collider(twice).complaint() == "an edge of more than two triangles, or of two that face in opposite directions, has no front");
 }

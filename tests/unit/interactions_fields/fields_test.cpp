@@ -79,7 +79,7 @@ TEST_CASE("gravity pulls with m g at the centre, and on dynamic bodies only")
 TEST_CASE("fields do not act on bodies that are not being advanced")
 {
     HostTables scene;
-    const std::vector<std::uint8_t> nobody = {0, 0};
+    const std::vector<std::uint8_t> inactive = {0, 0};
     TableFixture<GravityRows> gravity;
     TableFixture<DragRows> drag;
     gravity.rows.between[0] = drag.rows.between[0] = kBothBodies;
@@ -88,7 +88,7 @@ TEST_CASE("fields do not act on bodies that are not being advanced")
     scene.bodies.velocity[0] = {1, 0, 0};
     scene.shafts.speed[0] = 1;
     StepContext context = gravity.context();
-    context.active_bodies = nobody, context.active_shafts = nobody;
+    context.active_bodies = inactive, context.active_shafts = inactive;
     apply_gravity(context, kFirst, gravity.rows, scene.bodies, scene.wrenches);
     apply_drag(context, kFirst, drag.rows, scene.bodies, scene.shafts, scene.wrenches);
     CHECK(scene.wrenches.force[0] == Vec3{});

@@ -23,11 +23,11 @@ public:
         REQUIRE(joined);
         participant_ = joined.take();
         publisher_ = wire::make_publisher(participant_, name_).take();
-        server_ = wire::Writer<plab_v2_Server>::make(participant_, publisher_).take();
-        events_ = wire::Writer<plab_v2_Events>::make(participant_, publisher_).take();
-        collisions_ = wire::Writer<plab_v2_Collisions>::make(participant_, publisher_).take();
-        metrics_ = wire::Writer<plab_v2_Metrics>::make(participant_, publisher_).take();
-        frames_ = wire::Writer<plab_v2_Frame>::make(participant_, publisher_).take();
+        server_ = wire::DataWriter<plab_v2_Server>::make(participant_, publisher_).take();
+        events_ = wire::DataWriter<plab_v2_Events>::make(participant_, publisher_).take();
+        collisions_ = wire::DataWriter<plab_v2_Collisions>::make(participant_, publisher_).take();
+        metrics_ = wire::DataWriter<plab_v2_Metrics>::make(participant_, publisher_).take();
+        frames_ = wire::DataWriter<plab_v2_Frame>::make(participant_, publisher_).take();
         publish_state();
     }
 
@@ -115,11 +115,11 @@ private:
     std::uint64_t run_ = 1, next_event_ = 1, next_collision_ = 1;
     wire::Participant participant_;
     wire::Entity publisher_;
-    wire::Writer<plab_v2_Server> server_;
-    wire::Writer<plab_v2_Events> events_;
-    wire::Writer<plab_v2_Collisions> collisions_;
-    wire::Writer<plab_v2_Metrics> metrics_;
-    wire::Writer<plab_v2_Frame> frames_;
+    wire::DataWriter<plab_v2_Server> server_;
+    wire::DataWriter<plab_v2_Events> events_;
+    wire::DataWriter<plab_v2_Collisions> collisions_;
+    wire::DataWriter<plab_v2_Metrics> metrics_;
+    wire::DataWriter<plab_v2_Frame> frames_;
 };
 
 /// Tests may run side by side, in several checkouts.

@@ -60,7 +60,7 @@ inline link::Session watch(const std::string& name)
 
 /// Everything that a reader of T has received so far, as text by `note`.
 template <class T, class Note>
-void take_all(wire::Reader<T>& reader, Note note)
+void take_all(wire::DataReader<T>& reader, Note note)
 {
     (void)reader.take(
         [&](const T& sample, const dds_sample_info_t& info)
@@ -69,15 +69,15 @@ void take_all(wire::Reader<T>& reader, Note note)
         });
 }
 
-inline recording::Reader open_file(const std::string& file)
+inline recording::McapReader open_file(const std::string& file)
 {
-    auto reader = recording::Reader::open(file);
+    auto reader = recording::McapReader::open(file);
     REQUIRE_MESSAGE(reader.ok(), reader.error().text());
     return reader.take();
 }
 
 /// The bytes of all messages of a topic, in their order.
-inline std::vector<recording::Bytes> messages_of(const recording::Reader& reader, const std::string& topic)
+inline std::vector<recording::Bytes> messages_of(const recording::McapReader& reader, const std::string& topic)
 {
     std::vector<recording::Bytes> out;
     recording::Cursor cursor = reader.messages({{topic}});

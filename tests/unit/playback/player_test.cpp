@@ -17,7 +17,7 @@ public:
         : session_(watch(name)), events_(session_.reader<plab_v2_Events>().take()), frames_(session_.reader<plab_v2_Frame>().take())
     {
     }
-    void look()
+    void take()
     {
         take_all(events_, [&](const plab_v2_Events& e) { numbers.emplace_back(e.sequence_number), event_runs.push_back(e.run); });
         take_all(frames_,
@@ -37,8 +37,8 @@ public:
 
 private:
     link::Session session_;
-    wire::Reader<plab_v2_Events> events_;
-    wire::Reader<plab_v2_Frame> frames_;
+    wire::DataReader<plab_v2_Events> events_;
+    wire::DataReader<plab_v2_Frame> frames_;
 };
 
 bool has_no_gap(const std::vector<std::uint64_t>& numbers)
@@ -58,7 +58,7 @@ TEST_CASE("each repetition of a loop is a new run from its beginning, and number
     options.from = 0.5, options.to = 1.5, options.rate = 10, options.loop = true, options.readers = 1;
     auto player = open_player(options);
     Watcher watcher("loop");
-    CHECK(play_until(*player, [&] { return watcher.look(), watcher.runs.size() >= 4; }));
+    CHECK(play_until(*player, [&] { return watcher.take(), watcher.runs.size() >= 4; }));
     REQUIRE(watcher.runs.size() >= 4);
     for (std::size_t i = 0; i < 4; ++i)
     {
@@ -86,22 +86,22 @@ TEST_CASE("a jump publishes the catalogue of that time; backwards it is a new ru
                           [&]
                           {
                               (void)catalogue->update();
-                              watcher.look();
+                              watcher.take();
                               const auto& all = catalogue->now().interactions;
                               const auto found = all.find("contact.response");
                               return found != all.end() && found->second.type_name == type && found->second.run == run;
                           });
     };
     CHECK(shows("Response/Impulse", 1));
-    CHECK(play_until(*player, [&] { return watcher.look(), watcher.last_time > 0.19; }));  // a late reader receives the present state
+    CHECK(play_until(*player, [&] { return watcher.take(), watcher.last_time > 0.19; }));  // a late reader receives the present state
     player->seek(ns(1.7), Clock::now());
     CHECK(shows("Response/None", 1));
-    CHECK(play_until(*player, [&] { return watcher.look(), watcher.last_time > 1.69; }));
+    CHECK(play_until(*player, [&] { return watcher.take(), watcher.last_time > 1.69; }));
     CHECK(watcher.last_time < 1.71);
     CHECK(watcher.runs == std::vector<std::uint64_t>{1});
     player->seek(ns(0.9), Clock::now());
     CHECK(shows("Response/Impulse", 2));
-    CHECK(play_until(*player, [&] { return watcher.look(), watcher.last_time > 0.895 && watcher.last_time < 0.905; }));
+    CHECK(play_until(*player, [&] { return watcher.take(), watcher.last_time > 0.895 && watcher.last_time < 0.905; }));
     CHECK(watcher.last_time == doctest::Approx(0.9));
     CHECK(catalogue->now().objects.at("red").run == 2);
     CHECK(has_no_gap(watcher.frame_numbers));

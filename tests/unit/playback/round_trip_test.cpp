@@ -51,7 +51,7 @@ Again play_and_record(const std::string& file, const std::string& name, recorder
     return {options.writer.file, (*recorder)->progress()};
 }
 
-void check_same(const recording::Reader& a, const recording::Reader& b, const std::string& topic)
+void check_same(const recording::McapReader& a, const recording::McapReader& b, const std::string& topic)
 {
     CAPTURE(topic);
     const auto first = messages_of(a, topic), second = messages_of(b, topic);
@@ -70,7 +70,7 @@ TEST_CASE("states, events and all numbered topics are the same byte for byte; th
     const Again again = play_and_record(file, "lab", record_options("playback_second.mcap"));
     CHECK(again.progress.missing == 0);
     CHECK(again.progress.dropped == 0);
-    const recording::Reader a = open_file(file), b = open_file(again.file);
+    const recording::McapReader a = open_file(file), b = open_file(again.file);
     for (const char* topic : {"plab/states", "plab/events", "plab/collisions", "plab/journal", "plab/hashes"}) check_same(a, b, topic);
     CHECK(messages_of(b, "plab/gone").empty());  // the end of the server does not change the scene
     for (const double seconds : {0.5, 1.5, 2.5})
@@ -119,7 +119,7 @@ TEST_CASE("only the requested topics are recorded, frames at a lower rate, up to
     options.topics = {"plab/states", "plab/events"}, options.state_rate = 10, options.until = 1.2;
     const Again again = play_and_record(file, "thinned", options);
     CHECK(again.progress.missing == 0);  // messages that are left out do not count as missing
-    const recording::Reader reader = open_file(again.file);
+    const recording::McapReader reader = open_file(again.file);
     recording::Decoder decoder;
     recording::Sample<plab_v2_Frame> frame;
     std::vector<double> times;

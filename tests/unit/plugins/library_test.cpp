@@ -292,7 +292,7 @@ TEST_CASE("manifests are written sorted, completely or not at all, and read back
     plain.name = "A/B", plain.family = "A", plain.plugin = odd.plugin = "sample";
     odd.name = "B/C", odd.family = "B", odd.doc = "a tab\t, a line\nbreak, a back\\slash, \x7f and \xc3\xa9";
     odd.order = -3, odd.accuracy = "1e-12", odd.strengths = "\t", odd.cost = "\\x41", odd.limits = " ", odd.source = "|";
-    odd.roles = {{"between", "body or shaft", "who\r", 0, 4294967295}};
+    odd.roles = {{"between", "body or shaft", "bodies\r", 0, 4294967295}};
     odd.fields = {{"code", "param", "text", "", "x = 1\n\ty = 2", "", "", false},
                   {"mass", "param", "real", "kg", "", "positive", "", true}};
     REQUIRE(plugins::write_manifest(folder.file("m.manifest"), "sample", {odd, plain}).ok());

@@ -1,4 +1,4 @@
-// What observers are told about the structure: everything at first, then only what changed.
+// What observers receive about the structure: everything at first, then only what changed.
 #include <algorithm>
 #include <chrono>
 #include <thread>

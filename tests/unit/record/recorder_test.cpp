@@ -172,7 +172,7 @@ TEST_CASE("frames are recorded at the requested interval of simulated time")
     Recorded run(options);
     run.step(100);
     REQUIRE(run.recorder->close());
-    auto reader = recording::Reader::open(options.file);
+    auto reader = recording::McapReader::open(options.file);
     REQUIRE(reader);
     const recording::Statistics& statistics = reader->index().statistics;
     CHECK(reader->channels().size() == 1);
@@ -196,7 +196,7 @@ TEST_CASE("when the writer cannot keep up, frames are dropped and counted, and t
     REQUIRE(run.recorder->close());
     const wire::RecordingInfo status = run.recorder->progress();
     CHECK(status.dropped > 0);
-    auto reader = recording::Reader::open(options.file);
+    auto reader = recording::McapReader::open(options.file);
     REQUIRE(reader);
     const auto gap = reader->metadata("gap");
     CHECK_MESSAGE(gap, first_error(gap.errors()));

@@ -33,7 +33,7 @@ TEST_CASE("a warm writer allocates nothing for a message, and little for a chunk
         CAPTURE(static_cast<int>(compression));
         WriterOptions options;
         options.compression = compression;
-        auto writer = Writer::open(std::make_unique<Void>(), options).take();
+        auto writer = McapWriter::open(std::make_unique<Void>(), options).take();
         const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
         const std::string data(500, 'x');
         Clock::time_point now{};

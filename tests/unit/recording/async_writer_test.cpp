@@ -128,17 +128,17 @@ public:
 struct OnDisk
 {
     explicit OnDisk(Disk& disk) : bytes(disk.copy()), reader(open(bytes)) {}
-    static Reader open(const Bytes& bytes)
+    static McapReader open(const Bytes& bytes)
     {
-        auto reader = Reader::open(std::make_unique<MemorySource>(bytes));
+        auto reader = McapReader::open(std::make_unique<MemorySource>(bytes));
         REQUIRE_MESSAGE(reader.ok(), reader.error().text());
         return reader.take();
     }
     Bytes bytes;
-    Reader reader;
+    McapReader reader;
 };
 
-std::vector<std::uint64_t> numbers_in(const Reader& reader)
+std::vector<std::uint64_t> numbers_in(const McapReader& reader)
 {
     std::vector<std::uint64_t> out;
     Cursor messages = reader.messages();
@@ -159,7 +159,7 @@ bool ascends(const std::vector<std::uint64_t>& numbers)
 }
 
 /// Messages that the file itself says are missing.
-std::uint64_t reported_missing(const Reader& reader)
+std::uint64_t reported_missing(const McapReader& reader)
 {
     std::uint64_t out = 0;
     for (const auto& at : reader.index().metadata)
@@ -193,7 +193,7 @@ TEST_CASE("a disk that fills up and stays full: this is soon reported at the end
     CHECK(end.messages + end.dropped == fed.offered);
     CHECK(!end.is_ended);
     const OnDisk found(*fed.disk);
-    const Reader& reader = found.reader;
+    const McapReader& reader = found.reader;
     const auto numbers = numbers_in(reader);
     CHECK(numbers.size() == 100);
     CHECK(ascends(numbers));
@@ -246,7 +246,7 @@ TEST_CASE("a disk that fails for a while: the file continues and notes its gap, 
     CHECK(end.messages + end.dropped == fed.offered);
     CHECK(std::count(fed.notices.begin(), fed.notices.end(), Notice::Stalled) == 1);
     const OnDisk found(*fed.disk);
-    const Reader& reader = found.reader;
+    const McapReader& reader = found.reader;
     CHECK(reader.index().is_closed);
     CHECK(reader.index().troubles.empty());
     const auto numbers = numbers_in(reader);
@@ -273,7 +273,7 @@ TEST_CASE("messages that wait for a disk that works again only at the end are ne
     const auto closed = fed.writer->close();
     REQUIRE_MESSAGE(closed.ok(), closed.error().text());
     const OnDisk found(*fed.disk);
-    const Reader& reader = found.reader;
+    const McapReader& reader = found.reader;
     REQUIRE(reader.index().attachments.size() == 1);
     const WriteProgress end = fed.writer->progress();
     CHECK(reported_missing(reader) == end.dropped);

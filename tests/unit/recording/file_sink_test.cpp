@@ -57,7 +57,7 @@ private:
     rlimit before_{};
 };
 
-std::uint64_t put(Writer& writer, ChannelId channel, int chunks)
+std::uint64_t put(McapWriter& writer, ChannelId channel, int chunks)
 {
     std::uint64_t taken = 0;
     for (int i = 0; i < chunks; ++i)
@@ -76,13 +76,13 @@ TEST_CASE("an existing file is not overwritten unless that is requested")
 {
     const Folder folder;
     const std::string path = folder / "run.mcap";
-    CHECK(Writer::create(path).take().close());
+    CHECK(McapWriter::create(path).take().close());
     const auto size = std::filesystem::file_size(path);
-    CHECK(Writer::create(path).error().text() == path + ": cannot create the file: File exists");
+    CHECK(McapWriter::create(path).error().text() == path + ": cannot create the file: File exists");
     CHECK(std::filesystem::file_size(path) == size);
-    CHECK(Writer::create(path, {}, Overwrite::Yes).take().close());
-    CHECK(Reader::open(path));
-    CHECK(Writer::create(folder / "none/run.mcap").error().text() ==
+    CHECK(McapWriter::create(path, {}, Overwrite::Yes).take().close());
+    CHECK(McapReader::open(path));
+    CHECK(McapWriter::create(folder / "none/run.mcap").error().text() ==
           folder / "none/run.mcap: cannot create the file: No such file or directory");
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("a file that cannot grow: recording degrades, reports that, and contin
     const std::string path = folder / "full.mcap";
     WriterOptions options;
     options.compression = Compression::None;
-    auto writer = Writer::create(path, options).take();
+    auto writer = McapWriter::create(path, options).take();
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     {
         const SizeLimit limit(20'000);
@@ -101,7 +101,7 @@ TEST_CASE("a file that cannot grow: recording degrades, reports that, and contin
         CHECK(writer.trouble()->text() == path + ": cannot write: File too large");
         CHECK(writer.dropped().messages == 6);
         // As after a crash at this point: a part of a chunk at the end.
-        CHECK(read_all(*Reader::open(path)).lines.size() == 4);
+        CHECK(read_all(*McapReader::open(path)).lines.size() == 4);
         CHECK(std::filesystem::file_size(path) == 20'000);
         // There is room for a note, but not for a chunk.
         CHECK(writer.retry());
@@ -112,7 +112,7 @@ TEST_CASE("a file that cannot grow: recording degrades, reports that, and contin
     CHECK(writer.retry());
     CHECK(put(writer, channel, 5) == 5);
     CHECK(writer.close());
-    auto reader = Reader::open(path);
+    auto reader = McapReader::open(path);
     REQUIRE(reader);
     CHECK(reader->index().has_summary);
     CHECK(read_all(*reader).lines.size() == 9);
@@ -132,7 +132,7 @@ TEST_CASE("recovery by name: a new file, never the file itself, none without con
     auto report = recover(in, out);
     REQUIRE(report);
     CHECK(exit_code(report->verdict) == 5);
-    CHECK(read_all(*Reader::open(out)).lines == by_time(file.lines));
+    CHECK(read_all(*McapReader::open(out)).lines == by_time(file.lines));
     CHECK(recover(in, out).error().text() == out + ": cannot create the file: File exists");
     std::filesystem::resize_file(in, 40);
     auto nothing = recover(in, folder / "nothing.mcap");

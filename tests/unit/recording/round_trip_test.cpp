@@ -116,7 +116,7 @@ TEST_CASE("messages whose times decrease within and across chunks are read in or
     auto bytes = std::make_shared<Bytes>();
     Lines wanted;
     {
-        auto writer = Writer::open(std::make_unique<MemorySink>(bytes), {}).take();
+        auto writer = McapWriter::open(std::make_unique<MemorySink>(bytes), {}).take();
         const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
         std::uint32_t number = 0;
         for (const std::uint64_t time : {50, 10, 40, 30, 10, 60, 20, 5})
@@ -139,7 +139,7 @@ TEST_CASE("messages whose times decrease within and across chunks are read in or
 TEST_CASE("of two messages at one time in overlapping chunks, the last is the later one in the file")
 {
     auto bytes = std::make_shared<Bytes>();
-    auto writer = Writer::open(std::make_unique<MemorySink>(bytes), {}).take();
+    auto writer = McapWriter::open(std::make_unique<MemorySink>(bytes), {}).take();
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     for (const std::uint64_t start : {10u, 5u})
     {
@@ -158,14 +158,14 @@ TEST_CASE("of two messages at one time in overlapping chunks, the last is the la
 TEST_CASE("a file without messages, and channels without messages, are whole files")
 {
     auto bytes = std::make_shared<Bytes>();
-    CHECK(Writer::open(std::make_unique<MemorySink>(bytes), {}).take().close());
+    CHECK(McapWriter::open(std::make_unique<MemorySink>(bytes), {}).take().close());
     auto empty = open(*bytes);
     REQUIRE(empty);
     CHECK(empty->index().is_closed);
     CHECK(read_all(*empty).lines.empty());
 
     bytes = std::make_shared<Bytes>();
-    auto writer = Writer::open(std::make_unique<MemorySink>(bytes), {}).take();
+    auto writer = McapWriter::open(std::make_unique<MemorySink>(bytes), {}).take();
     REQUIRE(writer.add_channel({0, 0, "silent", "text", {}}));
     CHECK(writer.close());
     auto silent = open(*bytes);
@@ -186,6 +186,6 @@ TEST_CASE("a file that is not a recording is refused with a reason")
     CHECK(why("SQLite format 3 and more bytes") == "memory: is not an MCAP file: it does not begin with the magic bytes");
     CHECK(why("\x89MCAP0\r\n") == "memory: is not an MCAP file: it does not begin with the magic bytes");
     CHECK(why(std::string("\x89MCAP0\r\n\x06\0\0\0\0\0\0\0\0", 17)) == "memory: byte 8: a Header record is missing here");
-    CHECK(Reader::open("/none/such.mcap").error().text() == "/none/such.mcap: cannot open the recording: No such file or directory");
-    CHECK(Reader::open("/tmp").error().text() == "/tmp: is not a file; recordings are read from files");
+    CHECK(McapReader::open("/none/such.mcap").error().text() == "/none/such.mcap: cannot open the recording: No such file or directory");
+    CHECK(McapReader::open("/tmp").error().text() == "/tmp: is not a file; recordings are read from files");
 }

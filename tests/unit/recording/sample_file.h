@@ -55,7 +55,7 @@ struct ReadBack
 };
 
 /// All that a query finds; gives up after `most` errors.
-inline ReadBack read_all(const Reader& reader, const Query& query = {}, std::size_t most = 1000)
+inline ReadBack read_all(const McapReader& reader, const Query& query = {}, std::size_t most = 1000)
 {
     ReadBack out;
     Cursor messages = reader.messages(query);
@@ -69,7 +69,7 @@ inline ReadBack read_all(const Reader& reader, const Query& query = {}, std::siz
     return out;
 }
 
-inline Result<Reader> open(ByteView bytes) { return Reader::open(std::make_unique<MemorySource>(bytes)); }
+inline Result<McapReader> open(ByteView bytes) { return McapReader::open(std::make_unique<MemorySource>(bytes)); }
 
 inline const std::string kBlueprint = "<plab version=\"1\"/>";
 
@@ -86,7 +86,7 @@ struct SampleFile
         auto file = std::make_shared<Bytes>();
         WriterOptions options;
         options.compression = compression;
-        auto writer = Writer::open(std::make_unique<MemorySink>(file), options).take();
+        auto writer = McapWriter::open(std::make_unique<MemorySink>(file), options).take();
         const auto schema = writer.add_schema({0, "plab::v2::Frame", "omgidl", "module plab {};"}).take();
         const auto states = writer.add_channel({0, schema, "plab/states", "cdr", {}}).take();
         const auto events = writer.add_channel({0, schema, "plab/events", "cdr", {{"key", "value"}}}).take();
@@ -107,7 +107,7 @@ struct SampleFile
     }
 
 private:
-    void put(Writer& writer, ChannelId channel, const std::string& topic, int time, Clock::time_point now)
+    void put(McapWriter& writer, ChannelId channel, const std::string& topic, int time, Clock::time_point now)
     {
         const std::string data = topic + " at " + std::to_string(time) + std::string(20, 'x');
         const auto t = static_cast<std::uint64_t>(time);

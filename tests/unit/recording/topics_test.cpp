@@ -200,7 +200,7 @@ TEST_CASE("frames through a file")
     std::vector<plab_v2_BodyState> bodies;
     {
         Encoder encoder;
-        auto writer = Writer::open(std::make_unique<MemorySink>(file), {}).take();
+        auto writer = McapWriter::open(std::make_unique<MemorySink>(file), {}).take();
         const auto schema = writer.add_schema(*schema_of<plab_v2_Frame>()).take();
         const auto channel = writer.add_channel(channel_of<plab_v2_Frame>(schema)).take();
         for (std::size_t n = 0; n < 10; ++n) CHECK(writer.write({channel, 0, n, n, *encoder.encode(frame_of(bodies, n))}, {}));

@@ -66,10 +66,10 @@ Run run(int first, int more)
     Run out;
     WriterOptions options;
     options.sync_time = 90ms;
-    auto opened = Writer::open(std::make_unique<FailingSink>(out.bytes, first, more), options);
+    auto opened = McapWriter::open(std::make_unique<FailingSink>(out.bytes, first, more), options);
     out.was_opened = opened.ok();
     if (!opened) return out;
-    Writer writer = opened.take();
+    McapWriter writer = opened.take();
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     Clock::time_point now{};
     for (std::uint64_t i = 0; i < 40; ++i)
@@ -92,7 +92,7 @@ Run run(int first, int more)
 TEST_CASE("a chunk is written when it is old enough, with one write, and not before")
 {
     auto bytes = std::make_shared<Bytes>();
-    auto writer = Writer::open(std::make_unique<MemorySink>(bytes), {}).take();
+    auto writer = McapWriter::open(std::make_unique<MemorySink>(bytes), {}).take();
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     const std::size_t start = bytes->size();
     const Clock::time_point t0{};
@@ -118,7 +118,7 @@ TEST_CASE("a chunk is written when it is large enough; a larger message has one 
     auto bytes = std::make_shared<Bytes>();
     WriterOptions options;
     options.chunk_bytes = 1000;
-    auto writer = Writer::open(std::make_unique<MemorySink>(bytes), options).take();
+    auto writer = McapWriter::open(std::make_unique<MemorySink>(bytes), options).take();
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     for (const std::size_t size : {400u, 400u, 400u, 5000u, 400u})
         CHECK(writer.write({channel, 0, 0, 0, view_of(std::string(size, 'x'))}, {}));
@@ -134,7 +134,7 @@ TEST_CASE("messages that cannot be accepted are counted, and noted in the file")
     auto bytes = std::make_shared<Bytes>();
     WriterOptions options;
     options.most_message_bytes = 100;
-    auto writer = Writer::open(std::make_unique<MemorySink>(bytes), options).take();
+    auto writer = McapWriter::open(std::make_unique<MemorySink>(bytes), options).take();
     CHECK(writer.add_channel({0, 3, "t", "text", {}}).error().text() == "channel t names schema 3, which does not exist");
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     CHECK(!writer.write({channel, 0, 7, 0, view_of(std::string(101, 'x'))}, {}));
@@ -164,7 +164,7 @@ TEST_CASE("messages that cannot be accepted are counted, and noted in the file")
 TEST_CASE("channels are declared again after a while, so that the rest of a file is self-contained")
 {
     auto bytes = std::make_shared<Bytes>();
-    auto writer = Writer::open(std::make_unique<MemorySink>(bytes), {}).take();
+    auto writer = McapWriter::open(std::make_unique<MemorySink>(bytes), {}).take();
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     Clock::time_point now{};
     for (std::uint64_t i = 0; i < 20; ++i, now += 1s) CHECK(writer.write({channel, 0, i, 0, view_of("x")}, now));
@@ -186,7 +186,7 @@ TEST_CASE("an index that would take too much memory is dropped: the file is read
     auto bytes = std::make_shared<Bytes>();
     WriterOptions options;
     options.most_index_memory = 2000;
-    auto writer = Writer::open(std::make_unique<MemorySink>(bytes), options).take();
+    auto writer = McapWriter::open(std::make_unique<MemorySink>(bytes), options).take();
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     for (std::uint64_t i = 0; i < 100; ++i)
     {
@@ -275,7 +275,7 @@ TEST_CASE("a disk that recovers: the file continues after its last good record, 
 TEST_CASE("the declarations of a lost chunk are written again")
 {
     auto bytes = std::make_shared<Bytes>();
-    auto writer = Writer::open(std::make_unique<FailingSink>(bytes, 1, 0), {}).take();
+    auto writer = McapWriter::open(std::make_unique<FailingSink>(bytes, 1, 0), {}).take();
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     CHECK(writer.write({channel, 0, 1, 0, view_of("lost")}, {}));
     writer.flush();

@@ -226,10 +226,10 @@ TEST_CASE("log of a file")
     CHECK(plabctl({"log", file, "--kind", "collision.rest"}).code == 0);  // the kind exists, though not in this file
     for (const char* option : {"--kind", "--object"})
     {
-        const auto nobody = plabctl({"log", file, option, "nope"});
-        CHECK(nobody.code == 1);
-        CHECK_MESSAGE(has(nobody.errors, "nope"), nobody.errors);
-        CHECK(nobody.output.empty());
+        const auto none = plabctl({"log", file, option, "nope"});
+        CHECK(none.code == 1);
+        CHECK_MESSAGE(has(none.errors, "nope"), none.errors);
+        CHECK(none.output.empty());
     }
 }
 

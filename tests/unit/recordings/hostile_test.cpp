@@ -52,7 +52,7 @@ template <class T>
 std::string recording_of(const std::string& name, const std::vector<recording::Bytes>& messages)
 {
     const std::string path = fresh_path(name);
-    auto writer = recording::Writer::create(path);
+    auto writer = recording::McapWriter::create(path);
     REQUIRE(writer.ok());
     const auto schema = writer->add_schema(recording::schema_of<T>().take());
     REQUIRE(schema.ok());
@@ -167,7 +167,7 @@ TEST_CASE("altered metrics, events and journals do no harm")
 TEST_CASE("foreign topics are counted, and not taken for pLab's")
 {
     const std::string path = fresh_path("others.mcap");
-    auto writer = recording::Writer::create(path);
+    auto writer = recording::McapWriter::create(path);
     REQUIRE(writer.ok());
     // The name of pLab's topic, with another version of its type.
     const auto schema = writer->add_schema({0, "plab::v9::Frame", "omgidl", "module plab { module v9 { struct Frame { long x; }; }; };"});

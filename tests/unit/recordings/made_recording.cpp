@@ -36,7 +36,7 @@ void point_at(Sequence& sequence, std::vector<Item>& items)
 class Maker
 {
 public:
-    Maker(recording::Writer writer, const MadeOptions& options) : writer_(std::move(writer)), options_(options) {}
+    Maker(recording::McapWriter writer, const MadeOptions& options) : writer_(std::move(writer)), options_(options) {}
 
     void make()
     {
@@ -236,7 +236,7 @@ private:
         put(s);
     }
 
-    recording::Writer writer_;
+    recording::McapWriter writer_;
     MadeOptions options_;
     recording::Encoder encoder_;
     std::map<std::string, recording::ChannelId> channels_;
@@ -266,7 +266,7 @@ std::string make_recording(const std::string& name, const MadeOptions& options)
     const std::string path = fresh_path(name);
     recording::WriterOptions writing;
     writing.compression = options.compression;
-    auto writer = recording::Writer::create(path, writing);
+    auto writer = recording::McapWriter::create(path, writing);
     REQUIRE(writer.ok());
     recording::Metadata head{"plab",
                              {{"format", "2"}, {"server", "lab"}, {"host", "here"}, {"version", "0.2.0"}, {"scene_file", "made.xml"}}};

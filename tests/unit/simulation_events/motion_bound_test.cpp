@@ -131,8 +131,8 @@ TEST_CASE("steps by the bound converge to a corner's impact like Newton's method
     const Vec3 n{0, 0, 1};
     const double T = 0.05, r = std::hypot(0.5, 0.1), want = (std::asin(0.505 / r) - std::atan2(0.1, 0.5)) / 40;
     double t = 0;
-    int looks = 0;
-    for (; looks < 30 && p.width(n, t) > 1e-13; ++looks)
+    int evaluations = 0;
+    for (; evaluations < 30 && p.width(n, t) > 1e-13; ++evaluations)
     {
         MotionBound motions[2];
         BodyExtent extents[2];
@@ -140,7 +140,7 @@ TEST_CASE("steps by the bound converge to a corner's impact like Newton's method
         CHECK(t <= want + 1e-14);
     }
     CHECK(std::fabs(t - want) < 1e-13);
-    CHECK(looks <= 12);
+    CHECK(evaluations <= 12);
 }
 
 TEST_CASE("a spin that is not visible at either end of a piece is bounded by the momentum")

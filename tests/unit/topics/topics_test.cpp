@@ -94,13 +94,13 @@ private:
     std::thread thread_;
 };
 
-struct Writers
+struct TopicWriters
 {
     Bus bus;
     std::string server = unique_name("topics");
     wire::Entity publisher = wire::make_publisher(bus.participant(), server).take();
-    wire::Writer<plab_v2_Frame> frames = wire::Writer<plab_v2_Frame>::make(bus.participant(), publisher).take();
-    wire::Writer<plab_v2_SceneObject> objects = wire::Writer<plab_v2_SceneObject>::make(bus.participant(), publisher).take();
+    wire::DataWriter<plab_v2_Frame> frames = wire::DataWriter<plab_v2_Frame>::make(bus.participant(), publisher).take();
+    wire::DataWriter<plab_v2_SceneObject> objects = wire::DataWriter<plab_v2_SceneObject>::make(bus.participant(), publisher).take();
 };
 
 plab_v2_SceneObject object(const char* id)
@@ -134,7 +134,7 @@ stranger_Reading reading()
 
 TEST_CASE("list shows pLab's topics and foreign ones")
 {
-    Writers writers;
+    TopicWriters writers;
     const wire::Entity writer = writers.bus.foreign(stranger_Reading_desc, "readings", true);
     const auto reader = wire::make_subscriber(writers.bus.participant(), writers.server);
     const Outcome out = topics({"--json"});
@@ -209,7 +209,7 @@ TEST_CASE("types that are not understood are reported by name, and are measured 
 
 TEST_CASE("disposed instances are reported by their key")
 {
-    Writers writers;
+    TopicWriters writers;
     // A key as long as ids are: Cyclone DDS has a field of 16 bytes for those that it takes for short ones.
     const plab_v2_SceneObject red = object("red.arm.upper.hinge.with_a_long_name"), blue = object("blue");
     Process process(topics_command({"print", "plab/objects", "--partition", writers.server, "--json", "-n", "3"}));
@@ -227,7 +227,7 @@ TEST_CASE("disposed instances are reported by their key")
 
 TEST_CASE("rate and bandwidth measure what is written")
 {
-    Writers writers;
+    TopicWriters writers;
     std::vector<plab_v2_BodyState> bodies(100);
     plab_v2_Frame frame{};
     frame.bodies._length = frame.bodies._maximum = 100, frame.bodies._buffer = bodies.data();
@@ -253,7 +253,7 @@ TEST_CASE("rate and bandwidth measure what is written")
 
 TEST_CASE("a topic without writers gives 3, with the nearest name; wrong use gives 2; Ctrl-C is a normal end")
 {
-    Writers writers;
+    TopicWriters writers;
     const Outcome none = topics({"print", "plab/stats", "--timeout", "0.5"});
     CHECK(none.code == 3);
     CHECK(has(none.errors, "there is no writer of 'plab/stats'"));

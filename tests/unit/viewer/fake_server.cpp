@@ -91,9 +91,9 @@ public:
 
 private:
     template <class T>
-    void make(const wire::Entity& participant, wire::Writer<T>& writer)
+    void make(const wire::Entity& participant, wire::DataWriter<T>& writer)
     {
-        writer = wire::Writer<T>::make(participant, publisher_).take();
+        writer = wire::DataWriter<T>::make(participant, publisher_).take();
     }
 
     void publish_shape(const char* id, const char* form, const plab_v2_Vector& size)
@@ -127,12 +127,12 @@ private:
     const Script& script_;
     const std::string& name_;
     wire::Entity publisher_;
-    wire::Writer<plab_v2_Server> server_;
-    wire::Writer<plab_v2_Scene> scene_;
-    wire::Writer<plab_v2_SceneObject> objects_;
-    wire::Writer<plab_v2_Shape> shapes_;
-    wire::Writer<plab_v2_Interaction> interactions_;
-    wire::Writer<plab_v2_Frame> frames_;
+    wire::DataWriter<plab_v2_Server> server_;
+    wire::DataWriter<plab_v2_Scene> scene_;
+    wire::DataWriter<plab_v2_SceneObject> objects_;
+    wire::DataWriter<plab_v2_Shape> shapes_;
+    wire::DataWriter<plab_v2_Interaction> interactions_;
+    wire::DataWriter<plab_v2_Frame> frames_;
     std::uint64_t run_ = 1, sequence_ = 0;
 };
 
