@@ -75,15 +75,15 @@ void TunnelWatch::find_colliding_bodies(const RunView& s)
     const world::World& world = s.world;
     const world::HostTables& host = world.host();
     ready_ = true;
-    crowds_.clear();
+    colliding_.clear();
     for (const Detector& d : s.stepper.detectors())
     {
         if (!d.responds && !d.by_rows && !d.by_force) continue;  // a sensor lets bodies pass through
-        Crowd crowd{d.component, {}, d.certifies && !d.persists()};
+        CollidingBodies colliding{d.component, {}, d.certifies && !d.persists()};
         for (const Role& role : world.table_of(d.component).schema().roles())
             for (const Ref r : world.participants(d.component, role))
-                if (r.facet == Facet::Body) crowd.bodies.push_back(r.index);
-        if (crowd.bodies.size() > 1) crowds_.push_back(std::move(crowd));
+                if (r.facet == Facet::Body) colliding.bodies.push_back(r.index);
+        if (colliding.bodies.size() > 1) colliding_.push_back(std::move(colliding));
     }
     memory_.reported.resize(host.bodies.size(), 0);
     start_.resize(host.bodies.size());
@@ -100,7 +100,7 @@ void TunnelWatch::find_colliding_bodies(const RunView& s)
 void TunnelWatch::before_step(const RunView& s)
 {
     if (!ready_) find_colliding_bodies(s);
-    if (crowds_.empty()) return;
+    if (colliding_.empty()) return;
     const Bodies& bodies = s.world.host().bodies;
     for (std::size_t b = 0; b < start_.size(); ++b) start_[b] = {bodies.position[b], bodies.orientation[b]};
 }
@@ -127,8 +127,8 @@ bool TunnelWatch::passed(const RunView& s, std::uint32_t body, std::uint32_t oth
                        });
 }
 
-/// Computes the boxes that the crowd's bodies swept over. Returns false if none moved far enough to pass through another.
-bool TunnelWatch::find_swept_boxes(const RunView& s, const Crowd& crowd)
+/// Computes the boxes that the bodies swept over. Returns false if none moved far enough to pass through another.
+bool TunnelWatch::find_swept_boxes(const RunView& s, const CollidingBodies& colliding)
 {
     const Bodies& bodies = s.world.host().bodies;
     const std::span<const double> radius = s.stepper.radius_of_body();
@@ -137,12 +137,12 @@ bool TunnelWatch::find_swept_boxes(const RunView& s, const Crowd& crowd)
         return bodies.dynamic(b) && memory_.reported[b] == 0 &&
                length_squared(bodies.position[b] - start_[b].position) > least_width_[b] * least_width_[b];
     };
-    if (std::none_of(crowd.bodies.begin(), crowd.bodies.end(), is_fast)) return false;
-    swept_.assign(crowd.bodies.size(), {});
+    if (std::none_of(colliding.bodies.begin(), colliding.bodies.end(), is_fast)) return false;
+    swept_.assign(colliding.bodies.size(), {});
     bounded_.clear(), fast_.clear();
-    for (std::uint32_t i = 0; i < crowd.bodies.size(); ++i)
+    for (std::uint32_t i = 0; i < colliding.bodies.size(); ++i)
     {
-        const std::uint32_t b = crowd.bodies[i];
+        const std::uint32_t b = colliding.bodies[i];
         if (!std::isfinite(radius[b])) continue;  // a plane: a body behind it overlaps it
         const Vec3 around{radius[b], radius[b], radius[b]};
         const geometry::Box before{start_[b].position - around, start_[b].position + around};
@@ -154,7 +154,7 @@ bool TunnelWatch::find_swept_boxes(const RunView& s, const Crowd& crowd)
 }
 
 /// Tests exactly what the boxes of fast bodies overlap.
-void TunnelWatch::find_passages(const RunView& s, const Crowd& crowd)
+void TunnelWatch::find_passages(const RunView& s, const CollidingBodies& colliding)
 {
     passages_.clear();
     tree_.build(swept_, bounded_);
@@ -162,23 +162,23 @@ void TunnelWatch::find_passages(const RunView& s, const Crowd& crowd)
         tree_.query(swept_[i],
                     [&](std::uint32_t j)
                     {
-                        if (i != j && passed(s, crowd.bodies[i], crowd.bodies[j])) passages_.push_back({i, j});
+                        if (i != j && passed(s, colliding.bodies[i], colliding.bodies[j])) passages_.push_back({i, j});
                     });
     std::sort(passages_.begin(), passages_.end());
 }
 
-void TunnelWatch::report_passages(const RunView& s, const Crowd& crowd, std::vector<Event>& events)
+void TunnelWatch::report_passages(const RunView& s, const CollidingBodies& colliding, std::vector<Event>& events)
 {
     const world::World& world = s.world;
     for (const Passage& p : passages_)
     {
-        const std::uint32_t body = crowd.bodies[p.body];
+        const std::uint32_t body = colliding.bodies[p.body];
         if (memory_.reported[body] != 0) continue;
         memory_.reported[body] = 1;
-        const Ref a{Facet::Body, body}, b{Facet::Body, crowd.bodies[p.other]};
+        const Ref a{Facet::Body, body}, b{Facet::Body, colliding.bodies[p.other]};
         Event e;
         e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.missed", e.severity = Severity::Warning;
-        e.component = crowd.detector, e.a = a, e.b = b;
+        e.component = colliding.detector, e.a = a, e.b = b;
         e.message = world.id_of(a) + " passed through " + world.id_of(b) +
                     " within a step without being detected; a resolution that searches inside the step (Resolution/LocalRoot) or shorter "
                     "steps would detect it";
@@ -189,13 +189,13 @@ void TunnelWatch::report_passages(const RunView& s, const Crowd& crowd, std::vec
 
 void TunnelWatch::after_step(const RunView& s, std::vector<Event>& events)
 {
-    for (const Crowd& crowd : crowds_)
+    for (const CollidingBodies& colliding : colliding_)
     {
-        if (crowd.certified || !find_swept_boxes(s, crowd)) continue;
-        find_passages(s, crowd);
-        report_passages(s, crowd, events);
+        if (colliding.certified || !find_swept_boxes(s, colliding)) continue;
+        find_passages(s, colliding);
+        report_passages(s, colliding, events);
     }
-    if (!crowds_.empty() && s.stepper.report().deepest > shallow_) find_overlaps(s, events);
+    if (!colliding_.empty() && s.stepper.report().deepest > shallow_) find_overlaps(s, events);
 }
 
 void TunnelWatch::find_overlaps(const RunView& s, std::vector<Event>& events)

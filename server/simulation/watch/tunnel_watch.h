@@ -57,14 +57,14 @@ private:
         Vec3 position;
         Quat orientation;
     };
-    struct Crowd
+    struct CollidingBodies
     {
         std::uint32_t detector = kNoIndex;  ///< component
         std::vector<std::uint32_t> bodies;
         bool certified = false;  ///< its resolution detects every collision inside the step: bodies may bounce around one another
     };
 
-    /// Indices in the crowd: `body` passed through `other`.
+    /// Indices in CollidingBodies::bodies: `body` passed through `other`.
     struct Passage
     {
         std::uint32_t body = 0, other = 0;
@@ -72,21 +72,21 @@ private:
     };
 
     void find_colliding_bodies(const RunView& s);
-    bool find_swept_boxes(const RunView& s, const Crowd& crowd);
-    void find_passages(const RunView& s, const Crowd& crowd);
-    void report_passages(const RunView& s, const Crowd& crowd, std::vector<Event>& events);
+    bool find_swept_boxes(const RunView& s, const CollidingBodies& colliding);
+    void find_passages(const RunView& s, const CollidingBodies& colliding);
+    void report_passages(const RunView& s, const CollidingBodies& colliding, std::vector<Event>& events);
     void find_overlaps(const RunView& s, std::vector<Event>& events);
     bool passed(const RunView& s, std::uint32_t body, std::uint32_t other) const;
 
     bool ready_ = false;
-    std::vector<Crowd> crowds_;
+    std::vector<CollidingBodies> colliding_;
     std::vector<StartPosition> start_;  ///< by body
     std::vector<double> least_width_;   ///< half of the smallest width, by body, m
     TunnelMemory memory_;
     double shallow_ = 0;  ///< m: penetrations up to this are not deep for any body
-    // Of the crowd being examined.
-    std::vector<geometry::Box> swept_;    ///< by index in the crowd: the box that the body swept over in the step, in W
-    std::vector<std::uint32_t> bounded_;  ///< indices in the crowd: bodies with such a box
+    // Of the detection that is being examined.
+    std::vector<geometry::Box> swept_;    ///< by index in its bodies: the box that the body swept over in the step, in W
+    std::vector<std::uint32_t> bounded_;  ///< indices in its bodies: those with such a box
     std::vector<std::uint32_t> fast_;     ///< those of them that moved farther than their width and are not reported yet
     geometry::BoxTree tree_;              ///< of swept_
     std::vector<Passage> passages_;
