@@ -3,10 +3,37 @@
 
 #include <vector>
 
-#include "soft_step.h"
+#include "stepping.h"
 
 namespace plab::managers
 {
+
+struct SoftChoices
+{
+    int substeps = 8;
+    int relax_iterations = 1;
+    double hertz = 60;  ///< natural frequency of a contact; limited to a quarter of the rate of the sub-steps
+    double damping_ratio = 10;
+    double push_speed = 3;    ///< m/s
+    double tolerance = 1e-2;  ///< m/s: a contact in which overlap closes faster than this counts as not held
+};
+
+struct SoftMemory
+{
+    StepMemory step;
+    std::vector<SoftPoint<1>> single;  ///< parallel to the points of Problem::single
+    std::vector<SoftPoint<4>> fours;
+    std::vector<std::uint32_t> meeting;  ///< contacts that were met with a speed when the step began
+    std::vector<double> lines_moved_with;
+    std::vector<double> line_sum;
+    std::vector<double> line_closing;   ///< m/s or rad/s: closing speed at limits with restitution when the step began; else 0
+    std::vector<double> line_greatest;  ///< N s or N m s, largest impulse of any sub-step
+    struct Kick
+    {
+        Vec3 push, turn;  ///< N s, N m s: impulse of the forces in the sub-step
+    };
+    std::vector<Kick> kicks;
+};
 
 template <int W>
 class SoftIsland

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "sequential.h"
-#include "soft_island.h"
 
 namespace plab::managers
 {
