@@ -1,5 +1,6 @@
-// What scenes of ten to fifty thousand elements cost, and how that grows. Prints the Markdown tables of server/docs/pace.md; takes about
-// three minutes. Each case runs in a process of its own, whose processor time and memory are measured.
+// What scenes of ten to fifty thousand elements cost, and how that grows. Prints the Markdown tables of server/docs/pace.md, and draws
+// the growth if the name of a PNG file is given; takes about a minute. Each case runs in a process of its own, whose processor time and
+// memory are measured.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +14,8 @@
 #include <vector>
 
 #include "blueprint/reader.h"
+#include "figures/axes.h"
+#include "figures/drawing.h"
 #include "model/compile.h"
 #include "plab/random.h"
 #include "plugins/library.h"
@@ -282,35 +285,95 @@ void scenes_table()
     row("1000 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(1000), 480);
 }
 
-/// Elements of one kind, from `least` to `most` in factors of ten: cost per element and its growth.
-void growth_table(const char* kind, int least, int most, int steps, const std::function<std::string(int)>& make, bool per_contact = false)
+/// What was measured with `count` elements of a kind, per element; `step` per contact point in the rows of heaps.
+struct GrowthPoint
+{
+    double count = 0, load = 0, step = 0, memory = 0;  ///< 1, us, us, kB
+};
+struct Growth
+{
+    std::string kind;
+    std::vector<GrowthPoint> points;
+};
+
+/// Elements of one kind, for each of the counts: cost per element and its growth.
+Growth growth_table(const char* kind, const std::vector<int>& counts, int steps, const std::function<std::string(int)>& make,
+                    bool per_contact = false)
 {
     std::printf(
         "\n| %s | load, us each | first step, us each | step, us each%s | memory, kB each | step against the first row "
         "|\n|---|---|---|---|---|---|\n",
         kind, per_contact ? " contact point" : "");
-    double reference = 0;
-    for (int n = least; n <= most; n *= 10)
+    Growth out{kind, {}};
+    for (const int n : counts)
     {
         const Figures f = measure(make(n), steps);
-        const double each = 1e6 / n, step = f.step * 1e6 / (per_contact ? f.contacts : n);
-        if (reference == 0) reference = step;
-        std::printf("| %d | %.3g | %.3g | %.3g | %.3g | %.2f |\n", n, f.load * each, f.first * each, step, f.memory / 1024 / n,
-                    step / reference);
+        const double each = 1e6 / n;
+        out.points.push_back({double(n), f.load * each, f.step * 1e6 / (per_contact ? f.contacts : n), f.memory / 1024 / n});
+        const GrowthPoint& p = out.points.back();
+        std::printf("| %d | %.3g | %.3g | %.3g | %.3g | %.2f |\n", n, p.load, f.first * each, p.step, p.memory,
+                    p.step / out.points.front().step);
     }
+    return out;
+}
+
+// Picture -------------------------------------------------------------------------------------------------------------
+
+constexpr double kPanelWidth = 430, kPanelHeight = 380, kLeft = 60, kRight = 20, kTop = 36, kBottom = 50, kFoot = 34;  // px
+
+void draw_panel_of(figures::Drawing& drawing, double left, const char* title, const std::vector<Growth>& all, double GrowthPoint::*value)
+{
+    using figures::Scale;
+    std::vector<double> counts, values;
+    for (const Growth& g : all)
+        for (const GrowthPoint& p : g.points) counts.push_back(p.count), values.push_back(p.*value);
+    figures::Panel panel{left + kLeft, kTop, kPanelWidth - kLeft - kRight, kPanelHeight - kTop - kBottom, {}, {}, {}};
+    panel.x = Scale::around(Scale::Kind::Log, counts);
+    panel.y = Scale::around(Scale::Kind::Log, values);
+    drawing.words({panel.left, kTop - 12}, title, {13, {figures::Ink::Role::Text}, figures::Anchor::Start, true});
+    figures::draw_panel(drawing, panel, "elements", "");
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+        const figures::Ink ink = figures::Ink::series(static_cast<int>(i));
+        std::vector<figures::Spot> line;
+        for (const GrowthPoint& p : all[i].points) line.push_back(panel.at(p.count, p.*value));
+        for (const figures::Spot& at : line) drawing.marker(at, static_cast<int>(i) % figures::Drawing::kMarkers, 4, ink, true);
+        drawing.line(std::move(line), {ink, 1.8, false});
+    }
+}
+
+/// Three panels, one line per kind: cost of a step, of loading, and memory, each per element.
+void draw_growth(const std::vector<Growth>& all, const std::string& path)
+{
+    figures::Drawing drawing(3 * kPanelWidth, kPanelHeight + kFoot, "Cost per element against the number of elements");
+    draw_panel_of(drawing, 0, "a step, us per element (heaps: per contact point)", all, &GrowthPoint::step);
+    draw_panel_of(drawing, kPanelWidth, "loading, us per element", all, &GrowthPoint::load);
+    draw_panel_of(drawing, 2 * kPanelWidth, "memory, kB per element", all, &GrowthPoint::memory);
+    double x = kLeft;
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+        const double y = kPanelHeight + 8;
+        drawing.marker({x, y - 4}, static_cast<int>(i) % figures::Drawing::kMarkers, 5, figures::Ink::series(static_cast<int>(i)), true);
+        drawing.words({x + 10, y}, all[i].kind, {12, {figures::Ink::Role::Text}});
+        x += 34 + figures::text_width(all[i].kind, 12);
+    }
+    if (const auto written = drawing.write_png(path); !written) fail(written.error().text());
 }
 
 }  // namespace
 
-int main()
+int main(int argc, char** argv)
 {
     scenes_table();
-    growth_table("free bodies", 100, 10000, 2000, free_bodies);
-    growth_table("cubes in a pile", 100, 10000, 120, pile, true);
-    growth_table("balls in a box", 100, 10000, 120, balls, true);
-    growth_table("gears, Graph", 10, 10000, 2000, [](int n) { return gears("Graph", n); });
-    growth_table("gears, Impulse", 10, 1000, 2000, [](int n) { return gears("Impulse", n); });
-    growth_table("links of a chain", 10, 1000, 2000, hinges);
-    growth_table("scripts", 10, 10000, 2000, scripts);
+    const std::vector<int> tens{10, 100, 1000, 10000}, hundreds{100, 1000, 10000};
+    std::vector<Growth> all;
+    all.push_back(growth_table("free bodies", {100, 1000, 10000, 50000}, 2000, free_bodies));
+    all.push_back(growth_table("cubes in a pile", hundreds, 120, pile, true));
+    all.push_back(growth_table("balls in a box", hundreds, 120, balls, true));
+    all.push_back(growth_table("gears, Graph", tens, 2000, [](int n) { return gears("Graph", n); }));
+    all.push_back(growth_table("gears, Impulse", {10, 100, 1000}, 2000, [](int n) { return gears("Impulse", n); }));
+    all.push_back(growth_table("links of a chain", {10, 100, 1000}, 2000, hinges));
+    all.push_back(growth_table("scripts", tens, 2000, scripts));
+    if (argc > 1) draw_growth(all, argv[1]);
     return 0;
 }
