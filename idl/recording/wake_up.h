@@ -1,4 +1,4 @@
-/// What the thread of a recording sleeps on. Any thread may ring; several rings before it wakes count as one.
+/// What the thread of a recording sleeps on. Any thread may notify it; several notifications before it wakes count as one.
 #pragma once
 
 #include <semaphore.h>

@@ -19,8 +19,8 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     for (std::size_t i = 0; i < guess.size(); ++i) problem.points[i].impulse = guess[i];
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
 
-    const bool looks_for_ends = !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to;
-    if (looks_for_ends)
+    const bool locates_slip_ends = !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to;
+    if (locates_slip_ends)
         out.join(SlipEnds(island, bodies, shafts, method, choices.slop, memory).advance());
     else
     {
@@ -36,7 +36,7 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     }
     for (std::size_t i = 0; i < memory.impacts.size(); ++i)
         if (island.contacts[i].approach > 0) island.contacts[i].impulse += to_world(problem.points[i], memory.impacts[i]);
-    const Verdict moved = part_overlap(island, bodies, shafts, method, choices, memory);
+    const Verdict moved = correct_positions(island, bodies, shafts, method, choices, memory);
     out.iterations += moved.iterations;
     out.fell_back = out.fell_back || moved.fell_back;
     return out;

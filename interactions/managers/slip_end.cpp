@@ -74,7 +74,7 @@ double SlipEnds::first_end(double h)
     const std::size_t n = memory_.problem.points.size();
     bool ends = false;
     for (std::size_t i = 0; i < n; ++i) ends = ends || (slides(i) && slip_left(i) == 0);
-    looked_ = ends;
+    retried_ = ends;
     if (!ends) return h;
     // While all contacts still slide, slip speeds fall linearly, so their zeros can be extrapolated from a shorter part.
     double share = 0.5;
@@ -123,13 +123,13 @@ Verdict SlipEnds::advance()
         const double rest = island_.h - done_;
         keep_speeds();
         Verdict verdict = try_part(rest);
-        tried_ = rest, looked_ = false;
+        tried_ = rest, retried_ = false;
         // Slip smaller than the error that the sweeps have left is not slip.
         no_slip_ = std::max(kNoSlip * island_.size / island_.h, 10 * verdict.residual);
         const double end = cuts < kMostCuts && verdict.converged ? first_end(rest) : rest;
         const bool cut = end < rest * (1 - kSliver);
         const double part = cut ? end : rest;
-        if (looked_)
+        if (retried_)
         {
             take_back();
             problem.scale_impulses(part / tried_);

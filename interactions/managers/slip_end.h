@@ -39,10 +39,10 @@ private:
     Method& method_;
     double slop_;
     StepMemory& memory_;
-    double done_ = 0;      ///< s
-    bool looked_ = false;  ///< first_end has tried other parts since
-    double tried_ = 0;     ///< s, length of the part that was tried last
-    double no_slip_ = 0;   ///< m/s, slower slip counts as none
+    double done_ = 0;       ///< s
+    bool retried_ = false;  ///< first_end has tried other parts since
+    double tried_ = 0;      ///< s, length of the part that was tried last
+    double no_slip_ = 0;    ///< m/s, slower slip counts as none
 };
 
 }  // namespace plab::managers

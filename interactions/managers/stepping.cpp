@@ -188,7 +188,7 @@ bool turns_only(const ConstraintRow& row)
     return std::all_of(row.blocks.begin(), row.blocks.begin() + row.count, [](const RowBlock& b) { return b.linear == Vec3{}; });
 }
 
-Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
+Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
 {
     Problem& problem = memory.problem;
     island.motion->refresh_depths();

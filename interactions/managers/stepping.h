@@ -65,7 +65,7 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
 void set_targets(Problem& problem, const Island& island, double h, double slop, std::span<const double> passing = {});
 /// The same for the rows alone.
 void set_line_targets(Problem& problem, const Island& island, double h);
-Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory);
+Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory);
 /// Moves with the mean of old and new velocities. Where the impulses have not converged it moves with the new velocities only:
 /// these keep gaps from closing, whereas their mean with velocities that lead into an overlap would not.
 void move(const Island& island, const Verdict& found, double h);

@@ -126,7 +126,7 @@ void HuntCrossleyRows::describe(Schema& s)
     s.scratch(loss_of_restitution, "loss_of_restitution", "d v for the last restitution");
 }
 
-void touch_penalty(const StepContext& context, Row row, PenaltyRows& rows, const Bodies& bodies, Wrenches& wrenches, Impact& impact)
+void evaluate_penalty(const StepContext& context, Row row, PenaltyRows& rows, const Bodies& bodies, Wrenches& wrenches, Impact& impact)
 {
     const double k = rows.stiffness[row];
     const bool pulls = rows.pulls[row];

@@ -66,7 +66,7 @@ struct HuntCrossleyRows
 /// Phase::Touch. Handles all contacts of one response that push at this stage. Impact::dt is 1 s, so Contact::impulse receives
 /// the force on b. Contact::stretch is the present extension of the stiction spring on entry, and limited by Coulomb's law on
 /// return.
-void touch_penalty(const StepContext& context, Row row, PenaltyRows& rows, const Bodies& bodies, Wrenches& wrenches, Impact& impact);
+void evaluate_penalty(const StepContext& context, Row row, PenaltyRows& rows, const Bodies& bodies, Wrenches& wrenches, Impact& impact);
 void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& rows, const Bodies& bodies, Wrenches& wrenches,
                          Impact& impact);
 

@@ -28,7 +28,7 @@ PLAB_PLUGIN("response", registrar)
             "simultaneous impacts of several pairs are answered one after the other")
         .source("Mirtich (1996) chapter 3; Stronge (2000) chapter 5; Moreau (1988)");
     registrar.component<PenaltyRows>("Response/Penalty", "contacts are linear springs and dampers, with stiction springs along the surface")
-        .command<touch_penalty>(Phase::Touch, "Response/Touch", "adds the forces of contacts at a solver stage")
+        .command<evaluate_penalty>(Phase::Touch, "Response/Touch", "adds the forces of contacts at a solver stage")
         .command<stored_penalty>(Phase::Potential, "Response/Potential", "energy in the springs")
         .by_force()
         .accuracy("the solver's order in pieces of the contact's duration")

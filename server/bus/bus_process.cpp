@@ -85,29 +85,29 @@ std::string bus_program()
     return error ? "plab-bus" : (self.parent_path() / "plab-bus").string();
 }
 
-BusProcess::BusProcess(PipeMemory memory, Bell bell)
+BusProcess::BusProcess(PipeMemory memory, WakeEvent wake)
     : memory_(std::move(memory)),
-      bell_(std::move(bell)),
+      wake_(std::move(wake)),
       writer_(PipeWriter(memory_.down_state(), memory_.down())),
       reader_(PipeReader(memory_.up_state(), memory_.up()), kMostUp, true)
 {
 }
 
-Result<std::unique_ptr<BusProcess>> BusProcess::start(const std::string& program, const Bell& bell, const StartMessage& start)
+Result<std::unique_ptr<BusProcess>> BusProcess::start(const std::string& program, const WakeEvent& wake, const StartMessage& start)
 {
     auto memory = PipeMemory::make();
     if (!memory) return memory.errors();
-    std::unique_ptr<BusProcess> process(new BusProcess(memory.take(), Bell::make()));
+    std::unique_ptr<BusProcess> process(new BusProcess(memory.take(), WakeEvent::make()));
     std::array<int, 2> ends{-1, -1};
-    if (process->bell_.descriptor() < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends.data()) != 0)
+    if (process->wake_.descriptor() < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends.data()) != 0)
         return reason(std::string("cannot start plab-bus: ") + std::strerror(errno));
     process->lifeline_ = ends[0];
     const Descriptor other_end(ends[1]);
-    const Descriptor memory_copy(copy_above(process->memory_.descriptor())), bell_copy(copy_above(process->bell_.descriptor())),
-        our_bell(copy_above(bell.descriptor())), line(copy_above(other_end.get()));
+    const Descriptor memory_copy(copy_above(process->memory_.descriptor())), wake_copy(copy_above(process->wake_.descriptor())),
+        our_wake(copy_above(wake.descriptor())), line(copy_above(other_end.get()));
     // The pipe is empty, and this fits.
     (void)process->writer_.send(Down::Start, start);
-    const pid_t pid = spawn(program, {memory_copy.get(), bell_copy.get(), our_bell.get(), line.get()});
+    const pid_t pid = spawn(program, {memory_copy.get(), wake_copy.get(), our_wake.get(), line.get()});
     if (pid < 0) return reason("cannot start " + program + ": " + std::strerror(-pid));
     process->pid_ = pid;
     return process;

@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "bus/channel/bell.h"
 #include "bus/channel/messages.h"
 #include "bus/channel/pipe.h"
+#include "bus/channel/wake_event.h"
 
 namespace plab::bus
 {
@@ -19,9 +19,9 @@ class BusProcess
 public:
     static constexpr std::uint64_t kMostUp = (6u << 20);  ///< largest message from plab-bus, in bytes
 
-    /// Starts `program`; it rings `bell` when it has sent something. Call this on the thread that lives as long as the bus: the
+    /// Starts `program`; it notifies `wake` when it has sent something. Call this on the thread that lives as long as the bus: the
     /// process ends with that thread.
-    static Result<std::unique_ptr<BusProcess>> start(const std::string& program, const Bell& bell, const StartMessage& start);
+    static Result<std::unique_ptr<BusProcess>> start(const std::string& program, const WakeEvent& wake, const StartMessage& start);
     /// Ends the process if it is still running, and waits for its end.
     ~BusProcess();
     BusProcess(const BusProcess&) = delete;
@@ -29,7 +29,7 @@ public:
 
     MessageWriter& writer() { return writer_; }
     MessageReader& reader() { return reader_; }
-    void ring() const { bell_.ring(); }
+    void notify() const { wake_.notify(); }
     pid_t pid() const { return pid_; }
     /// A descriptor that becomes readable, with nothing to read, when the process has ended.
     int lifeline() const { return lifeline_; }
@@ -42,10 +42,10 @@ public:
     bool wait(std::chrono::milliseconds longest);
 
 private:
-    BusProcess(PipeMemory memory, Bell bell);
+    BusProcess(PipeMemory memory, WakeEvent wake);
 
     PipeMemory memory_;
-    Bell bell_;  ///< rings plab-bus
+    WakeEvent wake_;  ///< what plab-bus sleeps on
     MessageWriter writer_;
     MessageReader reader_;
     int lifeline_ = -1;

@@ -30,7 +30,7 @@ Result<std::unique_ptr<ServerBus>> ServerBus::open(const BusOptions& options)
     auto lock = wire::NameLock::take(options.domain, options.name);
     if (!lock) return lock.errors();
     std::unique_ptr<ServerBus> bus(new ServerBus(options, lock.take()));
-    if (bus->bell_.descriptor() < 0) return reason("cannot open the bus: no eventfd is available");
+    if (bus->wake_.descriptor() < 0) return reason("cannot open the bus: no eventfd is available");
     auto first = bus->first_.get_future();
     // Signals belong to the daemon: none is delivered on this thread.
     sigset_t all, before;
@@ -48,7 +48,7 @@ Result<std::unique_ptr<ServerBus>> ServerBus::open(const BusOptions& options)
 }
 
 ServerBus::ServerBus(const BusOptions& options, wire::NameLock lock)
-    : options_(options), lock_(std::move(lock)), bell_(Bell::make()), changes_(kChanges)
+    : options_(options), lock_(std::move(lock)), wake_(WakeEvent::make()), changes_(kChanges)
 {
     start_ = {options.name, options.version, options.network_interface, options.domain, getpid(), since_1970_ns()};
 }
@@ -56,7 +56,7 @@ ServerBus::ServerBus(const BusOptions& options, wire::NameLock lock)
 ServerBus::~ServerBus()
 {
     stop_.store(true, std::memory_order_release);
-    bell_.ring_once();
+    wake_.notify_once();
     if (thread_.joinable()) thread_.join();
 }
 
@@ -98,7 +98,7 @@ std::uint64_t ServerBus::joins(publish::Stream stream) const
 void ServerBus::end_frame()
 {
     states_.end_push();
-    bell_.ring_once();
+    wake_.notify_once();
 }
 
 void ServerBus::hash(std::uint64_t run, Tick step, std::uint64_t hash)
@@ -113,7 +113,7 @@ void ServerBus::status(const wire::Server& status)
         push(hashes_, *std::move(record));
     statuses_.begin_push() = status;
     statuses_.end_push();
-    bell_.ring_once();
+    wake_.notify_once();
 }
 
 bool ServerBus::catalogue(publish::CatalogueChange&& change)
@@ -123,14 +123,14 @@ bool ServerBus::catalogue(publish::CatalogueChange&& change)
     changes_waiting_.fetch_add(1, std::memory_order_relaxed);
     changes_.begin_push() = std::move(change);
     changes_.end_push();
-    bell_.ring_once();
+    wake_.notify_once();
     return true;
 }
 
 void ServerBus::answer(wire::Reply&& answer)
 {
     desk_.answer(std::move(answer));
-    bell_.ring_once();
+    wake_.notify_once();
 }
 
 std::string ServerBus::lost() const { return is_lost_.load(std::memory_order_acquire) ? why_lost_ : std::string(); }

@@ -56,7 +56,7 @@ private:
     {
         feed.begin_push() = std::move(record);
         feed.end_push();
-        bell_.ring_once();
+        wake_.notify_once();
     }
     template <class Function>
     auto of(publish::Stream stream, Function function) const;
@@ -93,7 +93,7 @@ private:
     BusOptions options_;
     wire::NameLock lock_;
     StartMessage start_;
-    Bell bell_;  ///< rung by the step thread and by plab-bus
+    WakeEvent wake_;  ///< notified by the step thread and by plab-bus
     std::atomic<bool> stop_{false};
     std::atomic<bool> is_lost_{false};
     std::string why_lost_;  // written once, before is_lost_

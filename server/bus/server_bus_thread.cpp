@@ -55,7 +55,7 @@ void ServerBus::run()
         if (pass(now)) continue;
         const Clock::duration next = process_ ? (process_->stopped() ? kStopped : kBusyLook) : start_at_ - now;
         sleep(std::min<Nanoseconds>(next, kBusyLook));
-        bell_.heard();
+        wake_.acknowledge();
     }
     say_goodbye();
     if (!was_first_received_) first_.set_value(reason("the bus was closed"));
@@ -63,7 +63,7 @@ void ServerBus::run()
 
 void ServerBus::sleep(Nanoseconds longest)
 {
-    std::array<pollfd, 2> watched{pollfd{bell_.descriptor(), POLLIN, 0}, pollfd{process_ ? process_->lifeline() : -1, POLLIN, 0}};
+    std::array<pollfd, 2> watched{pollfd{wake_.descriptor(), POLLIN, 0}, pollfd{process_ ? process_->lifeline() : -1, POLLIN, 0}};
     timespec time{};
     time.tv_sec = longest.count() / 1'000'000'000, time.tv_nsec = longest.count() % 1'000'000'000;
     has_hung_up_ = ppoll(watched.data(), watched.size(), &time, nullptr) > 0 && watched[1].revents != 0;
@@ -88,7 +88,7 @@ void ServerBus::supervise(Clock::time_point now)
         return;
     }
     if (now < start_at_) return;
-    auto started = BusProcess::start(bus_program(), bell_, start_);
+    auto started = BusProcess::start(bus_program(), wake_, start_);
     if (!started)
     {
         end_process("could not be started: " + started.error().reason, now);
@@ -187,7 +187,7 @@ bool ServerBus::receive(Clock::time_point now)
         const auto state = process_->reader().next(message);
         is_broken_ = state == MessageReader::State::Broken;
         if (state == MessageReader::State::Whole) handle(message, now);
-        if (process_->reader().made_room()) process_->ring();
+        if (process_->reader().made_room()) process_->notify();
         if (state == MessageReader::State::Nothing) return false;
     }
     return true;
@@ -277,7 +277,7 @@ bool ServerBus::send(Clock::time_point now)
             is_broken_ = done == Sent::Broken;
             more = more || done == Sent::More;
         });
-    if (to.committed()) process_->ring();
+    if (to.committed()) process_->notify();
     return more && to.ready();
 }
 
@@ -349,10 +349,10 @@ void ServerBus::say_goodbye()
         if (pass(now)) continue;
         if (process_->writer().ready()) break;
         sleep(milliseconds(10));
-        bell_.heard();
+        wake_.acknowledge();
     }
     if (!is_broken_ && process_->writer().ready()) (void)process_->writer().send(Down::End);
-    process_->ring();
+    process_->notify();
     (void)process_->wait(kGoodbye);
     process_.reset();
 }

@@ -2,8 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cerrno>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "daemon/figures_text.h"
@@ -17,74 +15,132 @@ namespace plab::daemon
 namespace
 {
 
-/// Numbers are written by number(), with 17 significant digits; text is escaped as nlohmann does it.
-std::string quoted(const std::string& s) { return nlohmann::json(s).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+/// Keys stay in the order in which they are set. Numbers are the shortest texts that read back to the same bits; what is not
+/// finite becomes null.
+using Json = nlohmann::ordered_json;
 
-std::string array(const Vec3& v) { return "[" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]"; }
-std::string quartiles(const simulation::Spread& s)
-{
-    if (s.samples == 0) return "null";
-    return "[" + number(s.low) + ", " + number(s.median) + ", " + number(s.high) + "]";
-}
-std::string array(const Quat& q) { return "[" + number(q.w) + ", " + number(q.x) + ", " + number(q.y) + ", " + number(q.z) + "]"; }
+Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+Json json_of(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
+Json json_of(const simulation::Spread& s) { return s.samples == 0 ? Json(nullptr) : Json{s.low, s.median, s.high}; }
 
-std::string object_json(const world::World& world, std::uint32_t i)
+Json object_json(const world::World& world, std::uint32_t i)
 {
     const world::Component& c = world.component(i);
-    if (c.facet == Facet::Quantities)
+    const world::HostTables& host = world.host();
+    if (c.facet == Facet::Quantities) return {{"values", host.quantities.value[c.host_index]}};
+    if (c.facet == Facet::Shaft) return {{"angle", host.shafts.angle[c.host_index]}, {"angular_velocity", host.shafts.speed[c.host_index]}};
+    Json out;
+    for (const char* name : {"position", "orientation", "linear_velocity", "angular_velocity"})
     {
-        std::string values;
-        for (const double v : world.host().quantities.value[c.host_index]) values += (values.empty() ? "" : ", ") + number(v);
-        return "{\"values\": [" + values + "]}";
+        const Value value = world::get_hosted(host, Facet::Body, c.host_index, name);
+        if (const auto* v = std::get_if<Vec3>(&value)) out[name] = json_of(*v);
+        if (const auto* q = std::get_if<Quat>(&value)) out[name] = json_of(*q);
     }
-    if (c.facet == Facet::Shaft)
-        return "{\"angle\": " + number(world.host().shafts.angle[c.host_index]) +
-               ", \"angular_velocity\": " + number(world.host().shafts.speed[c.host_index]) + "}";
-    const auto hosted = [&](const char* name) { return world::get_hosted(world.host(), Facet::Body, c.host_index, name); };
-    return "{\"position\": " + array(std::get<Vec3>(hosted("position"))) +
-           ", \"orientation\": " + array(std::get<Quat>(hosted("orientation"))) +
-           ", \"linear_velocity\": " + array(std::get<Vec3>(hosted("linear_velocity"))) +
-           ", \"angular_velocity\": " + array(std::get<Vec3>(hosted("angular_velocity"))) + "}";
+    return out;
 }
 
-std::string interaction_json(const simulation::Simulation& s, std::uint32_t i, const publish::Cost& cost)
+Json interaction_json(const simulation::Simulation& s, std::uint32_t i, const publish::Cost& cost)
 {
     const world::World& world = s.world();
     const publish::ErrorFigure error = publish::own_error(s, i);
-    std::string out = "{\"type\": " + quoted(world.type_of(i)->info.name) + ", \"cost_ns_per_step\": " + number(cost.mean) +
-                      ", \"cost_quartiles_ns\": " + quartiles(cost.last) + ", \"cost_shared_by\": " + std::to_string(cost.shared) +
-                      ", \"work\": " + number(s.stepper().work()[i]) + ", \"made\": " + number(s.stepper().contact_energy()[i].made) +
-                      ", \"lifted\": " + number(s.stepper().contact_energy()[i].lifted) + ", \"error\": " + number(error.value) +
-                      ", \"error_unit\": " + quoted(error.unit) + ", \"error_meaning\": " + quoted(error.meaning);
+    Json out = {{"type", world.type_of(i)->info.name},
+                {"cost_ns_per_step", cost.mean},
+                {"cost_quartiles_ns", json_of(cost.last)},
+                {"cost_shared_by", cost.shared},
+                {"work", s.stepper().work()[i]},
+                {"made", s.stepper().contact_energy()[i].made},
+                {"lifted", s.stepper().contact_energy()[i].lifted},
+                {"error", error.value},
+                {"error_unit", error.unit},
+                {"error_meaning", error.meaning}};
     for (const Field& field : world.table_of(i).schema().fields())
     {
         if (field.kind != FieldKind::Output) continue;
         const Value v = world.get(i, field.name);
-        if (const auto* d = std::get_if<double>(&v)) out += ", " + quoted(field.name) + ": " + number(*d);
-        if (const auto* n = std::get_if<std::int64_t>(&v)) out += ", " + quoted(field.name) + ": " + std::to_string(*n);
+        if (const auto* d = std::get_if<double>(&v)) out[field.name] = *d;
+        if (const auto* n = std::get_if<std::int64_t>(&v)) out[field.name] = *n;
     }
-    return out + (world.component(i).quarantined ? ", \"quarantined\": true}" : "}");
+    if (world.component(i).quarantined) out["quarantined"] = true;
+    return out;
 }
 
 /// A pair in contact: its components, since which step, and the contact ids.
 template <class Pair>
-void append_pair(std::string& out, const simulation::Simulation& s, const Pair& pair, bool resting)
+Json pair_json(const world::World& world, const Pair& pair, bool resting)
 {
-    std::string ids;
-    for (std::uint32_t i = 0; i < pair.count; ++i) ids += (i == 0 ? "" : ", ") + std::to_string(pair.contacts[i].id);
-    out += (out.empty() ? "" : ",") + std::string("\n    {\"detector\": ") + quoted(s.world().id_of(pair.detector)) +
-           ", \"a\": " + quoted(s.world().id_of(pair.a)) + ", \"b\": " + quoted(s.world().id_of(pair.b)) +
-           ", \"since\": " + std::to_string(pair.since) + ", \"resting\": " + (resting ? "true" : "false") + ", \"ids\": [" + ids + "]}";
+    Json ids = Json::array();
+    for (std::uint32_t i = 0; i < pair.count; ++i) ids.push_back(pair.contacts[i].id);
+    return {{"detector", world.id_of(pair.detector)},
+            {"a", world.id_of(pair.a)},
+            {"b", world.id_of(pair.b)},
+            {"since", pair.since},
+            {"resting", resting},
+            {"ids", std::move(ids)}};
 }
 
 /// Pairs with rigid contact first, then those with contact forces; the latter never rest.
-std::string contacts_json(const simulation::Simulation& s)
+Json contacts_json(const simulation::Simulation& s)
 {
-    std::string out;
+    Json out = Json::array();
     for (const simulation::PairState& pair : s.stepper().contacts().pairs())
-        if (!pair.ahead) append_pair(out, s, pair, pair.resting);
-    for (const simulation::ForcePair& pair : s.stepper().contacts().force_pairs()) append_pair(out, s, pair, false);
+        if (!pair.ahead) out.push_back(pair_json(s.world(), pair, pair.resting));
+    for (const simulation::ForcePair& pair : s.stepper().contacts().force_pairs()) out.push_back(pair_json(s.world(), pair, false));
     return out;
+}
+
+Json ledger_json(const simulation::Simulation& s, const simulation::Totals& totals)
+{
+    return {{"kinetic", totals.kinetic},
+            {"stored", totals.stored},
+            {"work", totals.work},
+            {"kinetic_at_start", s.kinetic_at_start()},
+            {"work_of_requests", s.stepper().requests_work()},
+            {"work_of_removed", s.stepper().departed_work()},
+            {"unexplained", publish::unexplained(s, totals)}};
+}
+
+Json totals_json(const simulation::Simulation& s)
+{
+    const simulation::Totals totals = s.totals();
+    const simulation::CostBook& cost = s.stepper().cost();
+    return {{"time", s.time()},
+            {"step", s.tick()},
+            {"hash", model::hash_text(s.state_hash())},
+            {"energy", totals.kinetic + totals.stored},
+            {"momentum", json_of(totals.momentum)},
+            {"angular_momentum", json_of(totals.angular_momentum)},
+            {"shaft_momentum", totals.shaft_momentum},
+            {"ledger", ledger_json(s, totals)},
+            {"contacts", contacts_json(s)},
+            {"cost_ns_per_step", cost.mean()},
+            {"cost_quartiles_ns", json_of(cost.step())},
+            {"cost_of_server_ns_per_step", cost.mean_of_host()}};
+}
+
+/// Each member on a line of its own, and each object, interaction and contact, so that line tools can find and compare them.
+std::string in_lines(const Json& document)
+{
+    const auto text = [](const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); };
+    std::string out = "{";
+    for (const auto& [key, value] : document.items())
+    {
+        out += (out.size() == 1 ? "\n  " : ",\n  ") + text(key) + ": ";
+        const bool is_list = value.is_array() && !value.empty() && value.front().is_object();
+        const bool is_map = value.is_object() && !value.empty() && value.front().is_object();
+        if (!is_list && !is_map)
+        {
+            out += text(value);
+            continue;
+        }
+        const char* separator = is_list ? "[\n    " : "{\n    ";
+        for (const auto& [name, member] : value.items())
+        {
+            out += separator + (is_map ? text(name) + ": " : std::string()) + text(member);
+            separator = ",\n    ";
+        }
+        out += is_list ? "\n  ]" : "\n  }";
+    }
+    return out + "\n}\n";
 }
 
 }  // namespace
@@ -92,34 +148,20 @@ std::string contacts_json(const simulation::Simulation& s)
 std::string end_state_json(const simulation::Simulation& s)
 {
     const world::World& world = s.world();
-    const simulation::Totals totals = s.totals();
     const publish::Costs costs(s);
-    std::string objects, interactions;
+    Json objects = Json::object(), interactions = Json::object();
+    // Pairs are appended: looking for the key, as `[]` does in an ordered object, would make this quadratic.
+    const auto append = [&](Json& to, std::uint32_t i, Json value)
+    { to.get_ref<Json::object_t&>().Container::emplace_back(world.id_of(i), std::move(value)); };
     for (const std::uint32_t i : world.in_id_order())
     {
-        if (is_shown(world.component(i)))
-            objects += (objects.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + object_json(world, i);
-        if (is_listed(world, i))
-            interactions += (interactions.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " +
-                            interaction_json(s, i, costs.of(i));
+        if (is_shown(world.component(i))) append(objects, i, object_json(world, i));
+        if (is_listed(world, i)) append(interactions, i, interaction_json(s, i, costs.of(i)));
     }
-    const simulation::CostBook& cost = s.stepper().cost();
-    std::string out = "{\n  \"time\": " + number(s.time()) + ",\n  \"step\": " + std::to_string(s.tick());
-    out += ",\n  \"hash\": " + quoted(model::hash_text(s.state_hash()));
-    out += ",\n  \"energy\": " + number(totals.kinetic + totals.stored);
-    out += ",\n  \"momentum\": " + array(totals.momentum);
-    out += ",\n  \"angular_momentum\": " + array(totals.angular_momentum);
-    out += ",\n  \"shaft_momentum\": " + number(totals.shaft_momentum);
-    out += ",\n  \"ledger\": {\"kinetic\": " + number(totals.kinetic) + ", \"stored\": " + number(totals.stored) +
-           ", \"work\": " + number(totals.work) + ", \"kinetic_at_start\": " + number(s.kinetic_at_start()) +
-           ", \"work_of_requests\": " + number(s.stepper().requests_work()) +
-           ", \"work_of_removed\": " + number(s.stepper().departed_work()) +
-           ", \"unexplained\": " + number(publish::unexplained(s, totals)) + "}";
-    out += ",\n  \"contacts\": [" + contacts_json(s) + "\n  ]";
-    out += ",\n  \"cost_ns_per_step\": " + number(cost.mean()) + ",\n  \"cost_quartiles_ns\": " + quartiles(cost.step()) +
-           ",\n  \"cost_of_server_ns_per_step\": " + number(cost.mean_of_host());
-    out += ",\n  \"objects\": {" + objects + "\n  },\n  \"interactions\": {" + interactions + "\n  }\n}\n";
-    return out;
+    Json out = totals_json(s);
+    out["objects"] = std::move(objects);
+    out["interactions"] = std::move(interactions);
+    return in_lines(out);
 }
 
 bool write_end_state(const simulation::Simulation& s, const std::string& file)

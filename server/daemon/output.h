@@ -8,7 +8,7 @@
 namespace plab::daemon
 {
 
-/// The state of the scene as JSON; numbers with 17 significant digits. Keys are documented in server/docs/output.md.
+/// The state of the scene as JSON; numbers read back to the same bits. Keys are documented in server/docs/output.md.
 std::string end_state_json(const simulation::Simulation& simulation);
 
 /// Writes it to a file; "-" is standard output. False if that failed; the log contains the reason.

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "publish/catalogue_tracker.h"
-#include "publish/happenings.h"
 #include "publish/observer.h"
 #include "publish/pace.h"
 #include "publish/sampler.h"
+#include "publish/scene_events.h"
 #include "simulation/simulation.h"
 
 namespace plab::publish

@@ -1,13 +1,12 @@
 #include "control/playback/server_facade.h"
 
-#include <cstring>
+#include "idl/samples.h"
 
 namespace plab::playback
 {
 namespace
 {
 
-/// DDS only reads the sample, although its types have no const.
 constexpr dds_return_t kMostAtOnce = 256;  ///< a flood of requests must not stop the playback
 
 template <class T>
@@ -37,26 +36,32 @@ Result<void> ServerFacade::join(const wire::Entity& participant, const wire::Ent
     return take_into(status_, wire::DataWriter<plab_v2_Server>::make(participant, publisher));
 }
 
-Result<void> ServerFacade::use(recording::ByteView status) { return decoder_.decode(status, *recorded_); }
+Result<void> ServerFacade::use(recording::ByteView status)
+{
+    recording::Sample<plab_v2_Server> sample;
+    if (auto decoded = decoder_.decode(status, sample); !decoded) return decoded;
+    wire::read_sample(*sample, recorded_);
+    return {};
+}
 
 void ServerFacade::send(const PlaybackState& s)
 {
-    plab_v2_Server out = **recorded_;  // its texts and sequences still belong to the sample
-    out.name = wire::text(identity_.name), out.version = wire::text(identity_.version), out.host = wire::text(identity_.host);
-    out.process = identity_.process, out.started_ns = identity_.started_ns;
+    wire::Server out = recorded_;
+    wire::sign(out, identity_);
     out.run = s.run, out.step = s.step, out.time = s.time;
     out.paused = s.is_paused, out.rate_asked = s.rate_asked, out.rate_reached = s.rate_reached;
     if (out.last_event > 0) out.last_event += s.event_shift;
     if (out.last_collision > 0) out.last_collision += s.collision_shift;
     out.requests_refused += refused_;
-    out.playback = wire::text(file_);
-    out.overload = wire::text("");
+    out.playback = file_;
+    out.overload.clear();
     // These fields only applied to the recorded server: here no step takes too long, nothing can be restored, and nothing is
     // recorded.
     out.rewind_from = -1;
-    out.snapshots = {};
+    out.snapshots.clear();
     out.recording = {};
-    (void)status_.write(out);
+    wire::SampleView<plab_v2_Server> view;
+    (void)status_.write(view.of(out));
 }
 
 void ServerFacade::answer(const PlaybackState& state)
@@ -71,16 +76,14 @@ void ServerFacade::answer(const PlaybackState& state)
 
 void ServerFacade::refuse(const plab_v2_Request& request, const PlaybackState& state)
 {
-    const std::string why = "this is a playback of " + file_ + ": it cannot be changed";
-    char* reasons[] = {wire::text(why)};
-    plab_v2_Reply reply{};
-    std::memcpy(reply.client, request.client, sizeof reply.client);
-    reply.number = request.number;
-    reply.outcome = wire::text("refused");
-    reply.reasons = {1, 1, reasons, false};
-    reply.run = state.run, reply.revision = (*recorded_)->revision;
+    wire::Reply reply;
+    wire::read_sample(request.client, reply.client);
+    reply.number = request.number, reply.outcome = "refused";
+    reply.reasons = {"this is a playback of " + file_ + ": it cannot be changed"};
+    reply.run = state.run, reply.revision = recorded_.revision;
     reply.step = state.step, reply.time = state.time;
-    (void)replies_.write(reply);
+    wire::SampleView<plab_v2_Reply> view;
+    (void)replies_.write(view.of(reply));
     ++refused_;
 }
 

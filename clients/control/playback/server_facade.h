@@ -55,7 +55,7 @@ private:
     wire::Identity identity_;
     std::string file_;
     recording::Decoder decoder_;
-    std::unique_ptr<recording::Sample<plab_v2_Server>> recorded_ = std::make_unique<recording::Sample<plab_v2_Server>>();
+    wire::Server recorded_;  ///< the latest status of the recorded server
     wire::DataWriter<plab_v2_Server> status_;
     wire::DataReader<plab_v2_Server> others_;
     wire::DataReader<plab_v2_Request> requests_;

@@ -8,7 +8,7 @@ namespace plab::bus
 bool MessageWriter::flush()
 {
     if (rest_.empty()) return true;
-    // Announce the need for room before checking: room that appears after the check then rings the bell.
+    // Announce the need for room before checking: room that appears after the check then sets the wake event.
     pipe_.ask_for_room();
     const auto room = pipe_.room();
     if (!room) return false;

@@ -20,7 +20,7 @@ struct PipeState
 {
     alignas(64) std::atomic<std::uint64_t> written{0};  ///< total bytes written; owned by the producer
     alignas(64) std::atomic<std::uint64_t> read{0};     ///< total bytes read; owned by the consumer
-    std::atomic<std::uint32_t> wants_room{0};           ///< the producer has more data: ring when there is room
+    std::atomic<std::uint32_t> wants_room{0};           ///< the producer has more data: notify when there is room
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std::uint32_t>::is_always_lock_free);
 

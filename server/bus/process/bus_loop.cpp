@@ -16,12 +16,12 @@ constexpr std::chrono::seconds kSecond(1);
 constexpr std::chrono::milliseconds kRetry(10), kGoodbye(200);
 constexpr int kMostMessages = 256;  ///< messages of plabd before requests get their turn
 
-/// A DDS listener, which sets a flag and rings the bell.
+/// A DDS listener, which sets a flag and the wake event.
 struct Mark
 {
     std::atomic<bool>* mark;
-    Bell* bell;
-    void set() const { mark->store(true, std::memory_order_release), bell->ring_once(); }
+    WakeEvent* wake;
+    void set() const { mark->store(true, std::memory_order_release), wake->notify_once(); }
 };
 
 struct ListenerDeleter
@@ -38,9 +38,10 @@ wire::Identity identity_of(const StartMessage& start)
 
 }  // namespace
 
-BusLoop::BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const Bell& server, int lifeline, const StartMessage& start)
+BusLoop::BusLoop(MessageReader reader, MessageWriter writer, WakeEvent& wake, const WakeEvent& server, int lifeline,
+                 const StartMessage& start)
     : start_(start),
-      bell_(&bell),
+      wake_(&wake),
       server_(&server),
       lifeline_(lifeline),
       reader_(std::move(reader)),
@@ -76,7 +77,7 @@ bool BusLoop::join()
         dds_log_.gather(), report(Up::Joined);
     else
         report(Up::Failed, entered.error().text());
-    server_->ring();
+    server_->notify();
     return entered.ok();
 }
 
@@ -91,13 +92,13 @@ Result<void> BusLoop::enter()
     (void)dds_lset_publication_matched_arg(
         listener.get(),
         [](dds_entity_t, const dds_publication_matched_status_t, void* self) {
-            Mark{&static_cast<BusLoop*>(self)->matched_, static_cast<BusLoop*>(self)->bell_}.set();
+            Mark{&static_cast<BusLoop*>(self)->matched_, static_cast<BusLoop*>(self)->wake_}.set();
         },
         this, false);
     (void)dds_lset_data_available_arg(
         listener.get(),
         [](dds_entity_t, void* self) {
-            Mark{&static_cast<BusLoop*>(self)->arrived_, static_cast<BusLoop*>(self)->bell_}.set();
+            Mark{&static_cast<BusLoop*>(self)->arrived_, static_cast<BusLoop*>(self)->wake_}.set();
         },
         this, false);
     if (const auto code = dds_set_listener(participant_.get(), listener.get()); code < 0)
@@ -133,7 +134,7 @@ bool BusLoop::run()
     {
         const Clock::time_point now = Clock::now();
         const bool more = pass(now);
-        if (writer_.committed()) server_->ring();
+        if (writer_.committed()) server_->notify();
         if (!more && !is_over_ && !sleep(now)) return false;
     }
     say_goodbye();
@@ -147,9 +148,9 @@ bool BusLoop::sleep(Clock::time_point now)
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(longest).count();
     timespec time{};
     time.tv_sec = ns / 1'000'000'000, time.tv_nsec = ns % 1'000'000'000;
-    std::array<pollfd, 2> watched{pollfd{bell_->descriptor(), POLLIN, 0}, pollfd{lifeline_, POLLIN, 0}};
+    std::array<pollfd, 2> watched{pollfd{wake_->descriptor(), POLLIN, 0}, pollfd{lifeline_, POLLIN, 0}};
     (void)ppoll(watched.data(), watched.size(), &time, nullptr);
-    bell_->heard();
+    wake_->acknowledge();
     return watched[1].revents == 0;
 }
 
@@ -189,7 +190,7 @@ bool BusLoop::receive()
     for (int i = 0; i < kMostMessages && !is_over_; ++i)
     {
         const auto state = reader_.next(message);
-        if (reader_.made_room()) server_->ring();
+        if (reader_.made_room()) server_->notify();
         if (state == MessageReader::State::Nothing) return false;
         // plabd is of the same build: a message that cannot be decoded means that this process cannot continue.
         if (state == MessageReader::State::Broken || !handle(message)) std::abort();

@@ -8,8 +8,8 @@
 #include <set>
 #include <string>
 
-#include "bus/channel/bell.h"
 #include "bus/channel/messages.h"
+#include "bus/channel/wake_event.h"
 #include "bus/process/catalogue_writer.h"
 #include "bus/process/dds_log.h"
 #include "bus/process/outbox.h"
@@ -21,12 +21,12 @@
 namespace plab::bus
 {
 
-/// Uses one thread; DDS has its own threads, whose listeners set a flag and ring the bell.
+/// Uses one thread; DDS has its own threads, whose listeners set a flag and the wake event.
 class BusLoop
 {
 public:
     /// Uses the descriptors of channel/inherited.h.
-    BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const Bell& server, int lifeline, const StartMessage& start);
+    BusLoop(MessageReader reader, MessageWriter writer, WakeEvent& wake, const WakeEvent& server, int lifeline, const StartMessage& start);
     /// False if it cannot join the domain; the reason goes to plabd.
     bool join();
     /// Runs until plabd announces the end. False if plabd has ended without an announcement: then no farewell is sent to
@@ -57,8 +57,8 @@ private:
     bool sleep(Clock::time_point now);
 
     StartMessage start_;
-    Bell* bell_;
-    const Bell* server_;
+    WakeEvent* wake_;
+    const WakeEvent* server_;
     int lifeline_;
     MessageReader reader_;
     MessageWriter writer_;
@@ -67,7 +67,7 @@ private:
     bool is_over_ = false;
 
     DdsLog dds_log_;
-    // Declared before all entities that depend on it; listeners ring until the participant is deleted.
+    // Declared before all entities that depend on it; listeners notify until the participant is deleted.
     wire::Participant participant_;
     wire::Entity publisher_, subscriber_;
     Stream<plab_v2_Frame, wire::Frame> states_;

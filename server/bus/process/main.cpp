@@ -16,7 +16,7 @@ namespace
 
 using namespace plab::bus;
 
-int run(const PipeMemory& memory, Bell& bell, const Bell& server)
+int run(const PipeMemory& memory, WakeEvent& wake, const WakeEvent& server)
 {
     // plabd wrote this before it started this process.
     MessageReader reader(PipeReader(memory.down_state(), memory.down()), ~std::uint64_t{0}, false);
@@ -26,7 +26,7 @@ int run(const PipeMemory& memory, Bell& bell, const Bell& server)
     Decoder decoder(message.bytes);
     decoder.get(start);
     if (!decoder.whole()) return 1;
-    BusLoop loop(reader, MessageWriter(PipeWriter(memory.up_state(), memory.up())), bell, server, kInheritedLifeline, start);
+    BusLoop loop(reader, MessageWriter(PipeWriter(memory.up_state(), memory.up())), wake, server, kInheritedLifeline, start);
     if (!loop.join()) return 1;
     // Set after the threads of DDS exist, which must be scheduled at once. Batch: waking this thread does not preempt the step
     // thread on the same core.
@@ -66,7 +66,7 @@ int main(int argc, char** argv)
         return std::fprintf(stderr, "plab-bus is started by plabd only%s\n", why.c_str()), 2;
     }
     for (int fd = kInheritedFirst; fd < kInheritedEnd; ++fd) (void)fcntl(fd, F_SETFD, FD_CLOEXEC);
-    Bell bell(kInheritedBell);
-    const Bell server(kInheritedServer);
-    return run(*memory, bell, server);
+    WakeEvent wake(kInheritedWake);
+    const WakeEvent server(kInheritedServer);
+    return run(*memory, wake, server);
 }

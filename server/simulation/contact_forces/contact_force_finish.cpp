@@ -50,22 +50,22 @@ void ContactForces::run_outputs(std::vector<FoundContact>& found)
     }
 }
 
-void ContactForces::emit_happenings()
+void ContactForces::emit_events()
 {
     const world::World& world = step_.world;
-    const auto key = [&](const ForceHappening& h)
+    const auto key = [&](const ContactForceEvent& h)
     { return std::tuple(h.time, world.rank(h.detector), world.rank(h.a), world.rank(h.b), h.kind); };
-    std::stable_sort(live_.happenings.begin(), live_.happenings.end(),
-                     [&](const ForceHappening& x, const ForceHappening& y) { return key(x) < key(y); });
-    for (const ForceHappening& h : live_.happenings)
+    std::stable_sort(live_.events.begin(), live_.events.end(),
+                     [&](const ContactForceEvent& x, const ContactForceEvent& y) { return key(x) < key(y); });
+    for (const ContactForceEvent& h : live_.events)
     {
         constexpr const char* kNames[] = {"contact.begin", "contact.impact", "contact.end"};
         Event e;
         e.time = h.time, e.kind = kNames[static_cast<int>(h.kind)], e.component = h.detector, e.a = h.a, e.b = h.b;
-        if (h.kind != ForceHappening::Kind::End) e.contact = {h.point, h.normal, h.impulse, h.depth};
+        if (h.kind != ContactForceEvent::Kind::End) e.contact = {h.point, h.normal, h.impulse, h.depth};
         step_.emit(std::move(e));
     }
-    live_.happenings.clear();
+    live_.events.clear();
 }
 
 void ContactForces::emit_stiff()
@@ -84,7 +84,7 @@ void ContactForces::finish_step(std::vector<FoundContact>& found)
 {
     report(found);
     run_outputs(found);
-    emit_happenings();
+    emit_events();
     emit_stiff();
     contacts_.cache().force_pairs() = live_.pairs;
 }

@@ -130,7 +130,7 @@ void ContactForces::begin_contact(const Seen& seen, double time)
     if (overlap_is_old && c.depth > 0) known.rest_depth = known.open_depth = c.depth;
     expect(known, seen.found, known.approach);
     (old ? *old : pair->contacts[pair->count++]) = known;
-    if (fresh) report(ForceHappening::Kind::Begin, *pair, c, {}, time);
+    if (fresh) report(ContactForceEvent::Kind::Begin, *pair, c, {}, time);
 }
 
 /// Ends a contact point whose force is over. If it still overlaps because of a swap, it becomes dormant instead.
@@ -178,15 +178,15 @@ void ContactForces::end_contact(ForcePair& pair, const Contact& at, double time)
     *known = pair.contacts[--pair.count];
 }
 
-void ContactForces::report(ForceHappening::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time)
+void ContactForces::report(ContactForceEvent::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time)
 {
-    live_.happenings.push_back({kind, time, pair.detector, pair.a, pair.b, at.point, at.normal, impulse, at.depth});
+    live_.events.push_back({kind, time, pair.detector, pair.a, pair.b, at.point, at.normal, impulse, at.depth});
 }
 
 void ContactForces::report_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time)
 {
     if (std::exchange(contact.reported, true)) return;
-    report(ForceHappening::Kind::Impact, pair, at, contact.impulse, time);
+    report(ContactForceEvent::Kind::Impact, pair, at, contact.impulse, time);
 }
 
 void ContactForces::drop_ended(double time)
@@ -196,7 +196,7 @@ void ContactForces::drop_ended(double time)
         if (p.count > 0) return false;
         Contact at;
         at.normal = p.normal;
-        report(ForceHappening::Kind::End, p, at, {}, time);
+        report(ContactForceEvent::Kind::End, p, at, {}, time);
         return true;
     };
     std::erase_if(live_.pairs, over);

@@ -66,10 +66,10 @@ bool ContactForces::involves(Ref a, Ref b, std::uint32_t group) const { return s
 void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32_t group)
 {
     const auto here = [&](const auto& x) { return involves(x.a, x.b, group); };
-    if (from.pairs.empty() && to.pairs.empty() && from.happenings.empty() && to.happenings.empty()) return;
-    std::erase_if(to.pairs, here), std::erase_if(to.happenings, here);
+    if (from.pairs.empty() && to.pairs.empty() && from.events.empty() && to.events.empty()) return;
+    std::erase_if(to.pairs, here), std::erase_if(to.events, here);
     std::copy_if(from.pairs.begin(), from.pairs.end(), std::back_inserter(to.pairs), here);
-    std::copy_if(from.happenings.begin(), from.happenings.end(), std::back_inserter(to.happenings), here);
+    std::copy_if(from.events.begin(), from.events.end(), std::back_inserter(to.events), here);
     const world::World& world = step_.world;
     const auto key = [&](const ForcePair& p) { return std::tuple(world.rank(p.detector), world.rank(p.a), world.rank(p.b)); };
     std::sort(to.pairs.begin(), to.pairs.end(), [&](const ForcePair& x, const ForcePair& y) { return key(x) < key(y); });
@@ -80,7 +80,7 @@ void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32
 void ContactForces::begin_step()
 {
     live_.pairs = contacts_.cache().force_pairs();
-    live_.happenings.clear();
+    live_.events.clear();
     near_.clear();
     pieces_needed_ = 0, stiff_ = kNoIndex;
     surfaces_.clear();

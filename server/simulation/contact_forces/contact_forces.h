@@ -1,7 +1,7 @@
 /// Force contacts (responses `by_force`): springs and dampers such as Response/Penalty, integrated by the solver of the bodies.
 ///
-/// A contact force has a kink where the contact begins: it is zero before and rises after it. An integrator of order p keeps its order only if the
-/// right-hand side is smooth over each of its steps. Two measures achieve that:
+/// A contact force has a kink where the contact begins: it is zero before and rises after it. An integrator of order p keeps its order only
+/// if the right-hand side is smooth over each of its steps. Two measures achieve that:
 ///
 /// 1. Switching events. The step is divided into pieces, and within a piece the set of contact points that push is fixed. After each piece
 ///    the contacts are detected: if a point has begun to overlap, a pushing point has opened, or a damper has become slack (it would have
@@ -198,7 +198,7 @@ private:
     void expect(ForceContact& known, const FoundContact& at, double closing);
     void list_gone(const std::vector<Seen>& seen);
     void end_gone(double time);
-    void report(ForceHappening::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time);
+    void report(ContactForceEvent::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time);
     void report_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time);
 
     // contact_force_advance.cpp
@@ -223,7 +223,7 @@ private:
     // contact_force_finish.cpp
     void report(std::vector<FoundContact>& found);
     void run_outputs(std::vector<FoundContact>& found);
-    void emit_happenings();
+    void emit_events();
     void emit_stiff();
 
     StepState& step_;

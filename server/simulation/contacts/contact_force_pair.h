@@ -77,7 +77,7 @@ struct ForcePair : ForcePairHead
 };
 
 /// An event to be emitted when the step is over, unless its time is rewound.
-struct ForceHappening
+struct ContactForceEvent
 {
     enum class Kind : std::uint8_t
     {
@@ -97,7 +97,7 @@ struct ForceHappening
 struct ForceState
 {
     std::vector<ForcePair> pairs;  ///< by detector, a and b in id order
-    std::vector<ForceHappening> happenings;
+    std::vector<ContactForceEvent> events;
 };
 
 }  // namespace plab::simulation

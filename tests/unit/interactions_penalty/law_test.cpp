@@ -110,15 +110,15 @@ TEST_CASE("a linear contact pushes with k depth + c speed, and stores k depth^2 
     rows.stiffness[0] = 1e4, rows.damping[0] = 7, rows.damping_ratio[0] = 0.1;
     b.contact.depth = 2e-3, b.contact.point = {0, 0, 0};
     b.bodies.velocity[0] = {0, 0, -0.5};
-    const Vec3 f = b.push<touch_penalty>(rows);
+    const Vec3 f = b.push<evaluate_penalty>(rows);
     CHECK(f.z == doctest::Approx(1e4 * 2e-3 + (7 + 0.2 * 100) * 0.5).epsilon(1e-14));
     CHECK(rows.surface.stored[0] == doctest::Approx(0.5 * 1e4 * 4e-6).epsilon(1e-14));
     b.bodies.velocity[0] = {0, 0, 10};
-    CHECK(b.push<touch_penalty>(rows).z < 0);
+    CHECK(b.push<evaluate_penalty>(rows).z < 0);
     rows.pulls[0] = false;
-    CHECK(b.push<touch_penalty>(rows).z == 0);
+    CHECK(b.push<evaluate_penalty>(rows).z == 0);
     b.bodies.velocity[0] = {}, b.contact.rest_depth = 2e-3, b.contact.preload = 9.81;
-    CHECK(b.push<touch_penalty>(rows).z == 9.81);
+    CHECK(b.push<evaluate_penalty>(rows).z == 9.81);
 }
 
 TEST_CASE("a Hertzian contact pushes with k depth^1.5 and never pulls")
@@ -149,11 +149,11 @@ TEST_CASE("stiction springs stay in Coulomb's cone, equally in all directions")
         const double angle = i * std::numbers::pi / 6;
         const Vec3 along{std::cos(angle), std::sin(angle), 0};
         b.contact.stretch = along * 4e-4;
-        const Vec3 held = b.push<touch_penalty>(rows);
+        const Vec3 held = b.push<evaluate_penalty>(rows);
         CHECK(length(Vec3{held.x, held.y, 0} - along * 4.0) < 1e-14);
         CHECK(b.out.stretch == b.contact.stretch);
         b.contact.stretch = along * 7e-4;
-        const Vec3 slips = b.push<touch_penalty>(rows);
+        const Vec3 slips = b.push<evaluate_penalty>(rows);
         CHECK(length(Vec3{slips.x, slips.y, 0} - along * 5.0) < 1e-14);
         CHECK(length(b.out.stretch - along * 5e-4) < 1e-18);
     }

@@ -1,4 +1,4 @@
-#include "publish/happenings.h"
+#include "publish/scene_events.h"
 
 #include <string_view>
 
