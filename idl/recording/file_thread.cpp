@@ -145,7 +145,7 @@ Result<void> FileThread::close(std::uint64_t messages, std::uint64_t bytes)
 {
     if (closed_) return *closed_;
     is_stopped_.store(true, std::memory_order_release);
-    wake_up_.ring();
+    wake_up_.notify();
     if (thread_.joinable()) thread_.join();
     note(last_log_time_, messages, bytes);
     // Data that waits since the disk failed may still be written, and a gap is noted only by a disk that works.

@@ -72,7 +72,7 @@ public:
 
     void start();
     /// Something waits. Never blocks.
-    void wake() { wake_up_.ring(); }
+    void wake() { wake_up_.notify(); }
     /// On the writer's thread: an entry was written, before which `messages` with `bytes` found no room.
     void note(std::uint64_t log_time, std::uint64_t messages, std::uint64_t bytes);
     /// Writes what waits, notes what found no room since, and completes the file. Later calls return the same.

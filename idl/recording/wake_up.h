@@ -18,12 +18,12 @@ public:
     WakeUp(const WakeUp&) = delete;
     WakeUp& operator=(const WakeUp&) = delete;
 
-    /// Never waits. Costs a system call only for the first ring since the sleeper woke.
-    void ring()
+    /// Never waits. Costs a system call only for the first call since the sleeper woke.
+    void notify()
     {
         if (!is_signalled_.exchange(true, std::memory_order_acq_rel)) (void)sem_post(&semaphore_);
     }
-    /// Sleeps until a ring, or for this time. Whatever was written before the ring is visible to what follows the return.
+    /// Sleeps until a notification, or for this time. Whatever was written before it is visible to what follows the return.
     void sleep(std::chrono::nanoseconds longest)
     {
         timespec end{};
