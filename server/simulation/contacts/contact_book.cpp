@@ -181,6 +181,11 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
 
 KnownContact& ContactBook::known_contact(const FoundContact& f) { return cache_.contact_of(*find_pair(f), f.contact.feature); }
 
+void ContactBook::warm_start(std::span<FoundContact> contacts, bool trial)
+{
+    for (FoundContact& f : contacts) f.contact.impulse = known_contact(f).warm_start(trial);
+}
+
 PairState* ContactBook::find_pair(const FoundContact& f)
 {
     return cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, step_.world);

@@ -60,6 +60,8 @@ public:
     void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h = 0);
     /// The stored state of a contact of a known pair.
     KnownContact& known_contact(const FoundContact& found);
+    /// Gives contacts of known pairs the impulses that an advance starts from (KnownContact::warm_start).
+    void warm_start(std::span<FoundContact> contacts, bool trial);
     PairState* find_pair(const FoundContact& found);
     bool is_of_pair(const FoundContact& found, const PairState& pair) const;
     /// Index at which the contacts of a pair begin in found(), or would begin; `from`: where those of the previous pair end.

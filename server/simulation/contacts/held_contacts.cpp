@@ -90,14 +90,14 @@ void HeldIslands::pass_on(PairState& pair, std::uint32_t known, std::span<const 
 
 // Contacts ------------------------------------------------------------------------------------------------------------
 
-void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law)
+void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law, bool trial)
 {
     const world::HostTables& host = step_.world.host();
     const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
     const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
     f.contact.friction = (own ? own : &law)->friction, f.contact.restitution = (own ? own : &law)->restitution;
-    const KnownContact& known = contacts_.cache().contact_of(pair, f.contact.feature);
-    f.contact.id = known.id, f.contact.impulse = known.impulse;
+    KnownContact& known = contacts_.cache().contact_of(pair, f.contact.feature);
+    f.contact.id = known.id, f.contact.impulse = known.warm_start(trial);
     f.contact.depth -= known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
     f.contact.resting = true;
 }
@@ -105,7 +105,7 @@ void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law)
 /// Collects the contacts of the held groups at the present state. Those of detectors that persist are known if nothing has moved since the
 /// last detection. Contacts of the other detectors are detected anew, because they depend on which pairs have come to rest in the meantime:
 /// this way the result is a function of the state alone, whatever happened before.
-void HeldIslands::collect_contacts(double from, double h)
+void HeldIslands::collect_contacts(double from, double h, bool trial)
 {
     touching_.clear(), pair_of_contact_.clear();
     const auto& detectors = contacts_.detectors();
@@ -114,7 +114,11 @@ void HeldIslands::collect_contacts(double from, double h)
     { return contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world, near); };
     const bool known = from == 0 && is_current();
     const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); });
-    if (!known || locates) contacts_.touching_pairs_of(held_, touching_, h);
+    if (!known || locates)
+    {
+        contacts_.touching_pairs_of(held_, touching_, h);
+        contacts_.warm_start(touching_, trial);
+    }
     if (!known || !std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); }))
     {
         for (const FoundContact& f : touching_) pair_of_contact_.push_back(pair_of(f));
@@ -122,11 +126,11 @@ void HeldIslands::collect_contacts(double from, double h)
     }
     std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
     for (const FoundContact& f : touching_) pair_of_contact_.push_back(pair_of(f));
-    add_known_contacts();
+    add_known_contacts(trial);
 }
 
 /// Adds what the last detection found of persistent pairs. Both lists are sorted by detector, a and b.
-void HeldIslands::add_known_contacts()
+void HeldIslands::add_known_contacts(bool trial)
 {
     std::size_t at = 0;
     std::uint32_t law_detector = kNoIndex;
@@ -139,7 +143,7 @@ void HeldIslands::add_known_contacts()
             if (!pair.resting || !contacts_.detectors()[contacts_.found()[at].detector].persists()) continue;
             FoundContact& f = touching_.emplace_back(contacts_.found()[at]);
             if (f.detector != law_detector) law = contacts_.response_law(f.detector), law_detector = f.detector;
-            fill(f, pair, law);
+            fill(f, pair, law, trial);
             pair_of_contact_.push_back(&pair);
         }
     }

@@ -130,7 +130,7 @@ void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets&
     // An advance by no time, to query the start of a piece: no impulses.
     if (!(to > from)) return;
     make_islands(islands);
-    collect_contacts(from, to - from);
+    collect_contacts(from, to - from, trial);
     share_contacts(to - from);
     plain_.clear(), jointed_.clear(), plain_groups_.clear();
     for (std::size_t i = 0; i < island_count_; ++i)

@@ -139,9 +139,9 @@ private:
     };
     std::uint32_t manager_of(const PairState& pair) const;
     bool is_current() const;
-    void collect_contacts(double from, double h);
-    void add_known_contacts();
-    void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law);
+    void collect_contacts(double from, double h, bool trial);
+    void add_known_contacts(bool trial);
+    void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law, bool trial);
     void make_islands(DisjointSets& islands);
     void share_contacts(double h);
     void set_approach(HeldIsland& island, const GroupSystem& system, double h);

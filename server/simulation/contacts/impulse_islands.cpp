@@ -23,12 +23,12 @@ bool ImpulseIslands::meets_any(const GroupSystem& system, double h) const
 
 /// Stops such corners without a bounce before the step: moving with the mean of the velocities before and after the impact would carry
 /// them into the other body.
-void ImpulseIslands::stop_closing(double h, WorkBook book)
+void ImpulseIslands::stop_closing(double h, WorkBook book, bool trial)
 {
     for (FoundContact& f : touching_) f.contact.impulse = {};
     contacts_.respond(touching_, ImpactMode::Rest, h, book);
     // The impulse of the impact is not an estimate of how hard the contact will press; that of the last step is.
-    for (FoundContact& f : touching_) f.contact.impulse = contacts_.known_contact(f).impulse;
+    contacts_.warm_start(touching_, trial);
 }
 
 void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> observed, double from, double to,
@@ -40,6 +40,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     GroupSystem& system = motion_.system_for(island, observed);
     touching_.clear();
     contacts_.touching_pairs_of(island, touching_, h);
+    contacts_.warm_start(touching_, trial);
     system.begin(from, to, book, trial ? nullptr : &step_);
     members_.resize(system.bodies().size());
     std::iota(members_.begin(), members_.end(), 0u);
@@ -50,7 +51,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
         for (const FoundContact& f : touching_)
             if (contacts_.is_paradox(f.contact))
                 contacts_.report_paradox(f.contact, *contacts_.find_pair(f), step_.frame.start_time + from);
-    if (!at_midpoint && meets_any(system, h)) stop_closing(h, book), system.join();
+    if (!at_midpoint && meets_any(system, h)) stop_closing(h, book, trial), system.join();
 
     moved_.kick(system, bodies, members_, h);
     if (!trial) positions_.note_forces(system);

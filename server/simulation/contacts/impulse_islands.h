@@ -25,7 +25,7 @@ public:
 
 private:
     bool meets_any(const GroupSystem& system, double h) const;
-    void stop_closing(double h, WorkBook book);
+    void stop_closing(double h, WorkBook book, bool trial);
     bool advance_to_midpoint(GroupSystem& system, double h);
     void update_touching(double h);
     void book_rest(double work, WorkBook book);

@@ -19,9 +19,18 @@ struct KnownContact
     std::uint32_t feature = 0;
     std::uint64_t id = 0;
     Vec3 impulse;           ///< N s per step on b, for warm starts
+    Vec3 start_impulse;     ///< N s: `impulse` when the advance of the present piece of the step began
     Vec3 stretch;           ///< m, as in Contact: state of force contacts
     double rest_depth = 0;  ///< m
     double preload = 0;     ///< N
+
+    /// The impulse that an advance starts from. A trial repeats an advance that has replaced `impulse` by its result, and must give
+    /// the same motion: otherwise events are located on another path, and the work of that advance cannot be taken back.
+    const Vec3& warm_start(bool trial)
+    {
+        if (!trial) start_impulse = impulse;
+        return start_impulse;
+    }
 };
 
 /// Room for the points of one pair. It does not know how many of them are in use.
