@@ -169,11 +169,12 @@ void HeldIslands::share_contacts(double h)
 
 /// Sets Contact::approach, the closing speed of impacts. A contact counts as an impact if it had no impulse in the last step and closes
 /// faster than half the speed that forces would give it in this one, or if it had an impulse and closes faster than twice that speed.
-/// Slower contacts jitter or come to rest, and get no restitution.
+/// Slower contacts jitter or come to rest, and get no restitution. The speed is that of a whole step also in a part of one: what counts
+/// as an impact must not depend on how far a trial goes.
 void HeldIslands::set_approach(HeldIsland& island, const GroupSystem& system, double h)
 {
     for (std::size_t k = 0; k < island.members.size(); ++k)
-        given_speed_[island.bodies[k]] = length(system.acceleration(island.members[k])) * h;
+        given_speed_[island.bodies[k]] = length(system.acceleration(island.members[k])) * step_.frame.step;
     const double least = kNoApproach * least_gyration(step_.world.host().bodies, island.bodies) / h;
     for (Contact& c : island.contacts)
     {
