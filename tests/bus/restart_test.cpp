@@ -6,6 +6,7 @@
 
 #include "idl/domain.h"
 #include "server.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -302,8 +303,8 @@ TEST_CASE("a plab-bus that does not respond is ended and replaced, and plabd end
     // The second one to be started is not a plab-bus: it neither joins nor ends.
     const std::string script = scratch_file("silent_bus.sh"), mark = scratch_file("silent_bus.mark");
     (void)std::filesystem::remove(mark);
-    std::ofstream(script) << "#!/bin/sh\nn=$(cat " << mark << " 2>/dev/null)\necho x$n > " << mark
-                          << "\n[ \"$n\" = x ] && exec sleep 60\nexec " << program("plab-bus") << "\n";
+    std::ofstream(script) << "#!/bin/sh\nn=$(cat " << quoted(mark) << " 2>/dev/null)\necho x$n > " << quoted(mark)
+                          << "\n[ \"$n\" = x ] && exec sleep 60\nexec " << quoted(program("plab-bus")) << "\n";
     std::filesystem::permissions(script, std::filesystem::perms::owner_all);
     Server server(kScene, {"--rate", "real"}, {"PLAB_BUS_PROGRAM=" + script});
     const int bus = bus_of(server.process().pid());

@@ -10,8 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "support/text.h"
+
 namespace
 {
+
+using plab::test::quoted;
 
 struct Outcome
 {
@@ -21,7 +25,7 @@ struct Outcome
 
 Outcome plabd(const std::string& arguments)
 {
-    const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabd " + arguments + " --no-bus 2>&1";
+    const std::string command = quoted(std::string(PLAB_BINARY_DIR) + "/bin/plabd") + " " + arguments + " --no-bus 2>&1";
     std::FILE* pipe = popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);
     Outcome out;
@@ -44,14 +48,14 @@ std::string read(const std::string& file)
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-const std::string kScene = std::string(PLAB_SOURCE_DIR) + "/scenes/fan_and_balloons.xml";
+const std::string kScene = quoted(std::string(PLAB_SOURCE_DIR) + "/scenes/fan_and_balloons.xml");
 
 }  // namespace
 
 TEST_CASE("the end state is JSON with the documented keys")
 {
     const std::string file = temporary("end.json");
-    const Outcome run = plabd(kScene + " --until 1 --out " + file);
+    const Outcome run = plabd(kScene + " --until 1 --out " + quoted(file));
     REQUIRE_MESSAGE(run.code == 0, run.text);
     const auto json = nlohmann::json::parse(read(file));
     CHECK(json["time"] == 1.0);
@@ -80,8 +84,8 @@ TEST_CASE("standing contacts are in the end state, under ids that stay")
                             "position=\"0 0 0.6\"/><component id=\"g\" type=\"Field/Gravity\" between=\"box\"/><component id=\"contact\" "
                             "type=\"CDetection/ODE\" "
                             "between=\"box ground\"/></plab>";
-    const auto one = nlohmann::json::parse(plabd(scene + " --until 1 --out -").text),
-               two = nlohmann::json::parse(plabd(scene + " --until 2 --out -").text);
+    const auto one = nlohmann::json::parse(plabd(quoted(scene) + " --until 1 --out -").text),
+               two = nlohmann::json::parse(plabd(quoted(scene) + " --until 2 --out -").text);
     REQUIRE(one["contacts"].size() == 1);
     CHECK(one["contacts"][0]["resting"] == true);
     CHECK(one["contacts"][0]["ids"].size() == 4);
@@ -91,7 +95,7 @@ TEST_CASE("standing contacts are in the end state, under ids that stay")
 TEST_CASE("a trace has a row for each interval and does not disturb")
 {
     const std::string file = temporary("trace.csv");
-    const Outcome with = plabd(kScene + " --until 1 --trace " + file + " --every 0.1 --out -"),
+    const Outcome with = plabd(kScene + " --until 1 --trace " + quoted(file) + " --every 0.1 --out -"),
                   without = plabd(kScene + " --until 1 --out -");
     REQUIRE(with.code == 0);
     std::istringstream rows(read(file));
@@ -130,7 +134,7 @@ TEST_CASE("wrong use is 2, bad scenes are 1, both with a message")
     const std::string bad = temporary("bad.xml");
     std::ofstream(bad) << "<plab version=\"1\">\n  <component id=\"a\" type=\"State/Shaft\" inertia=\"-1\" colour=\"1 0 0\"/>\n  "
                           "<component id=\"a\" type=\"State/Shft\"/>\n</plab>\n";
-    const Outcome check = plabd("--check " + bad);
+    const Outcome check = plabd("--check " + quoted(bad));
     CHECK(check.code == 1);
     CHECK(has(check.text, "bad.xml:2:3:"));
     CHECK(has(check.text, "inertia"));
@@ -146,7 +150,7 @@ TEST_CASE("help, version, check, expand, explain")
     CHECK(plabd("--check " + kScene).code == 0);
     const std::string file = temporary("long.xml");
     std::ofstream(file) << plabd("--expand " + kScene).text;
-    CHECK(nlohmann::json::parse(plabd(file + " --until 2 --out -").text)["hash"] ==
+    CHECK(nlohmann::json::parse(plabd(quoted(file) + " --until 2 --out -").text)["hash"] ==
           nlohmann::json::parse(plabd(kScene + " --until 2 --out -").text)["hash"]);
     const Outcome explain = plabd("--explain " + kScene);
     CHECK(has(explain.text, "one degree of freedom"));
@@ -160,7 +164,7 @@ TEST_CASE("the trace has work and outputs of interactions: forces of joints, res
                             "<component id=\"hook\" type=\"State/Static\"/>"
                             "<component id=\"weld\" type=\"Constraint/Fixed\" a=\"hook\" b=\"bob\"/>"
                             "<component id=\"g\" type=\"Field/Gravity\" between=\"bob\"/></plab>";
-    const Outcome run = plabd(scene + " --until 0.1 --trace " + file);
+    const Outcome run = plabd(quoted(scene) + " --until 0.1 --trace " + quoted(file));
     REQUIRE_MESSAGE(run.code == 0, run.text);
     std::istringstream lines(read(file));
     std::string header, line, last;
@@ -226,12 +230,12 @@ TEST_CASE("too many components are refused where they come in, with the place an
     const std::string scene = temporary("many.xml");
     std::ofstream(scene) << "<plab version=\"1\">\n  <repeat count=\"900000\" step=\"1 0 0\">\n    <component id=\"b\" "
                             "type=\"State/RigidBody\" mass=\"1\"/>\n  </repeat>\n</plab>";
-    const Outcome run = plabd(scene + " --check");
+    const Outcome run = plabd(quoted(scene) + " --check");
     CHECK(run.code == 1);
     CHECK(has(run.text, "many.xml:2:"));
     CHECK(has(run.text, "makes 900000 components: a scene has at most 100000 (--max-components N raises that)"));
     std::ofstream(scene) << "<plab version=\"1\">\n  <repeat count=\"30\">\n    <component id=\"b\" "
                             "type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"/>\n  </repeat>\n</plab>";
-    CHECK(plabd(scene + " --check --max-components 20").code == 1);
-    CHECK(plabd(scene + " --check --max-components 40").code == 0);
+    CHECK(plabd(quoted(scene) + " --check --max-components 20").code == 1);
+    CHECK(plabd(quoted(scene) + " --check --max-components 40").code == 0);
 }

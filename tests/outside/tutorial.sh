@@ -9,7 +9,7 @@ write_tutorial() {
     awk -v folder="$1" '
         /`[^`]+`:$/ { name = $0; sub(/`:$/, "", name); sub(/.*`/, "", name); next }
         /^```/ && inside { inside = 0; close(file); name = ""; next }
-        /^```/ && name != "" { inside = 1; file = folder "/" name; path = file; sub(/\/[^\/]*$/, "", path); system("mkdir -p " path); next }
+        /^```/ && name != "" { inside = 1; file = folder "/" name; path = file; sub(/\/[^\/]*$/, "", path); system("mkdir -p \"" path "\""); next }
         inside { print > file; next }
         NF > 0 { name = "" }' "$page"
     awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$page" >"$1/commands.sh"

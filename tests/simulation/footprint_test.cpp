@@ -6,8 +6,10 @@
 #include <sstream>
 
 #include "support/scene.h"
+#include "support/text.h"
 
 using namespace plab;
+using plab::test::quoted;
 using plab::test::Scene;
 
 extern std::atomic<long> plab_test_allocations;
@@ -20,7 +22,8 @@ std::string mapped_libraries(const std::string& scene)
 {
     const std::string file = std::string(PLAB_BINARY_DIR) + "/footprint_scene.xml";
     std::ofstream(file) << "<plab version=\"1\"><scene dt=\"1/100\"/>" << scene << "</plab>";
-    const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabd " + file + " --until 0.1 --no-bus --maps 2>&1";
+    const std::string command =
+        quoted(std::string(PLAB_BINARY_DIR) + "/bin/plabd") + " " + quoted(file) + " --until 0.1 --no-bus --maps 2>&1";
     std::FILE* pipe = popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);
     std::string out;

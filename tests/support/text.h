@@ -1,4 +1,4 @@
-/// Numbers in the format of blueprints, with all their digits.
+/// Text for blueprints and shells: numbers with all their digits, and words that stay one word.
 #pragma once
 
 #include <cstdio>
@@ -17,5 +17,13 @@ inline std::string text(double x)
 }
 inline std::string text(const Vec3& v) { return text(v.x) + " " + text(v.y) + " " + text(v.z); }
 inline std::string text(const Quat& q) { return text(q.w) + " " + text(q.x) + " " + text(q.y) + " " + text(q.z); }
+
+/// One word of a shell's command line, whatever is in it.
+inline std::string quoted(const std::string& word)
+{
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
 
 }  // namespace plab::test

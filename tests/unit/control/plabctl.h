@@ -12,6 +12,7 @@
 #include <string>
 
 #include "fake_server.h"
+#include "support/text.h"
 
 namespace plab::test
 {
@@ -54,7 +55,8 @@ inline std::string take_text(const std::string& file)
 inline Outcome shell(const std::string& before, const std::string& arguments)
 {
     const std::string out = temporary("out"), err = temporary("err");
-    const std::string command = before + " timeout 30 " + PLAB_BINARY_DIR + "/bin/plabctl " + arguments + " >" + out + " 2>" + err;
+    const std::string command = before + " timeout 30 " + quoted(std::string(PLAB_BINARY_DIR) + "/bin/plabctl") + " " + arguments + " >" +
+                                quoted(out) + " 2>" + quoted(err);
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, take_text(out), take_text(err)};
 }

@@ -69,12 +69,12 @@ TEST_CASE("the command objects shows the present positions")
 TEST_CASE("a table fits the terminal; without a terminal nothing is cut")
 {
     FakeServer server(test_domain(), "lab");
-    const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabctl --domain " + std::to_string(test_domain());
+    const std::string command = quoted(std::string(PLAB_BINARY_DIR) + "/bin/plabctl") + " --domain " + std::to_string(test_domain());
     const std::string file = temporary("pty");
     const auto on_terminal = [&](const std::string& environment, const std::string& arguments)
     {
         const std::string inner = "stty cols 72 rows 20; " + environment + " timeout 30 " + command + " " + arguments;
-        REQUIRE(std::system(("script -qec '" + inner + "' /dev/null >" + file + " </dev/null").c_str()) == 0);
+        REQUIRE(std::system(("script -qec " + quoted(inner) + " /dev/null >" + quoted(file) + " </dev/null").c_str()) == 0);
         return Outcome{0, take_text(file), ""};
     };
     const Outcome plain = on_terminal("NO_COLOR=1 TERM=xterm", "interactions");

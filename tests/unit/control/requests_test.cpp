@@ -71,10 +71,10 @@ TEST_CASE("a file keeps its name in messages")
     FakeServer server(test_domain(), "lab");
     const std::string file = temporary("ball.xml");
     std::ofstream(file) << "<plab version=\"1\">\n\n    <bad/>\n</plab>\n";
-    const Outcome refused = lab("add " + file);
+    const Outcome refused = lab("add " + quoted(file));
     CHECK(refused.code == 4);
     CHECK(has(refused.err, file + ":3:5: <bad>"));
-    CHECK(lab("load " + file).code == 4);
+    CHECK(lab("load " + quoted(file)).code == 4);
     const Outcome piped = lab("add -", "echo '<component/>' |");
     CHECK(piped.code == 0);
     CHECK(server.last().parts.at(0).blueprint == "<component/>\n");

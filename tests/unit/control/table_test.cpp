@@ -9,9 +9,10 @@ namespace
 std::vector<std::string> on_terminal(int columns, const std::string& arguments)
 {
     const std::string file = temporary("pty");
-    const std::string command = "stty cols " + std::to_string(columns) + " rows 20; NO_COLOR=1 timeout 30 " + PLAB_BINARY_DIR +
-                                "/bin/plabctl --domain " + std::to_string(test_domain()) + " -s lab " + arguments;
-    REQUIRE(std::system(("script -qec '" + command + "' /dev/null >" + file + " </dev/null").c_str()) == 0);
+    const std::string command = "stty cols " + std::to_string(columns) + " rows 20; NO_COLOR=1 timeout 30 " +
+                                quoted(std::string(PLAB_BINARY_DIR) + "/bin/plabctl") + " --domain " + std::to_string(test_domain()) +
+                                " -s lab " + arguments;
+    REQUIRE(std::system(("script -qec " + quoted(command) + " /dev/null >" + quoted(file) + " </dev/null").c_str()) == 0);
     std::vector<std::string> lines = Outcome{0, take_text(file), ""}.lines();
     for (std::string& line : lines) line.erase(line.find_last_not_of('\r') + 1);
     return lines;

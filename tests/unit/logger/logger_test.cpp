@@ -7,6 +7,7 @@
 
 #include "played_server.h"
 #include "support/process.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -184,7 +185,7 @@ TEST_CASE("--out appends, and -d ends it")
 TEST_CASE("a closed pipe ends it quietly; a file that cannot be written is 1; no server is 3; wrong use is 2")
 {
     PlayedServer server(test_domain(), unique_name("log"), 1);
-    const std::string base = program("plab-log") + " --domain " + std::to_string(test_domain()) + " --server " + server.name();
+    const std::string base = quoted(program("plab-log")) + " --domain " + std::to_string(test_domain()) + " --server " + server.name();
     Process pipe({"bash", "-c", base + " | head -n 1; exit ${PIPESTATUS[0]}"});
     REQUIRE(server.wait_for_logger());
     for (int i = 0; i < 50 && pipe.running(); ++i) server.event("one", "two"), std::this_thread::sleep_for(100ms);

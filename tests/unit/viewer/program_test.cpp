@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "support/text.h"
 #include "viewer/fake_server.h"
 
 namespace
@@ -20,6 +21,7 @@ namespace
 
 using namespace plab;
 using test::FakeServer;
+using test::quoted;
 using test::Script;
 
 /// Tests have a domain of their own, on this host, whatever the user's environment.
@@ -35,7 +37,7 @@ struct Run
 /// `before`: assignments of the environment and other words in front of the command.
 Run view(const std::string& arguments, const std::string& before = {})
 {
-    const std::string command = before + " " + PLAB_BINARY_DIR + "/bin/plab-view " + arguments + " 2>&1";
+    const std::string command = before + " " + quoted(std::string(PLAB_BINARY_DIR) + "/bin/plab-view") + " " + arguments + " 2>&1";
     std::FILE* const pipe = popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);
     Run out;
@@ -142,8 +144,8 @@ TEST_CASE("pictures at named times show the ball where it falls")
 {
     FakeServer server({});
     Folder folder("shots");
-    const Run run = view(server, "--no-captions --shot 0=" + folder / "a.png" + " --shot 0.4=" + folder / "b.png" +
-                                     " --shot 0.2@behind=" + folder / "c.png");
+    const Run run = view(server, "--no-captions --shot 0=" + quoted(folder / "a.png") + " --shot 0.4=" + quoted(folder / "b.png") +
+                                     " --shot 0.2@behind=" + quoted(folder / "c.png"));
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK(has(run.text, "a.png: t = 0.000 s, step 0\n"));
     // The first state at or after 0.4 s; on a busy machine that may be a later one, which is then reported.
@@ -167,7 +169,7 @@ TEST_CASE("frames at equal simulated times, interpolated between the states")
     FakeServer server({});
     Folder folder("frames");
     // States come every 4/240 s: at 25 frames per second most frames lie between two states.
-    const Run run = view(server, "--no-captions --at 0 --fps 25 --duration 0.2 --frames " + folder / "out");
+    const Run run = view(server, "--no-captions --at 0 --fps 25 --duration 0.2 --frames " + quoted(folder / "out"));
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK(has(run.text, "5 frames, "));
     for (int i = 0; i < 5; ++i)
@@ -183,7 +185,7 @@ TEST_CASE("frames that cannot be made are reported, also by the exit code")
     Folder folder("missing");
     {
         FakeServer server({.first_time = 0.3, .until = 0.6});
-        const Run run = view(server, "--at 0 --fps 10 --duration 0.5 --frames " + folder / "early");
+        const Run run = view(server, "--at 0 --fps 10 --duration 0.5 --frames " + quoted(folder / "early"));
         CHECK(run.code == 1);
         CHECK_MESSAGE(has(run.text, "the first 3 frames cannot be made"), run.text);
         CHECK_FALSE(std::filesystem::exists(folder / "early/frame_0002.png"));
@@ -191,7 +193,7 @@ TEST_CASE("frames that cannot be made are reported, also by the exit code")
     }
     {
         FakeServer server({.until = 0.3, .leaves = true});
-        const Run run = view(server, "--at 0 --fps 10 --duration 0.5 --frames " + folder / "late");
+        const Run run = view(server, "--at 0 --fps 10 --duration 0.5 --frames " + quoted(folder / "late"));
         CHECK(run.code == 1);
         const bool reported =
             has(run.text, "the server has gone; ") && has(run.text, " of 5 frames cannot be made, the last state was of t = 0.");
@@ -205,7 +207,8 @@ TEST_CASE("an object that is in the states before it is in the catalogue is skip
 {
     FakeServer server({.until = 1, .late_at = 24});
     Folder folder("late");
-    const Run run = view(server, "--no-captions --shot 0.12=" + folder / "before.png" + " --shot 0.9=" + folder / "after.png");
+    const Run run =
+        view(server, "--no-captions --shot 0.12=" + quoted(folder / "before.png") + " --shot 0.9=" + quoted(folder / "after.png"));
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK(find_colour(read_png(folder / "before.png"), 1).count == 0);
     CHECK(find_colour(read_png(folder / "after.png"), 1).count > 100);
@@ -219,7 +222,7 @@ TEST_CASE("a swap changes the caption at its step")
         FakeServer server({.until = 0.6, .swap_at = swap_at});
         Folder folder("swap" + std::to_string(swap_at));
         const std::string nothing = " --no-ground --from '0 0 100' --look-at '0 0 200' --up '0 1 0'";
-        const Run run = view(server, "--at 0 --fps 60 --duration 0.3 --frames " + folder / "out" + nothing);
+        const Run run = view(server, "--at 0 --fps 60 --duration 0.3 --frames " + quoted(folder / "out") + nothing);
         REQUIRE_MESSAGE(run.code == 0, run.text);
         std::vector<int> changes;
         const auto lines = [&](int i)
@@ -243,10 +246,10 @@ TEST_CASE("a paused server that sends no states is drawn from its catalogue")
 {
     FakeServer server({.paused = true});
     Folder folder("paused");
-    const Run run = view(server, "--no-captions --png " + folder / "now.png");
+    const Run run = view(server, "--no-captions --png " + quoted(folder / "now.png"));
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK(std::abs(find_colour(read_png(folder / "now.png"), 0).y - row_of_height(3, 240)) < 4);
-    const Run never = view("--timeout 1 --at 5 --png " + folder / "never.png" + " --server " + server.name());
+    const Run never = view("--timeout 1 --at 5 --png " + quoted(folder / "never.png") + " --server " + server.name());
     CHECK(never.code == 3);
     CHECK_MESSAGE(has(never.text, "no new state for 1 s: the server is paused at t = 0.000 s"), never.text);
     CHECK_FALSE(std::filesystem::exists(folder / "never.png"));
@@ -256,27 +259,27 @@ TEST_CASE("exit codes: no server 3, wrong use 2, what the scene does not have 1,
 {
     Folder folder("codes");
     const auto start = std::chrono::steady_clock::now();
-    const Run none = view("--timeout 1 --server nobody --png " + folder / "a.png");
+    const Run none = view("--timeout 1 --server nobody --png " + quoted(folder / "a.png"));
     CHECK(none.code == 3);
     CHECK_MESSAGE(has(none.text, "nobody"), none.text);
     CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
     CHECK(view("--server 'two words' --png a.png").code == 2);
     CHECK(view("--bogus").code == 2);
 
-    const Run no_ffmpeg = view("--mp4 " + folder / "a.mp4", "PATH=");
+    const Run no_ffmpeg = view("--mp4 " + quoted(folder / "a.mp4"), "PATH=");
     CHECK(no_ffmpeg.code == 1);
     CHECK_MESSAGE(has(no_ffmpeg.text, "a film needs ffmpeg, which is not in PATH"), no_ffmpeg.text);
 
     FakeServer server({.until = 6000});
-    const Run no_camera = view(server, "--camera top --png " + folder / "a.png");
+    const Run no_camera = view(server, "--camera top --png " + quoted(folder / "a.png"));
     CHECK(no_camera.code == 1);
     CHECK_MESSAGE(has(no_camera.text, "the scene has no camera 'top'; it has: behind, front"), no_camera.text);
-    CHECK(view(server, "--track nobody --png " + folder / "a.png").code == 1);
+    CHECK(view(server, "--track nobody --png " + quoted(folder / "a.png")).code == 1);
     const Run interrupted =
-        view("--frames " + folder / "out" + " --timeout 30 --server " + server.name(), "timeout --preserve-status -k 8 -s INT 2");
+        view("--frames " + quoted(folder / "out") + " --timeout 30 --server " + server.name(), "timeout --preserve-status -k 8 -s INT 2");
     CHECK(interrupted.code == 130);
     CHECK_MESSAGE(has(interrupted.text, "interrupted"), interrupted.text);
-    const Run terminated = view("--png " + folder / "late.png" + " --at 1e6 --timeout 30 --server " + server.name(),
+    const Run terminated = view("--png " + quoted(folder / "late.png") + " --at 1e6 --timeout 30 --server " + server.name(),
                                 "timeout --preserve-status -k 8 -s TERM 1");
     CHECK(terminated.code == 143);
     CHECK(folder.files() == 1);
@@ -291,12 +294,12 @@ TEST_CASE("a film has the requested frames")
     }
     FakeServer server({});
     Folder folder("film");
-    const Run run =
-        view("--at 0 --fps 20 --until 0.45 --width 321 --height 240 --orbit 8 --mp4 " + folder / "a.mp4" + " --server " + server.name());
+    const Run run = view("--at 0 --fps 20 --until 0.45 --width 321 --height 240 --orbit 8 --mp4 " + quoted(folder / "a.mp4") +
+                         " --server " + server.name());
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK(has(run.text, "10 frames, "));
     const std::string probe =
-        "test \"$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 " + folder / "a.mp4" + ")\" = 10";
+        "test \"$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 " + quoted(folder / "a.mp4") + ")\" = 10";
     CHECK(std::system(probe.c_str()) == 0);
     CHECK(folder.files() == 1);
 }
@@ -305,7 +308,7 @@ TEST_CASE("after a reset the film continues with the new run, and this is report
 {
     FakeServer server({.until = 0.6, .reset_at = 48});
     Folder folder("reset");
-    const Run run = view(server, "--no-captions --at 0 --fps 20 --duration 0.5 --frames " + folder / "out");
+    const Run run = view(server, "--no-captions --at 0 --fps 20 --duration 0.5 --frames " + quoted(folder / "out"));
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK_MESSAGE(has(run.text, "the scene was loaded or reset meanwhile"), run.text);
     // Frames 0 to 3 of the first run, up to t = 0.183; then from t = 0 again.
