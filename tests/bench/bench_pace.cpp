@@ -239,12 +239,12 @@ std::string gears(const char* algorithm, int n)
 }
 
 /// A chain of links that hangs from the world and is released level.
-std::string hinges(int n)
+std::string hinges(int n, const std::string& solver)
 {
-    std::string out = kGravity;
+    std::string out = kGravity + component("solver", "Solver/" + solver, "");
     for (int i = 0; i < n; ++i)
     {
-        out += body(i, {0.5 * i + 0.25, 0, 0}, "mass=\"1\" inertia=\"0.01 0.03 0.03\"");
+        out += body(i, {0.5 * i + 0.25, 0, 0}, "mass=\"1\" inertia=\"0.01 0.03 0.03\" solver=\"solver\"");
         const std::string before = i == 0 ? "" : "a=\"" + numbered("b", i - 1) + "\" ";
         out += component(numbered("h", i), "Constraint/Hinge",
                          before + "b=\"" + numbered("b", i) + "\" anchor=\"" + text(Vec3{0.5 * i, 0, 0}) + "\" axis=\"0 1 0\"");
@@ -372,8 +372,10 @@ int main(int argc, char** argv)
     all.push_back(growth_table("balls in a box", hundreds, 120, balls, true));
     all.push_back(growth_table("gears, Graph", tens, 2000, [](int n) { return gears("Graph", n); }));
     all.push_back(growth_table("gears, Impulse", {10, 100, 1000}, 2000, [](int n) { return gears("Impulse", n); }));
-    all.push_back(growth_table("links of a chain", {10, 100, 1000}, 2000, hinges));
+    all.push_back(growth_table("links of a chain", {10, 100, 1000}, 2000, [](int n) { return hinges(n, "Automatic"); }));
     all.push_back(growth_table("scripts", tens, 2000, scripts));
+    for (const std::string solver : {"RungeKutta4", "SemiImplicitEuler"})
+        (void)growth_table(("links of a chain, " + solver).c_str(), {10, 100, 1000}, 2000, [&](int n) { return hinges(n, solver); });
     if (argc > 1) draw_growth(all, argv[1]);
     return 0;
 }

@@ -70,15 +70,23 @@ std::vector<std::uint32_t> half_of(const Groups& groups, std::vector<std::uint32
     return taken;
 }
 
-/// Index of the part in which a solver advances clusters together unless it refuses: by batch, solver, and split_.
+/// A solver takes a part through all of its stages before the next one. So many objects, and the scripts and forces that act on them,
+/// stay in the cache of a core meanwhile.
+constexpr std::size_t kMostInPart = 128;
+
+/// The latest part that clusters may share, as an index: by batch, solver, and split_ (kNoIndex where sharing changes no bit).
 using SharedParts = std::map<std::tuple<const Batch*, std::uint32_t, std::uint32_t>, std::size_t>;
 
-void share(Batch& batch, std::span<const std::uint32_t> cluster, std::uint32_t solver, std::uint32_t split, SharedParts& parts)
+/// Adds a cluster to the latest part of its kind, or to a new one if that is full. `split`: its value of split_.
+void share(Batch& batch, const Cluster& cluster, std::uint32_t split, SharedParts& shared)
 {
-    const auto [place, fresh] = parts.try_emplace({&batch, solver, split}, batch.parts.size());
-    if (fresh) batch.parts.emplace_back().solver = solver;
-    auto& groups = batch.parts[place->second].groups;
-    groups.insert(groups.end(), cluster.begin(), cluster.end());
+    const std::tuple key(&batch, cluster.solver, cluster.sharing == Sharing::Always ? kNoIndex : split);
+    std::size_t& place = shared.try_emplace(key, batch.parts.size()).first->second;
+    if (place < batch.parts.size() && batch.parts[place].load + cluster.load > kMostInPart) place = batch.parts.size();
+    if (place == batch.parts.size()) batch.add_part(cluster.solver);
+    Batch::Part& part = batch.parts[place];
+    part.load += cluster.load;
+    part.groups.insert(part.groups.end(), cluster.groups.begin(), cluster.groups.end());
 }
 
 }  // namespace
@@ -130,10 +138,10 @@ void BatchedAdvance::plan()
         Batch& batch = known != home.end() ? batches_[known->second] : lightest_batch(total);
         if (keeps) home.emplace(c.solver, static_cast<std::size_t>(&batch - batches_.data()));
         batch.load += c.load;
-        if (c.sharing == Sharing::UnlessRefused)
-            share(batch, c.groups, c.solver, split_[step_.groups.all[c.groups.front()].cluster], shared);
+        if (c.sharing == Sharing::Alone)
+            batch.add_part(c.solver).groups = c.groups;
         else
-            batch.add(c.groups, c.solver, c.sharing == Sharing::Always);
+            share(batch, c, split_[step_.groups.all[c.groups.front()].cluster], shared);
     }
     for (Batch& batch : batches_)
     {
@@ -160,12 +168,11 @@ Batch& BatchedAdvance::lightest_batch(std::size_t total_load)
     return *std::min_element(batches_.begin(), batches_.end(), [](const Batch& x, const Batch& y) { return x.load < y.load; });
 }
 
-void Batch::add(std::span<const std::uint32_t> cluster, std::uint32_t solver, bool together)
+Batch::Part& Batch::add_part(std::uint32_t solver)
 {
-    const auto same = together ? std::find_if(parts.begin(), parts.end(), [&](const Part& p) { return p.solver == solver; }) : parts.end();
-    Part& part = same != parts.end() ? *same : parts.emplace_back();
+    Part& part = parts.emplace_back();
     part.solver = solver;
-    part.groups.insert(part.groups.end(), cluster.begin(), cluster.end());
+    return part;
 }
 
 void BatchedAdvance::run_batch(Batch& batch, std::vector<double>& work)
@@ -176,8 +183,7 @@ void BatchedAdvance::run_batch(Batch& batch, std::vector<double>& work)
         batch.parts[i].system->set_frame(step_.frame);
         while (!run_solver(batch.parts[i], work, batch.events))
         {
-            Batch::Part& rest = batch.parts.emplace_back();
-            rest.solver = batch.parts[i].solver;
+            Batch::Part& rest = batch.add_part(batch.parts[i].solver);
             rest.groups = half_of(step_.groups, batch.parts[i].groups);
             for (const std::uint32_t g : rest.groups) split_[step_.groups.all[g].cluster] = step_.groups.all[rest.groups.front()].cluster;
             batch.split = true;

@@ -27,11 +27,11 @@ struct Batch
     {
         std::uint32_t solver = kNoIndex;
         std::vector<std::uint32_t> groups;
+        std::size_t load = 0;  ///< number of objects, and one for each group
         std::unique_ptr<GroupSystem> system;
         bool fine = true;
     };
-    /// Adds a cluster. Clusters of one solver share a part if that changes no bit of the result (`together`).
-    void add(std::span<const std::uint32_t> cluster, std::uint32_t solver, bool together);
+    Part& add_part(std::uint32_t solver);
 
     std::vector<Part> parts;
     std::size_t load = 0;
