@@ -8,13 +8,7 @@ namespace plab::response
 
 void ImpulseRows::describe(Schema& s, std::int64_t most_iterations)
 {
-    s.param(friction, "friction", unit::one, "Coulomb coefficient, unless a Material/Pair overrides it").or_else(0).not_negative();
-    s.param(restitution, "restitution", unit::one,
-            "coefficient of restitution: fraction of the approach speed that an impact returns, unless a "
-            "Material/Pair overrides it")
-        .or_else(0)
-        .not_negative()
-        .at_most(1);
+    describe_impact_law(s, friction, restitution);
     s.param(rest_height, "rest_height", unit::metre,
             "a bounce that would rise less than this is suppressed: the contact becomes a resting one")
         .or_else(1e-14)

@@ -50,13 +50,7 @@ void RowsRows::describe(Schema& s)
     s.role(manager, "manager", {Facet::Component}, "advances the islands of these contacts")
         .family("Manager/")
         .default_type("Manager/Direct");
-    s.param(friction, "friction", unit::one, "Coulomb coefficient, unless a Material/Pair overrides it").or_else(0).not_negative();
-    s.param(restitution, "restitution", unit::one,
-            "coefficient of restitution: fraction of the approach speed that an impact returns, unless a "
-            "Material/Pair overrides it")
-        .or_else(0)
-        .not_negative()
-        .at_most(1);
+    describe_impact_law(s, friction, restitution);
     s.param(rest_height, "rest_height", unit::metre, "where impacts are located: a bounce that would rise less than this is suppressed")
         .or_else(1e-14)
         .not_negative();

@@ -12,6 +12,17 @@ bool rests(const Contact& contact, double speed, const BounceLimit& limit)
     return speed * speed <= 2 * pressing * height;
 }
 
+void describe_impact_law(Schema& s, Column<double>& friction, Column<double>& restitution)
+{
+    s.param(friction, "friction", unit::one, "Coulomb coefficient, unless a Material/Pair overrides it").or_else(0).not_negative();
+    s.param(restitution, "restitution", unit::one,
+            "coefficient of restitution: fraction of the approach speed that an impact returns, unless a "
+            "Material/Pair overrides it")
+        .or_else(0)
+        .not_negative()
+        .at_most(1);
+}
+
 void Workspace::gather(std::span<const Contact> contacts, const Bodies& bodies)
 {
     points.clear(), order.clear();

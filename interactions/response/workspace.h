@@ -9,6 +9,7 @@
 #include "cone_solver.h"
 #include "plab/collision.h"
 #include "plab/column.h"
+#include "plab/schema.h"
 
 namespace plab::response
 {
@@ -22,6 +23,9 @@ struct BounceLimit
 
 /// Whether a contact that separates at `speed` rests: the height v^2 / 2a is below rest_height, or below what its position can resolve.
 bool rests(const Contact& contact, double speed, const BounceLimit& limit);
+
+/// Declares the parameters of an impact law that these responses share: `friction` and `restitution`, both dimensionless.
+void describe_impact_law(Schema& schema, Column<double>& friction, Column<double>& restitution);
 
 /// The contacts between two bodies, which are answered together.
 struct PairManifold

@@ -1,14 +1,12 @@
 // What a step costs and leaves behind: no memory is asked for once warm, every figure is finite, every command ran.
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "subjects.h"
+#include "support/allocation_counter.h"
 
 using namespace plab;
 using namespace plab::test;
-
-extern std::atomic<long> plab_test_allocations;
 
 namespace
 {
@@ -75,17 +73,17 @@ TEST_CASE("a warm step in which nothing happens asks for no memory")
     for (const Subject& subject : subjects())
     {
         CAPTURE(subject.type);
-        const long loading = plab_test_allocations;
+        const long loading = allocations;
         const auto running = started(compiled(subject.blueprint));
-        CHECK_MESSAGE(plab_test_allocations > loading, "allocations are not counted");
+        CHECK_MESSAGE(allocations > loading, "allocations are not counted");
         // What rolls to rest may touch in more places than before for some seconds.
         for (int i = 0; i < 1000; ++i) running->step();
         int quiet = 0;
         for (int i = 0; i < 500; ++i)
         {
-            const long before = plab_test_allocations;
+            const long before = allocations;
             running->step();
-            const long made = plab_test_allocations - before;
+            const long made = allocations - before;
             if (!running->events().empty()) continue;
             ++quiet;
             CAPTURE(i);

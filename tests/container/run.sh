@@ -15,20 +15,11 @@ build=$(cd "${1:?usage: run.sh BUILD [--compile]}" && pwd)
 compile=${2:-}
 work=$build/container
 
+suite=container
+# shellcheck source=tests/support/checks.sh
+source "$root/tests/support/checks.sh"
 source "$here/engine.sh"
 source "$here/base.sh"
-
-fail() { echo "container: failed: $*" >&2; exit 1; }
-skip() { echo "container: skipped: $*"; exit 77; }
-
-# Runs a step with its output in a file; the end of it is shown if the step fails.
-quietly() {
-    local log=$work/$1.log
-    shift
-    "$@" >"$log" 2>&1 && return
-    tail -n 40 "$log"
-    return 1
-}
 
 # What the Dockerfile's stage "build" would leave, out of the binaries that are here.
 stand_in_for_build() {

@@ -10,19 +10,11 @@ root=$(cd "$here/../.." && pwd)
 build=$(cd "${1:?usage: package.sh BUILD}" && pwd)
 work=$build/package
 bare=$work/bare
+suite=package
+# shellcheck source=tests/support/checks.sh
+source "$root/tests/support/checks.sh"
 # shellcheck source=tests/outside/tutorial.sh
 source "$here/tutorial.sh"
-
-fail() { echo "package: failed: $*" >&2; exit 1; }
-skip() { echo "package: skipped: $*"; exit 77; }
-
-quietly() {
-    local log=$work/$1.log
-    shift
-    "$@" >"$log" 2>&1 && return
-    tail -n 40 "$log"
-    return 1
-}
 
 require() {
     [[ $(id -u) -eq 0 ]] || skip "needs root for a system of its own"

@@ -10,19 +10,11 @@ root=$(cd "$here/../.." && pwd)
 build=$(cd "${1:?usage: run.sh BUILD}" && pwd)
 work=$build/outside
 prefix=$work/moved
+suite=outside
+# shellcheck source=tests/support/checks.sh
+source "$root/tests/support/checks.sh"
 # shellcheck source=tests/outside/tutorial.sh
 source "$here/tutorial.sh"
-
-fail() { echo "outside: failed: $*" >&2; exit 1; }
-
-# Runs a step with its output in a file; the end of it is shown if the step fails.
-quietly() {
-    local log=$work/$1.log
-    shift
-    "$@" >"$log" 2>&1 && return
-    tail -n 40 "$log"
-    return 1
-}
 
 install_and_move() {
     rm -rf "$work"
@@ -56,9 +48,11 @@ run_pkg_config() {
     (
         cd "$tree"
         export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
-        quietly pkg_plugin "${CXX:-c++}" -shared -O1 $(pkg-config --cflags plab-sdk) ../tutorial/inverse_square.cpp -o inverse_square.so &&
+        # pkg-config escapes blanks for a shell.
+        eval "sdk=($(pkg-config --cflags plab-sdk)) link=($(pkg-config --cflags plab-link)) libraries=($(pkg-config --libs plab-link))"
+        quietly pkg_plugin "${CXX:-c++}" -shared -O1 "${sdk[@]}" ../tutorial/inverse_square.cpp -o inverse_square.so &&
             quietly pkg_manifest "$prefix/bin/plab-manifest" inverse_square.so inverse_square.manifest &&
-            quietly pkg_client "${CXX:-c++}" -O1 $(pkg-config --cflags plab-link) ../tutorial/exchange.cpp $(pkg-config --libs plab-link) -o exchange &&
+            quietly pkg_client "${CXX:-c++}" -O1 "${link[@]}" ../tutorial/exchange.cpp "${libraries[@]}" -o exchange &&
             [[ -s $(pkg-config --variable=idl plab-link) ]]
     ) || fail "pkg-config"
     cmp -s "$tree/inverse_square.manifest" "$work/tutorial/build/inverse_square.manifest" || fail "the two manifests differ"

@@ -1,18 +1,17 @@
 // A scene uses only what it needs: libraries, phases, memory, time.
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
 
+#include "support/allocation_counter.h"
 #include "support/scene.h"
 #include "support/text.h"
 
 using namespace plab;
+using plab::test::allocations;
 using plab::test::quoted;
 using plab::test::Scene;
-
-extern std::atomic<long> plab_test_allocations;
 
 namespace
 {
@@ -47,9 +46,9 @@ const char* const kBall = R"(<component id="s" type="Shape/Sphere" radius="0.1"/
 long allocations_of(Scene& s, int steps)
 {
     s.step(500);
-    const long before = plab_test_allocations;
+    const long before = allocations;
     for (int i = 0; i < steps; ++i) s.simulation().step();
-    return plab_test_allocations - before;
+    return allocations - before;
 }
 
 }  // namespace
@@ -118,9 +117,9 @@ TEST_CASE("a warm step of a sliding stack allocates nothing, with any manager")
         int quiet = 0;
         for (int i = 0; i < 500; ++i)
         {
-            const long before = plab_test_allocations;
+            const long before = allocations;
             s.simulation().step();
-            const long made = plab_test_allocations - before;
+            const long made = allocations - before;
             // An event has a text.
             if (!s.simulation().events().empty()) continue;
             ++quiet;

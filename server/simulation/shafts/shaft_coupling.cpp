@@ -15,8 +15,12 @@ void ShaftCoupling::begin_level(Level level, const ConstraintGraph& graph, const
     current_ = kNoIndex, largest_change_ = 0;
     conflict_.reset();
     participants_.clear();
-    roots_.resize(shafts.size()), torque_.resize(shafts.size()), member_.resize(shafts.size());
-    below_.resize(graph.nodes().size());
+}
+
+void ShaftCoupling::clear()
+{
+    index_.clear(), members_.clear(), roots_.clear();
+    components_.clear(), shares_.clear(), participants_.clear();
 }
 
 double ShaftCoupling::inertia_of(std::uint32_t root) const
@@ -27,9 +31,9 @@ double ShaftCoupling::inertia_of(std::uint32_t root) const
 
 ShaftCoupling::Root& ShaftCoupling::enter(std::uint32_t root, double rate)
 {
-    Root& r = roots_[root];
+    const std::uint32_t i = takes_part(root) ? index_.find(root) : take_in(root, 0);
+    Root& r = roots_[i];
     if (r.solve == solve_) return r;
-    if (!takes_part(root)) take_in(root, 0);
     r.solve = solve_, r.sweep = 0, r.driver = r.driven = kNoIndex, r.touched = false;
     r.rate = rate, r.scale = std::fabs(rate), r.torque = 0;
     r.inertia = inertia_of(root);
@@ -37,17 +41,19 @@ ShaftCoupling::Root& ShaftCoupling::enter(std::uint32_t root, double rate)
     return r;
 }
 
-void ShaftCoupling::take_in(std::uint32_t shaft, double torque)
+std::uint32_t ShaftCoupling::take_in(std::uint32_t shaft, double torque)
 {
-    member_[shaft] = solve_;
-    torque_[shaft] = torque;
+    const std::uint32_t i = index_.add(shaft);
+    if (i == members_.size()) members_.emplace_back(), roots_.emplace_back();
+    members_[i] = {solve_, torque};
+    return i;
 }
 
 void ShaftCoupling::begin_accelerations(const ConstraintGraph& graph, const Shafts& shafts, std::span<const double> torque,
                                         std::span<const std::uint32_t> members, std::span<const std::uint32_t> prescribed)
 {
     begin_level(Level::Acceleration, graph, shafts);
-    members_ = members;
+    dynamic_ = members;
     for (const std::uint32_t i : prescribed) take_in(i, 0), enter(shafts.root[i], 0);  // forces do not affect it
     for (const std::uint32_t i : members)
     {
@@ -57,7 +63,7 @@ void ShaftCoupling::begin_accelerations(const ConstraintGraph& graph, const Shaf
     for (const std::uint32_t i : members)
     {
         if (shafts.root[i] != i) continue;
-        Root& r = roots_[i];
+        Root& r = *entered(i);
         r.rate = r.torque / r.inertia;
         r.scale = std::fabs(r.rate);
     }
@@ -67,7 +73,7 @@ void ShaftCoupling::begin_speeds(const ConstraintGraph& graph, const Shafts& sha
                                  std::span<const std::uint32_t> prescribed)
 {
     begin_level(Level::Speed, graph, shafts);
-    members_ = members;
+    dynamic_ = members;
     for (const auto list : {prescribed, members})
         for (const std::uint32_t i : list)
         {
@@ -86,8 +92,9 @@ void ShaftCoupling::start_sweep()
 void ShaftCoupling::begin(std::uint32_t component, Ref driven)
 {
     current_ = component;
-    if (component >= shares_.size()) shares_.resize(component + 1);
-    Share& share = shares_[component];
+    const std::uint32_t i = components_.add(component);
+    if (i == shares_.size()) shares_.emplace_back();
+    Share& share = shares_[i];
     if (share.solve == solve_) return;
     share = {solve_, driven.index, 0, 0};
     participants_.push_back(component);
@@ -95,23 +102,22 @@ void ShaftCoupling::begin(std::uint32_t component, Ref driven)
 
 double ShaftCoupling::rate(Ref shaft) const
 {
-    const std::uint32_t root = root_of(shaft);
-    if (entered(root)) return shafts_->ratio[shaft.index] * roots_[root].rate;
+    if (const Root* r = entered(root_of(shaft))) return shafts_->ratio[shaft.index] * r->rate;
     return level_ == Level::Speed ? shafts_->speed[shaft.index] : 0.0;
 }
 
 double ShaftCoupling::scale(Ref shaft) const
 {
-    const std::uint32_t root = root_of(shaft);
-    return entered(root) ? std::fabs(shafts_->ratio[shaft.index]) * roots_[root].scale : 0.0;
+    const Root* r = entered(root_of(shaft));
+    return r ? std::fabs(shafts_->ratio[shaft.index]) * r->scale : 0.0;
 }
 
 double ShaftCoupling::mobility(Ref shaft) const
 {
-    const std::uint32_t root = root_of(shaft);
-    if (!entered(root) || assigned(roots_[root])) return 0;
+    const Root* r = entered(root_of(shaft));
+    if (!r || assigned(*r)) return 0;
     const double ratio = shafts_->ratio[shaft.index];
-    return ratio * ratio * roots_[root].mobility;
+    return ratio * ratio * r->mobility;
 }
 
 void ShaftCoupling::change_rate(Root& r, double rate)
@@ -131,12 +137,12 @@ void ShaftCoupling::apply(Ref shaft, double torque)
     assert(current_ != kNoIndex);
     const std::uint32_t i = shaft.index;
     const double ratio = shafts_->ratio[i];
-    const std::uint32_t root = root_of(shaft);
-    Share& share = shares_[current_];
+    Share& share = share_of(current_);
     if (i == share.driven) share.reaction += torque;
-    if (!entered(root)) return;  // not advanced here, so torques do not change it
-    Root& r = roots_[root];
-    torque_[i] += torque;
+    Root* const entry = entered(root_of(shaft));
+    if (!entry) return;  // not advanced here, so torques do not change it
+    Root& r = *entry;
+    members_[index_.find(i)].torque += torque;
     r.torque += ratio * torque;
 
     const double before = r.rate;
@@ -149,7 +155,7 @@ void ShaftCoupling::apply(Ref shaft, double torque)
     // Summed over the sweeps this is the change of kinetic energy. The work done on a driven shaft is taken up by its drive.
     const double work = 0.5 * ratio * torque * (before + r.rate);
     if (r.mobility > 0) share.work += work;
-    if (assigned(r)) shares_[r.driver].work -= work;
+    if (assigned(r)) share_of(r.driver).work -= work;
 }
 
 void ShaftCoupling::assign(Ref shaft, double rate)
@@ -167,60 +173,68 @@ void ShaftCoupling::assign(Ref shaft, double rate)
         return;
     }
     r.sweep = sweep_, r.driver = current_, r.driven = i;
-    if (level_ == Level::Speed) shares_[current_].work += 0.5 * r.inertia * (root_rate - r.rate) * (root_rate + r.rate);
+    if (level_ == Level::Speed) share_of(current_).work += 0.5 * r.inertia * (root_rate - r.rate) * (root_rate + r.rate);
     change_rate(r, root_rate);
 }
 
 void ShaftCoupling::store_speeds(Shafts& shafts) const
 {
     assert(level_ == Level::Speed);
-    for (const std::uint32_t i : members_)
-        if (const Root& r = roots_[shafts.root[i]]; r.touched) shafts.speed[i] = shafts.ratio[i] * r.rate;
+    for (const std::uint32_t i : dynamic_)
+        if (const Root& r = *entered(shafts.root[i]); r.touched) shafts.speed[i] = shafts.ratio[i] * r.rate;
 }
 
 double ShaftCoupling::total_torque(std::uint32_t shaft) const
 {
     if (!takes_part(shaft)) return 0;
-    const Root& r = roots_[shafts_->root[shaft]];
-    if (assigned(r)) return torque_[shaft] + (r.driven == shaft ? holding_torque(r) / shafts_->ratio[shaft] : 0.0);
-    return shafts_->dynamic(shaft) ? torque_[shaft] : torque_[shaft] + holding_torque(r);
+    const Root& r = *entered(shafts_->root[shaft]);
+    const double torque = members_[index_.find(shaft)].torque;
+    if (assigned(r)) return torque + (r.driven == shaft ? holding_torque(r) / shafts_->ratio[shaft] : 0.0);
+    return shafts_->dynamic(shaft) ? torque : torque + holding_torque(r);
 }
 
 double ShaftCoupling::reaction(std::uint32_t component) const
 {
-    const Share& share = shares_[component];
-    const std::uint32_t root = shafts_->root[share.driven];
-    const bool drives = entered(root) && roots_[root].driver == component;
-    return drives ? share.reaction + holding_torque(roots_[root]) / shafts_->ratio[share.driven] : share.reaction;
+    const Share& share = share_of(component);
+    const Root* r = entered(shafts_->root[share.driven]);
+    const bool drives = r && r->driver == component;
+    return drives ? share.reaction + holding_torque(*r) / shafts_->ratio[share.driven] : share.reaction;
 }
 
 void ShaftCoupling::account(std::vector<double>& work, double share)
 {
     for (const std::uint32_t c : participants_)
     {
-        double done = shares_[c].work;
-        const std::uint32_t root = shafts_->root[shares_[c].driven];
-        if (level_ == Level::Acceleration && entered(root) && roots_[root].driver == c && shafts_->dynamic(root))
-            done += holding_torque(roots_[root]) * shafts_->speed[root];
+        double done = share_of(c).work;
+        const std::uint32_t root = shafts_->root[share_of(c).driven];
+        if (const Root* r = entered(root); level_ == Level::Acceleration && r && r->driver == c && shafts_->dynamic(root))
+            done += holding_torque(*r) * shafts_->speed[root];
         work[c] += share * done;
     }
     if (level_ != Level::Acceleration) return;
-    for (const ShaftTree& tree : graph_->trees())
-        if (tree.prescribed && entered(tree.root)) account_prescribed(tree, work, share);
+    for_each_tree(
+        [&](const ShaftTree& tree)
+        {
+            if (tree.prescribed) account_prescribed(tree, work, share);
+        });
 }
 
 // Power through each coupling of the prescribed shaft: (sum rho^2 J alpha_root - sum rho tau) w_root over the subtree.
 void ShaftCoupling::account_prescribed(const ShaftTree& tree, std::vector<double>& work, double share)
 {
-    const auto nodes = graph_->nodes();
-    const Root& r = roots_[tree.root];
-    for (std::uint32_t k = tree.first; k < tree.first + tree.count; ++k)
-        below_[k] = takes_part(nodes[k].shaft) ? nodes[k].ratio * torque_[nodes[k].shaft] : 0.0;
-    for (std::uint32_t k = tree.first + tree.count; --k > tree.first;)
+    const auto nodes = graph_->nodes(tree);
+    const Root& r = *entered(tree.root);
+    below_.resize(nodes.size());
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+    {
+        const std::uint32_t shaft = nodes[k].shaft;
+        below_[k] = takes_part(shaft) ? nodes[k].ratio * members_[index_.find(shaft)].torque : 0.0;
+    }
+    for (std::size_t k = nodes.size(); --k > 0;)
     {
         const ShaftNode& n = nodes[k];
         if (n.parent != tree.first)
-            below_[n.parent] += below_[k];
+            below_[n.parent - tree.first] += below_[k];
         else
             work[n.component] += share * (n.inertia_inside * r.rate - below_[k]) * shafts_->speed[tree.root];
     }

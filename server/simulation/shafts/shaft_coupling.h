@@ -13,11 +13,13 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "plab/shafts.h"
 #include "plab/tables.h"
 #include "simulation/shafts/constraint_graph.h"
+#include "simulation/shafts/member_index.h"
 
 namespace plab::simulation
 {
@@ -51,6 +53,9 @@ struct CouplingReport
 class ShaftCoupling final : public ShaftMotion
 {
 public:
+    /// Forgets who took part, so that another set of shafts can be solved. Keeps its memory.
+    void clear();
+
     // One solve: begin, sweeps, results. Graph and shafts must outlive it.
     // --------------------------------------------------
     /// Starts from the accelerations under `torque` (N m, by shaft) of the dynamic `members`, in id order; those of prescribed shafts are
@@ -100,14 +105,24 @@ public:
     // ------------------------------------------------------------------------------------------------------
     bool at_accelerations() const { return level_ == Level::Acceleration; }
     const ConstraintGraph& graph() const { return *graph_; }
+    /// Calls each(tree) for the trees whose root takes part.
+    template <class Each>
+    void for_each_tree(Each&& each) const
+    {
+        for (const std::uint32_t shaft : index_.members())
+            if (const ShaftTree* tree = graph_->tree_of(shaft); tree && tree->root == shaft && entered(shaft)) each(*tree);
+    }
     /// N m on a shaft: forces, pairwise couplings, and the torque with which a one-way drive or a prescribed motion is maintained.
     double total_torque(std::uint32_t shaft) const;
     /// Components that acted in this solve, in order, and the torque that each applied to its driven shaft (N m).
     std::span<const std::uint32_t> participants() const { return participants_; }
     double reaction(std::uint32_t component) const;
     /// Whether the shaft is a member of this solve, or prescribed in it.
-    bool takes_part(std::uint32_t shaft) const { return member_[shaft] == solve_; }
-    bool takes_part(const ShaftTree& tree) const { return entered(tree.root); }
+    bool takes_part(std::uint32_t shaft) const
+    {
+        const std::uint32_t i = index_.find(shaft);
+        return i != kNoIndex && members_[i].solve == solve_;
+    }
 
 private:
     enum class Level : std::uint8_t
@@ -115,6 +130,13 @@ private:
         Acceleration,
         Speed
     };
+    /// A shaft that takes part.
+    struct Member
+    {
+        std::uint64_t solve = 0;  ///< the last one that it took part in
+        double torque = 0;        ///< N m (s), in that solve
+    };
+    /// The same if it is a root.
     struct Root
     {
         double rate = 0;
@@ -138,8 +160,17 @@ private:
 
     void begin_level(Level level, const ConstraintGraph& graph, const Shafts& shafts);
     Root& enter(std::uint32_t root, double rate);
-    void take_in(std::uint32_t shaft, double torque);
-    bool entered(std::uint32_t root) const { return roots_[root].solve == solve_; }
+    /// Its number.
+    std::uint32_t take_in(std::uint32_t shaft, double torque);
+    /// Null unless the root was entered in this solve.
+    const Root* entered(std::uint32_t root) const
+    {
+        const std::uint32_t i = index_.find(root);
+        return i != kNoIndex && roots_[i].solve == solve_ ? &roots_[i] : nullptr;
+    }
+    Root* entered(std::uint32_t root) { return const_cast<Root*>(std::as_const(*this).entered(root)); }
+    Share& share_of(std::uint32_t component) { return shares_[components_.find(component)]; }
+    const Share& share_of(std::uint32_t component) const { return shares_[components_.find(component)]; }
     std::uint32_t root_of(Ref shaft) const { return shafts_->root[shaft.index]; }
     double inertia_of(std::uint32_t root) const;
     bool assigned(const Root& r) const { return r.driver != kNoIndex; }
@@ -150,18 +181,19 @@ private:
 
     const ConstraintGraph* graph_ = nullptr;
     const Shafts* shafts_ = nullptr;
-    std::span<const std::uint32_t> members_;
+    std::span<const std::uint32_t> dynamic_;
     Level level_ = Level::Acceleration;
     std::uint64_t solve_ = 0, sweep_ = 0;
     std::uint32_t current_ = kNoIndex;  ///< component
     double largest_change_ = 0;
     std::optional<DriveConflict> conflict_;
-    std::vector<Root> roots_;            // by shaft
-    std::vector<double> torque_;         // by shaft, N m (s); only of those that take part
-    std::vector<std::uint64_t> member_;  // by shaft: the last solve that it took part in
-    std::vector<Share> shares_;          // by component
+    MemberIndex index_;            // of shafts
+    std::vector<Member> members_;  // by number of the shaft
+    std::vector<Root> roots_;      // likewise
+    MemberIndex components_;
+    std::vector<Share> shares_;  // by number of the component
     std::vector<std::uint32_t> participants_;
-    std::vector<double> below_;  // by node
+    std::vector<double> below_;  // by node of a tree
 };
 
 }  // namespace plab::simulation

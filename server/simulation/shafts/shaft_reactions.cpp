@@ -20,8 +20,7 @@ void ShaftTorques::add(const ShaftCoupling& coupling)
     for (const std::uint32_t c : coupling.participants()) set(c, coupling.reaction(c));
     own_.resize(coupling.graph().nodes().size());
     sums_.resize(own_.size());
-    for (const ShaftTree& tree : coupling.graph().trees())
-        if (coupling.takes_part(tree)) add_tree(coupling, tree);
+    coupling.for_each_tree([&](const ShaftTree& tree) { add_tree(coupling, tree); });
 }
 
 // Let A be the inertia and B the torque, both reduced to the root; subscript in: on the node's own side of its coupling, out: on the

@@ -7,12 +7,11 @@ namespace plab::simulation
 
 ShaftSystem::Part& ShaftSystem::part_of_cluster(std::uint32_t cluster)
 {
-    for (std::size_t i = 0; i < count_; ++i)
-        if (parts_[i].cluster == cluster) return parts_[i];
+    const std::uint32_t i = clusters_.add(cluster);
+    if (i < count_) return parts_[i];
     if (count_ == parts_.size()) parts_.emplace_back();
     Part& part = parts_[count_++];
-    part.cluster = cluster;
-    part.members.clear(), part.prescribed.clear(), part.couplings.clear();
+    part.members.clear(), part.prescribed.clear(), part.couplings.clear(), part.coupling.clear();
     part.begun = false;
     return part;
 }
@@ -22,7 +21,7 @@ void ShaftSystem::configure(const world::World& world, const Schedule& schedule,
 {
     world_ = &world, schedule_ = &schedule, graph_ = &graph;
     count_ = 0;
-    part_of_shaft_.clear();
+    clusters_.clear(), shafts_.clear(), part_of_shaft_.clear();
     for (const std::uint32_t g : members)
     {
         const Group& group = groups.all[g];
@@ -35,7 +34,6 @@ void ShaftSystem::configure(const world::World& world, const Schedule& schedule,
         part.couplings.insert(part.couplings.end(), group.couplings.begin(), group.couplings.end());
     }
     if (count_ == 0) return;
-    part_of_shaft_.assign(world.host().shafts.size(), kNoIndex);
     const auto by_rank = [&](std::uint32_t a, std::uint32_t b) {
         return world.rank(Ref{Facet::Shaft, a}) < world.rank(Ref{Facet::Shaft, b});
     };
@@ -47,8 +45,15 @@ void ShaftSystem::configure(const world::World& world, const Schedule& schedule,
         std::sort(part.couplings.begin(), part.couplings.end());
         part.couplings.erase(std::unique(part.couplings.begin(), part.couplings.end()), part.couplings.end());
         for (const auto* list : {&part.members, &part.prescribed})
-            for (const std::uint32_t s : *list) part_of_shaft_[s] = i;
+            for (const std::uint32_t s : *list) set_part(s, i);
     }
+}
+
+void ShaftSystem::set_part(std::uint32_t shaft, std::uint32_t part)
+{
+    const std::uint32_t i = shafts_.add(shaft);
+    if (i == part_of_shaft_.size()) part_of_shaft_.emplace_back();
+    part_of_shaft_[i] = part;
 }
 
 CouplingReport ShaftSystem::sweep(Part& part, const StepContext& outer)
@@ -102,7 +107,7 @@ CouplingReport ShaftSystem::solve_speeds(const StepContext& context, Shafts& sha
     return worst;
 }
 
-double ShaftSystem::rate(std::uint32_t shaft) const { return parts_[part_of_shaft_[shaft]].coupling.rate({Facet::Shaft, shaft}); }
+double ShaftSystem::rate(std::uint32_t shaft) const { return parts_[part_of(shaft)].coupling.rate({Facet::Shaft, shaft}); }
 
 const ShaftSystem::Part* ShaftSystem::swept_part_of(std::uint32_t shaft) const
 {

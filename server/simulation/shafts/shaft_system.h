@@ -24,7 +24,11 @@ public:
     /// Of the last solve, rad/s^2.
     double rate(std::uint32_t shaft) const;
     /// Identifies the set of shafts that are swept together with this one.
-    std::uint32_t part_of(std::uint32_t shaft) const { return shaft < part_of_shaft_.size() ? part_of_shaft_[shaft] : kNoIndex; }
+    std::uint32_t part_of(std::uint32_t shaft) const
+    {
+        const std::uint32_t i = shafts_.find(shaft);
+        return i == kNoIndex ? kNoIndex : part_of_shaft_[i];
+    }
     /// After solve_speeds(): the largest |speed| during the sweeps, rad/s; 0 if the shaft is not swept.
     double scale(std::uint32_t shaft) const;
     /// After solve_speeds(): whether pairwise couplings can move the shaft. Prescribed and one-way driven shafts cannot be moved.
@@ -35,13 +39,13 @@ public:
 private:
     struct Part
     {
-        std::uint32_t cluster = 0;
         std::vector<std::uint32_t> members, prescribed;  ///< in id order
         std::vector<BlockRow> couplings;
         ShaftCoupling coupling;
         bool begun = false;
     };
     Part& part_of_cluster(std::uint32_t cluster);
+    void set_part(std::uint32_t shaft, std::uint32_t part);
     CouplingReport sweep(Part& part, const StepContext& context);
     const Part* swept_part_of(std::uint32_t shaft) const;
 
@@ -50,7 +54,9 @@ private:
     const ConstraintGraph* graph_ = nullptr;
     std::deque<Part> parts_;  // a deque, because a coupling keeps the address of its part's members
     std::size_t count_ = 0;
-    std::vector<std::uint32_t> part_of_shaft_;
+    MemberIndex clusters_;  // their numbers are those of the parts
+    MemberIndex shafts_;
+    std::vector<std::uint32_t> part_of_shaft_;  // by number of the shaft
 };
 
 }  // namespace plab::simulation

@@ -10,6 +10,7 @@
 #include "detection/ode_detection.h"
 #include "plab/random.h"
 #include "response/impulse.h"
+#include "support/one_row.h"
 
 namespace plab::test
 {
@@ -73,22 +74,6 @@ struct Sink final : ContactSink
     std::span<const PersistentPair> persistent() const override { return pairs; }
     void add(const Contact& contact) override { contacts.push_back(contact); }
     bool precedes(Ref a, Ref b) const override { return rank.empty() ? a.index < b.index : rank[a.index] < rank[b.index]; }
-};
-
-/// One row of a type, filled with its declared defaults.
-template <class Rows>
-struct OneRow
-{
-    Rows rows;
-    Schema schema;
-
-    OneRow()
-    {
-        rows.describe(schema);
-        for (ColumnBase* c : schema.columns()) c->resize(1);
-        for (const Field& f : schema.fields())
-            if (type_of(f.fallback) == f.type) f.column->set(0, f.fallback);
-    }
 };
 
 /// A detection between all bodies of a small world.

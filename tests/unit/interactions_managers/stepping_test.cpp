@@ -3,30 +3,18 @@
 
 #include "islands.h"
 #include "managers/manager_rows.h"
+#include "support/one_row.h"
 
 using namespace plab;
 using namespace plab::managers;
 using plab::test::GravityMotion;
 using plab::test::IslandWorld;
+using plab::test::OneRow;
 
 namespace
 {
 
 constexpr double kGravity = 9.81;
-
-template <class Table>
-struct OneRow
-{
-    Table rows;
-    Schema schema;
-    OneRow()
-    {
-        rows.describe(schema);
-        for (ColumnBase* c : schema.columns()) c->resize(1);
-        for (const Field& f : schema.fields())
-            if (type_of(f.fallback) == f.type) f.column->set(0, f.fallback);
-    }
-};
 
 /// Steps with new contacts at the present points of b; contact points go with their bodies.
 template <class Table, class Solve>

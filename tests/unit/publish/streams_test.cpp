@@ -1,19 +1,17 @@
 // Frames, collisions, events, metrics and status: when they are published, and what they contain.
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <numeric>
 #include <thread>
 
 #include "publish/figures.h"
 #include "publish/pace.h"
+#include "support/allocation_counter.h"
 #include "watcher.h"
 
 using namespace plab;
 using namespace plab::test;
 using publish::Stream;
-
-extern std::atomic<long> plab_test_allocations;
 
 namespace
 {
@@ -325,13 +323,13 @@ TEST_CASE("a warm step allocates nothing: unwatched, and with frames")
         wire::Server status;
         status.scene_file = "a scene whose name is too long for the small string optimisation.xml";
         run.collector.status(status);
-        const long before = plab_test_allocations;
+        const long before = allocations;
         for (int i = 0; i < 100; ++i)
         {
             run.collector.collect(scene.simulation(), none, true);
             run.collector.status(status);
         }
-        CHECK(plab_test_allocations - before == 0);
+        CHECK(allocations - before == 0);
     }
 }
 

@@ -1,11 +1,8 @@
 // A warm writer takes messages without allocating; a chunk costs a few allocations, whatever its content.
 #include <doctest/doctest.h>
 
-#include <atomic>
-
 #include "sample_file.h"
-
-extern std::atomic<long> plab_test_allocations;
+#include "support/allocation_counter.h"
 
 using namespace plab::recording;
 using namespace plab::recording::test;
@@ -50,11 +47,11 @@ TEST_CASE("a warm writer allocates nothing for a message, and little for a chunk
         for (int i = 0; i < 5; ++i) write_chunk(100), close_chunk();
 
         write_chunk(1);
-        long before = plab_test_allocations;
+        long before = plab::test::allocations;
         for (int i = 0; i < 99; ++i) (void)writer.write({channel, 0, ++time, 0, view_of(data)}, now);
-        CHECK(plab_test_allocations - before == 0);
-        before = plab_test_allocations;
+        CHECK(plab::test::allocations - before == 0);
+        before = plab::test::allocations;
         close_chunk();
-        CHECK(plab_test_allocations - before <= 4);
+        CHECK(plab::test::allocations - before <= 4);
     }
 }

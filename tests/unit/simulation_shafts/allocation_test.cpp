@@ -1,28 +1,6 @@
-// A warm evaluation allocates no memory. This file counts allocations for the whole test program.
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+// A warm evaluation allocates no memory.
+#include "support/allocation_counter.h"
 #include "train.h"
-
-namespace
-{
-std::atomic<long> allocations{0};
-}
-
-void* operator new(std::size_t n)
-{
-    ++allocations;
-    if (void* p = std::malloc(n == 0 ? 1 : n)) return p;
-    throw std::bad_alloc();
-}
-void* operator new(std::size_t n, const std::nothrow_t&) noexcept
-{
-    ++allocations;
-    return std::malloc(n == 0 ? 1 : n);
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace plab;
 using namespace plab::test;
