@@ -1,4 +1,6 @@
 // A scene uses only what it needs: libraries, phases, memory, time.
+#include <sys/resource.h>
+
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -142,6 +144,30 @@ TEST_CASE("an empty step costs less than a microsecond")
     }
     MESSAGE("empty step: ", best, " ns");
     CHECK(best < 1000);
+}
+
+TEST_CASE("memory grows with the number of trains, not with its square")
+{
+    const auto most_kB = []
+    {
+        rusage use{};
+        getrusage(RUSAGE_SELF, &use);
+        return use.ru_maxrss;
+    };
+    std::string pairs;
+    for (int i = 0; i < 2000; ++i)
+    {
+        const std::string n = std::to_string(i);
+        pairs += "<component id=\"a" + n + "\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"1\"/><component id=\"b" + n +
+                 "\" type=\"State/Shaft\" inertia=\"1\"/><component id=\"g" + n +
+                 "\" type=\"Constraint/AngularVelocity/Impulse\" driver=\"a" + n + "\" driven=\"b" + n + "\" velocity_factor=\"-2\"/>\n";
+    }
+    const long before = most_kB();
+    Scene s(pairs);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(3);
+    MESSAGE("2000 pairs of shafts: ", most_kB() - before, " kB");
+    CHECK(most_kB() - before < 100'000);
 }
 
 TEST_CASE("ten thousand bodies load in seconds")

@@ -17,10 +17,14 @@ void ShaftCoupling::begin_level(Level level, const ConstraintGraph& graph, const
     participants_.clear();
 }
 
-void ShaftCoupling::clear()
+void ShaftCoupling::configure(std::span<const std::uint32_t> members, std::span<const std::uint32_t> prescribed)
 {
-    index_.clear(), members_.clear(), roots_.clear();
-    components_.clear(), shares_.clear(), participants_.clear();
+    index_.clear(), components_.clear(), shares_.clear(), participants_.clear();
+    std::vector<std::uint32_t> rows(members.begin(), members.end());
+    rows.insert(rows.end(), prescribed.begin(), prescribed.end());
+    std::sort(rows.begin(), rows.end());
+    for (const std::uint32_t row : rows) index_.add(row);
+    members_.assign(index_.members().size(), {}), roots_.assign(index_.members().size(), {});
 }
 
 double ShaftCoupling::inertia_of(std::uint32_t root) const
@@ -84,7 +88,7 @@ void ShaftCoupling::begin_speeds(const ConstraintGraph& graph, const Shafts& sha
 
 void ShaftCoupling::start_sweep()
 {
-    ++sweep_;
+    ++sweep_, next_ = 0;
     largest_change_ = 0;
     conflict_.reset();
 }
@@ -92,8 +96,11 @@ void ShaftCoupling::start_sweep()
 void ShaftCoupling::begin(std::uint32_t component, Ref driven)
 {
     current_ = component;
-    const std::uint32_t i = components_.add(component);
+    // Each sweep calls the same components in the same order, so most need no search.
+    const auto known = components_.members();
+    const std::uint32_t i = next_ < known.size() && known[next_] == component ? next_ : components_.add(component);
     if (i == shares_.size()) shares_.emplace_back();
+    current_share_ = i, next_ = i + 1;
     Share& share = shares_[i];
     if (share.solve == solve_) return;
     share = {solve_, driven.index, 0, 0};
@@ -137,12 +144,12 @@ void ShaftCoupling::apply(Ref shaft, double torque)
     assert(current_ != kNoIndex);
     const std::uint32_t i = shaft.index;
     const double ratio = shafts_->ratio[i];
-    Share& share = share_of(current_);
+    Share& share = shares_[current_share_];
     if (i == share.driven) share.reaction += torque;
-    Root* const entry = entered(root_of(shaft));
-    if (!entry) return;  // not advanced here, so torques do not change it
-    Root& r = *entry;
-    members_[index_.find(i)].torque += torque;
+    const std::uint32_t root = root_of(shaft), at = index_.find(root);
+    if (at == kNoIndex || roots_[at].solve != solve_) return;  // not advanced here, so torques do not change it
+    Root& r = roots_[at];
+    members_[root == i ? at : index_.find(i)].torque += torque;
     r.torque += ratio * torque;
 
     const double before = r.rate;
@@ -173,7 +180,7 @@ void ShaftCoupling::assign(Ref shaft, double rate)
         return;
     }
     r.sweep = sweep_, r.driver = current_, r.driven = i;
-    if (level_ == Level::Speed) share_of(current_).work += 0.5 * r.inertia * (root_rate - r.rate) * (root_rate + r.rate);
+    if (level_ == Level::Speed) shares_[current_share_].work += 0.5 * r.inertia * (root_rate - r.rate) * (root_rate + r.rate);
     change_rate(r, root_rate);
 }
 

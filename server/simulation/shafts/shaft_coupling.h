@@ -53,8 +53,8 @@ struct CouplingReport
 class ShaftCoupling final : public ShaftMotion
 {
 public:
-    /// Forgets who took part, so that another set of shafts can be solved. Keeps its memory.
-    void clear();
+    /// Prepares for solves of these shafts. Keeps its memory. Without it, shafts are numbered as they come, which takes more time.
+    void configure(std::span<const std::uint32_t> members, std::span<const std::uint32_t> prescribed);
 
     // One solve: begin, sweeps, results. Graph and shafts must outlive it.
     // --------------------------------------------------
@@ -185,6 +185,8 @@ private:
     Level level_ = Level::Acceleration;
     std::uint64_t solve_ = 0, sweep_ = 0;
     std::uint32_t current_ = kNoIndex;  ///< component
+    std::uint32_t current_share_ = 0;   ///< its number
+    std::uint32_t next_ = 0;            ///< number of the component that is likely to come next
     double largest_change_ = 0;
     std::optional<DriveConflict> conflict_;
     MemberIndex index_;            // of shafts

@@ -11,7 +11,7 @@ ShaftSystem::Part& ShaftSystem::part_of_cluster(std::uint32_t cluster)
     if (i < count_) return parts_[i];
     if (count_ == parts_.size()) parts_.emplace_back();
     Part& part = parts_[count_++];
-    part.members.clear(), part.prescribed.clear(), part.couplings.clear(), part.coupling.clear();
+    part.members.clear(), part.prescribed.clear(), part.couplings.clear();
     part.begun = false;
     return part;
 }
@@ -40,6 +40,7 @@ void ShaftSystem::configure(const world::World& world, const Schedule& schedule,
     for (std::uint32_t i = 0; i < count_; ++i)
     {
         Part& part = parts_[i];
+        part.coupling.configure(part.members, part.prescribed);
         std::sort(part.members.begin(), part.members.end(), by_rank);
         std::sort(part.prescribed.begin(), part.prescribed.end(), by_rank);
         std::sort(part.couplings.begin(), part.couplings.end());
