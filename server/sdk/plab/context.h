@@ -12,6 +12,7 @@
 #include "plab/interruption.h"
 #include "plab/ref.h"
 #include "plab/value.h"
+#include "plab/workers.h"
 
 namespace plab
 {
@@ -81,6 +82,7 @@ struct StepContext
     EventSink* events = nullptr;
     std::vector<ParameterChange>* changes = nullptr;  ///< drive phase only
     const Interruption* interruption = nullptr;       ///< long computations should check interrupted() now and then
+    Workers* workers = nullptr;                       ///< null: the call has its own thread alone
 
     std::span<const std::uint32_t> component_of_row;  ///< directory index of each row of this table
     std::span<const std::uint32_t> facet_of_row;      ///< host table index of each row, where the type has a facet

@@ -11,8 +11,8 @@ namespace plab::simulation
 class Advance
 {
 public:
-    Advance(StepState& step, GroupMotion& motion, ContactBook& contacts, HardContacts& hard, ContactForces& forces, int threads)
-        : step_(step), motion_(motion), contacts_(contacts), hard_(hard), forces_(forces), batches_(step, motion, threads)
+    Advance(StepState& step, GroupMotion& motion, ContactBook& contacts, HardContacts& hard, ContactForces& forces)
+        : step_(step), motion_(motion), contacts_(contacts), hard_(hard), forces_(forces), batches_(step, motion)
     {
     }
 

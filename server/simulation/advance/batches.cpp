@@ -127,7 +127,7 @@ void BatchedAdvance::plan()
     }
     std::stable_sort(clusters.begin(), clusters.end(), [](const Cluster& a, const Cluster& b) { return a.sharing < b.sharing; });
     batches_.clear();
-    batches_.reserve(static_cast<std::size_t>(workers_.threads()));  // pointers to batches must stay valid
+    batches_.reserve(static_cast<std::size_t>(step_.workers.threads()));  // pointers to batches must stay valid
     SharedParts shared;
     std::map<std::uint32_t, std::size_t> home;
     for (const Cluster& c : clusters)
@@ -161,7 +161,7 @@ void BatchedAdvance::plan()
 
 Batch& BatchedAdvance::lightest_batch(std::size_t total_load)
 {
-    const auto threads = static_cast<std::size_t>(workers_.threads());
+    const auto threads = static_cast<std::size_t>(step_.workers.threads());
     for (Batch& batch : batches_)
         if (batch.load * threads < total_load) return batch;
     if (batches_.size() < threads) return batches_.emplace_back();
@@ -244,7 +244,7 @@ void BatchedAdvance::advance()
     else
     {
         const CostScope scope(step_.meter, waiting_ns_);
-        workers_.run(batches_.size(), [this](std::size_t b) { run_batch_measured(batches_[b]); });
+        step_.workers.run(batches_.size(), [this](std::size_t b) { run_batch_measured(batches_[b]); });
     }
     emit_in_order();
     // After a split the batches are planned again, so that the order of the parts follows from split_ and not from the history.

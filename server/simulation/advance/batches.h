@@ -6,7 +6,6 @@
 
 #include <memory>
 
-#include "simulation/advance/worker_pool.h"
 #include "simulation/motion/group_motion.h"
 
 namespace plab::simulation
@@ -45,7 +44,7 @@ struct Batch
 class BatchedAdvance
 {
 public:
-    BatchedAdvance(StepState& step, GroupMotion& motion, int threads) : step_(step), motion_(motion), workers_(threads) {}
+    BatchedAdvance(StepState& step, GroupMotion& motion) : step_(step), motion_(motion) {}
 
     /// To be called after any structural change.
     void rebuild();
@@ -68,7 +67,6 @@ private:
 
     StepState& step_;
     GroupMotion& motion_;
-    WorkerPool workers_;
     std::vector<Batch> batches_;
     bool ready_ = false;
     std::vector<std::uint32_t> split_;

@@ -12,7 +12,7 @@ class ComponentCall
 public:
     ComponentCall(StepState& step, world::Table& table, Row row) : context(step.context()), call(step.call()), table_(table), row_(row)
     {
-        context.events = &step;
+        context.events = &step, context.workers = &step.workers;
         context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
         call.context = &context, call.rows = Rows(&row_, 1);
     }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "simulation/systems/group_system.h"
+#include "simulation/threads/worker_pool.h"
 
 namespace plab::simulation
 {
@@ -39,7 +40,7 @@ struct Reported
 
 struct StepState final : EventSink
 {
-    explicit StepState(world::World& of) : world(of) {}
+    StepState(world::World& of, int threads) : world(of), workers(threads) {}
     StepState(const StepState&) = delete;
     StepState& operator=(const StepState&) = delete;
 
@@ -69,6 +70,7 @@ struct StepState final : EventSink
     }
 
     world::World& world;
+    WorkerPool workers;  ///< lent to calls on the step thread; calls on other threads must not use it
     Schedule schedule;
     Groups groups;
     std::vector<std::uint32_t> all_groups;  ///< their indices, ascending

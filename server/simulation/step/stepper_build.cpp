@@ -32,7 +32,8 @@ void add_drives(const world::World& world, const Schedule& schedule, ConstraintG
 
 }  // namespace
 
-Stepper::Stepper(world::World& world, int threads) : step_(world), advance_(step_, motion_, book_, hard_, forces_, std::max(1, threads))
+Stepper::Stepper(world::World& world, int threads)
+    : step_(world, std::max(1, threads)), advance_(step_, motion_, book_, hard_, forces_)
 {
     motion_.remember_with(&forces_);
 }

@@ -1,4 +1,4 @@
-#include "simulation/advance/worker_pool.h"
+#include "simulation/threads/worker_pool.h"
 
 namespace plab::simulation
 {
@@ -20,19 +20,19 @@ WorkerPool::~WorkerPool()
 
 void WorkerPool::take_jobs()
 {
-    for (std::size_t i = next_++; i < count_; i = next_++) (*job_)(i);
+    for (std::size_t i = next_++; i < count_; i = next_++) call_(job_, i);
 }
 
-void WorkerPool::run(std::size_t count, const std::function<void(std::size_t)>& job)
+void WorkerPool::run_jobs(std::size_t count, Call call, void* job)
 {
     if (workers_.empty() || count < 2)
     {
-        for (std::size_t i = 0; i < count; ++i) job(i);
+        for (std::size_t i = 0; i < count; ++i) call(job, i);
         return;
     }
     {
         const std::lock_guard lock(mutex_);
-        job_ = &job, count_ = count, next_ = 0, busy_ = workers_.size();
+        call_ = call, job_ = job, count_ = count, next_ = 0, busy_ = workers_.size();
         ++round_;
     }
     wake_.notify_all();

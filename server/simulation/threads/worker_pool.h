@@ -3,35 +3,36 @@
 
 #include <atomic>
 #include <condition_variable>
-#include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "plab/workers.h"
+
 namespace plab::simulation
 {
 
-class WorkerPool
+class WorkerPool final : public Workers
 {
 public:
     /// `threads` in all, the caller's included; 1 starts none.
     explicit WorkerPool(int threads);
-    ~WorkerPool();
+    ~WorkerPool() override;
     WorkerPool(const WorkerPool&) = delete;
     WorkerPool& operator=(const WorkerPool&) = delete;
 
-    int threads() const { return static_cast<int>(workers_.size()) + 1; }
-    /// Runs job(0) .. job(count - 1), each once, and returns when all are done.
-    void run(std::size_t count, const std::function<void(std::size_t)>& job);
+    int threads() const override { return static_cast<int>(workers_.size()) + 1; }
 
 private:
+    void run_jobs(std::size_t count, Call call, void* job) override;
     void work();
     void take_jobs();
 
     std::vector<std::thread> workers_;
     std::mutex mutex_;
     std::condition_variable wake_, done_;
-    const std::function<void(std::size_t)>* job_ = nullptr;
+    Call call_ = nullptr;
+    void* job_ = nullptr;
     std::size_t count_ = 0;
     std::atomic<std::size_t> next_{0};
     std::size_t busy_ = 0;
