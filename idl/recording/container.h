@@ -30,7 +30,6 @@ public:
 
     /// Until finish(), and not after a move.
     bool is_open() const { return sink_ != nullptr; }
-    bool is_damaged() const { return is_damaged_; }
     /// Truncates what a failed append left.
     Result<void> repair();
     /// Flushes the appended data to the disk.

@@ -52,7 +52,6 @@ public:
     void add(const MetadataIndex& index) { metadata_.push_back(index); }
     Result<void> add(const ChunkIndex& index, const ChunkContents& contents);
 
-    bool has_index() const { return has_index_; }
     Statistics statistics() const;
     std::uint64_t messages() const { return statistics_.messages; }
     /// Writes summary, summary offsets, footer and closing magic; `begin`: where they start in the file.

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "figures/axes.h"
-#include "study/plot/figures.h"
+#include "study/plot.h"
 #include "study/write.h"
 
 namespace plab::study

@@ -6,7 +6,7 @@
 #include "figures/page.h"
 #include "model/exact_text.h"
 #include "model/values.h"
-#include "study/plot/figures.h"
+#include "study/plot.h"
 #include "study/write.h"
 
 namespace plab::study

@@ -11,7 +11,7 @@
 #include "figures/page.h"
 #include "model/compile.h"
 #include "program/text_out.h"
-#include "study/plot/figures.h"
+#include "study/plot.h"
 #include "study/write.h"
 
 namespace plab::study

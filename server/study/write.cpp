@@ -5,7 +5,7 @@
 
 #include "plab/csv.h"
 #include "program/text_out.h"
-#include "study/plot/figures.h"
+#include "study/plot.h"
 
 namespace plab::study
 {

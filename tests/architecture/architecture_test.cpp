@@ -55,6 +55,41 @@ TEST_CASE("no files include one another in a circle")
     CHECK(check_circles({knot[0], knot[2]}).empty());
 }
 
+TEST_CASE("no folders include one another in a circle, in the sources or by the table")
+{
+    for (const std::string& complaint : check_folder_circles(tree())) FAIL_CHECK(complaint);
+    // No two of these files include one another.
+    const std::vector<File> knot{{"server/study/write.cpp", "#include \"study/plot/plot.h\"\n"},
+                                 {"server/study/study.h", ""},
+                                 {"server/study/plot/plot.h", "#include \"study/study.h\"\n"}};
+    CHECK(check_circles(knot).empty());
+    CHECK(check_folder_circles(knot) == Complaints{"server/study -> server/study/plot -> server/study"});
+    CHECK(check_folder_circles({knot[1], knot[2]}).empty());
+
+    for (const std::string& complaint : check_table(layers())) FAIL_CHECK(complaint);
+    CHECK(check_table({{"a", {"b"}, {}}, {"b", {"c"}, {}}, {"c", {"a"}, {}}}) == Complaints{"a -> b -> c -> a"});
+    CHECK(check_table({{"a/x", {"b"}, {}}, {"b", {"a"}, {}}}) == Complaints{"a/x -> b -> a/x"});
+    CHECK(check_table({{"a/x", {"a"}, {}}, {"a", {"b"}, {}}, {"b", {}, {}}}).empty());
+}
+
+TEST_CASE("each folder of the rooms with many has a row of its own")
+{
+    for (const std::string& complaint : check_own_rows(paths_of(tree()))) FAIL_CHECK(complaint);
+    for (const char* folder : {"server/simulation/new_room", "server/simulation/step/new_room", "interactions/fields/new_room",
+                               "clients/viewer/new_room", "idl/new_room"})
+        CHECK(check_own_rows({std::string(folder) + "/a.cpp"}) == Complaints{std::string(folder) + ": has no row of its own in the table"});
+    CHECK(check_own_rows({"server/simulation/step/a.cpp", "interactions/fields/a.cpp", "server/new_room/a.cpp"}).empty());
+}
+
+TEST_CASE("a class has no friends in other folders")
+{
+    for (const std::string& complaint : check_friends(tree())) FAIL_CHECK(complaint);
+    const File house{"server/world/a.h", "class A\n{\n    friend class Guest;\n};\n"};
+    CHECK(check_friends({house, {"server/model/b.h", "class Guest final : public B\n{\n};\n"}}) ==
+          Complaints{"server/world/a.h: has a friend of another folder: Guest"});
+    CHECK(check_friends({house, {"server/world/b.h", "class Guest\n{\n};\n"}}).empty());
+}
+
 TEST_CASE("the table names folders that exist")
 {
     for (const Layer& layer : layers())

@@ -9,8 +9,6 @@
 #include <regex>
 #include <sstream>
 
-#include "table.h"
-
 namespace plab::architecture
 {
 namespace
@@ -54,7 +52,7 @@ std::optional<Home> home_of(std::string_view path)
 std::optional<std::string> resolve(const std::string& from, const Home& home, const std::string& include, const Paths& known)
 {
     if (std::ranges::find(generated_files(), include) != generated_files().end()) return include;
-    std::vector<std::string> roots{folder_of(from), home.root};
+    std::vector<std::string> roots{folder_of(from), home.root, folder_of(home.root)};
     roots.insert(roots.end(), include_roots().begin(), include_roots().end());
     for (const std::string& root : roots)
     {
@@ -200,8 +198,9 @@ std::vector<File> read_tree(const std::string& root)
     for (const auto& top : fs::directory_iterator(root))
     {
         const std::string name = top.path().filename().string();
+        if (name == ".git") continue;  // in a linked worktree it is a file
         if (top.is_regular_file() && is_text(top.path())) files.push_back(read(top.path(), root));
-        if (!top.is_directory() || name == ".git" || name.starts_with("build")) continue;
+        if (!top.is_directory() || name.starts_with("build")) continue;
         for (const auto& entry : fs::recursive_directory_iterator(top))
             if (entry.is_regular_file() && is_text(entry.path())) files.push_back(read(entry.path(), root));
     }
@@ -240,6 +239,59 @@ Complaints check_includes(const File& file, const Paths& known)
 }
 
 Complaints check_circles(const std::vector<File>& files) { return CircleSearch(units_included(files)).run(); }
+
+Complaints check_folder_circles(const std::vector<File>& files)
+{
+    std::map<std::string, std::set<std::string>> folders;
+    for (const auto& [unit, others] : units_included(files))
+        for (const std::string& other : others)
+            if (folder_of(other) != folder_of(unit)) folders[folder_of(unit)].insert(folder_of(other));
+    return CircleSearch(folders).run();
+}
+
+Complaints check_table(const std::vector<Layer>& table)
+{
+    std::map<std::string, std::set<std::string>> may;
+    for (const Layer& layer : table)
+        for (const std::string_view target : layer.may_include)
+            for (const Layer& other : table)
+                if (&other != &layer && (other.folder == target || inside(other.folder, target)))
+                    may[std::string(layer.folder)].insert(std::string(other.folder));
+    return CircleSearch(may).run();
+}
+
+Complaints check_own_rows(const Paths& known)
+{
+    static constexpr std::string_view kPlaces[] = {"server/simulation", "interactions", "clients", "idl"};
+    std::set<std::string> out;
+    for (const std::string& path : known)
+    {
+        if (!is_source(path) || std::ranges::none_of(kPlaces, [&](std::string_view place) { return inside(path, place); })) continue;
+        const auto home = home_of(path);
+        if (!home || home->root != folder_of(path)) out.insert(folder_of(path) + ": has no row of its own in the table");
+    }
+    return {out.begin(), out.end()};
+}
+
+Complaints check_friends(const std::vector<File>& files)
+{
+    static const std::regex friendship(R"(\bfriend\s+(?:class|struct)\s+(?:\w+::)*(\w+)\s*;)");
+    static const std::regex definition(R"(\b(?:class|struct)\s+(?:\w+::)*(\w+)(?:\s+final)?\s*(?:\{|:[^:;]))");
+    std::map<std::string, std::set<std::string>> folders_of;
+    for (const File& file : files)
+        if (is_source(file.path))
+            for (std::sregex_iterator at(file.text.begin(), file.text.end(), definition), end; at != end; ++at)
+                folders_of[(*at)[1]].insert(folder_of(file.path));
+    Complaints out;
+    for (const File& file : files)
+    {
+        if (!is_source(file.path) || inside(file.path, "tests")) continue;
+        for (std::sregex_iterator at(file.text.begin(), file.text.end(), friendship), end; at != end; ++at)
+            if (!folders_of[(*at)[1]].contains(folder_of(file.path)))
+                out.push_back(file.path + ": has a friend of another folder: " + (*at)[1].str());
+    }
+    return out;
+}
 
 Complaints check_length(const File& file, int limit)
 {

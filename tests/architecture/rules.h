@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "table.h"
+
 namespace plab::architecture
 {
 
@@ -26,6 +28,14 @@ bool is_source(std::string_view path);
 Complaints check_includes(const File& file, const Paths& known);
 /// Files that include one another in a circle, a header and its source taken as one: "a -> b -> a".
 Complaints check_circles(const std::vector<File>& files);
+/// The same of the folders that these files stand in, whatever the table allows.
+Complaints check_folder_circles(const std::vector<File>& files);
+/// Layers that may include one another in a circle by the table alone. A layer that names a folder means the folders in it too.
+Complaints check_table(const std::vector<Layer>& table);
+/// Each folder with sources in server/simulation, interactions, clients and idl is a layer of its own, or is what an "x/*" stands for.
+Complaints check_own_rows(const Paths& known);
+/// A class has no friends that other folders define.
+Complaints check_friends(const std::vector<File>& files);
 Complaints check_length(const File& file, int limit);
 Complaints check_leftovers(const File& file);
 Complaints check_machine_paths(const File& file);

@@ -115,8 +115,10 @@ inline const std::vector<Layer>& layers()
         {"server/objects/cameras", {"server/sdk", "server/render"}, {}},
         {"server/objects/*", {"server/sdk"}, {}},
         {"interactions/detection", {"server/sdk", "server/geometry"}, {"ode/", "Eigen/"}},
+        {"interactions/constraints/joints", {"server/sdk", "interactions/constraints/angular_velocity"}, {}},
+        {"interactions/constraints/angular_velocity", {"server/sdk"}, {}},
         {"interactions/managers", {"server/sdk", "server/linear"}, {}},
-        {"interactions/scripts", {"server/sdk"}, {"lua.hpp"}},
+        {"interactions/scripts/lua", {"server/sdk"}, {"lua.hpp"}},
         {"interactions/*", {"server/sdk"}, {}},
         {"idl/values", {}, {}},  // plain values: files that include them see no DDS
         {"idl/recording",

@@ -1,6 +1,6 @@
 // Single impacts, with every algorithm (contact_algorithms.h). C1, C2, C3, C5 as in the catalogue. The solver does not matter:
 // C1 to C3 are free of forces, and C5 uses the default one, which is exact for constant forces (for C4 with the others see
-// impacts_flight_test.cpp).
+// impacts_flight_algorithms_test.cpp).
 #include <algorithm>
 #include <numbers>
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "figures/axes.h"
-#include "study/plot/figures.h"
+#include "study/plot.h"
 #include "study/write.h"
 
 using namespace plab;

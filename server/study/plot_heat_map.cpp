@@ -4,7 +4,7 @@
 #include <set>
 
 #include "figures/axes.h"
-#include "study/plot/figures.h"
+#include "study/plot.h"
 
 namespace plab::study::plot
 {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "figures/chart.h"
-#include "study/plot/figures.h"
+#include "study/plot.h"
 
 namespace plab::study::plot
 {

@@ -1,4 +1,4 @@
-#include "study/plot/figures.h"
+#include "study/plot.h"
 
 #include <algorithm>
 #include <cmath>
