@@ -37,7 +37,7 @@ public:
     bool built_from(const Geometry& geometry) const;
     ColliderKind kind() const { return kind_; }
     const Pose& pose() const { return source_.pose; }  ///< X_BS
-    const Vec3& size() const { return source_.size; }  ///< of bowls and bores: x is the radius, z the reach
+    const Vec3& size() const { return source_.size; }  ///< of bowls and bores: x is the radius, z the rim_height (plab/surface.h)
     const Hull& hull() const { return hull_; }         ///< of meshes
     const TriangleSurface& triangles() const { return triangles_; }
     /// Why a shape that should collide does not; empty if nothing is wrong.

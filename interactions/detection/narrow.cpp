@@ -62,8 +62,8 @@ void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, cons
     if (a.kind() == Sphere && b.kind() == Box) return sphere_box(a.size().x, X_a.p, b.size(), X_b, out);
     const Solid A(a, X_a), B(b, X_b);
     // A test of bounding spheres rejects most pairs.
-    const double reach = A.extent() + A.radius() + B.extent() + B.radius() + out.margin();
-    if (length_squared(B.center() - A.center()) > reach * reach) return;
+    const double bounding_distance = A.extent() + A.radius() + B.extent() + B.radius() + out.margin();
+    if (length_squared(B.center() - A.center()) > bounding_distance * bounding_distance) return;
     if (a.kind() == Sphere) return add_nearest(separation_of(A, B), out);
     if (a.kind() == Box && b.kind() == Box) return box_box(A, B, out);
     add_manifold(A, B, separation_of(A, B), out);

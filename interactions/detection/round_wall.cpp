@@ -30,13 +30,13 @@ struct Rim
 class RoundWall
 {
 public:
-    explicit RoundWall(const Collider& c) : bowl_(c.kind() == ColliderKind::Bowl), radius_(c.size().x), reach_(c.size().z)
+    explicit RoundWall(const Collider& c) : bowl_(c.kind() == ColliderKind::Bowl), radius_(c.size().x), rim_height_(c.size().z)
     {
         if (bowl_)
-            rims_[count_++] = {std::sqrt(std::fmax(0.0, (radius_ - reach_) * (radius_ + reach_))), reach_};
+            rims_[count_++] = {std::sqrt(std::fmax(0.0, (radius_ - rim_height_) * (radius_ + rim_height_))), rim_height_};
         else
-            rims_[count_++] = {radius_, -reach_}, rims_[count_++] = {radius_, reach_};
-        if (bowl_ && reach_ >= radius_) count_ = 0;  // a closed shell
+            rims_[count_++] = {radius_, -rim_height_}, rims_[count_++] = {radius_, rim_height_};
+        if (bowl_ && rim_height_ >= radius_) count_ = 0;  // a closed shell
     }
 
     bool is_bowl() const { return bowl_; }
@@ -53,13 +53,13 @@ public:
     /// Whether the nearest point of the complete sphere or cylinder belongs to the surface.
     bool faces(const Vec3& p) const
     {
-        if (!bowl_) return std::fabs(p.z) <= reach_;
-        return reach_ >= radius_ || p.z * radius_ <= reach_ * length(p) || p == Vec3{};
+        if (!bowl_) return std::fabs(p.z) <= rim_height_;
+        return rim_height_ >= radius_ || p.z * radius_ <= rim_height_ * length(p) || p == Vec3{};
     }
 
 private:
     bool bowl_;
-    double radius_, reach_;
+    double radius_, rim_height_;
     std::array<Rim, 2> rims_{};
     std::size_t count_ = 0;
 };

@@ -142,9 +142,9 @@ public:
         // The nearest place is always a contact; rounding may assign it to no face.
         const double outside = dot(nearest.direction(), c_ - nearest.point());
         offer(outside, -nearest.direction(), nearest.point(), nearest.triangle());
-        const double reach = radius_ + out_.limit();
-        if (!(outside < reach)) return;
-        const Vec3 by{reach, reach, reach};
+        const double limit = radius_ + out_.limit();
+        if (!(outside < limit)) return;
+        const Vec3 by{limit, limit, limit};
         s_.visit_box(c_ - by, c_ + by,
                      [&](std::uint32_t t)
                      {
@@ -242,13 +242,13 @@ private:
     }
 
     /// Whether both ends of the edge are beyond the same side of K by more than the limit, along one of K's own axes.
-    bool out_of_reach(const Vec3& a, const Vec3& b) const
+    bool beyond_limit(const Vec3& a, const Vec3& b) const
     {
         const double limit = out_.limit() + K_.radius();
-        const double reach = limit + K_.extent();
+        const double distance = limit + K_.extent();
         const Vec3 ab = b - a, ac = K_.center() - a;
         const double along = std::clamp(dot(ac, ab) / length_squared(ab), 0.0, 1.0);
-        if (length_squared(ac - along * ab) > reach * reach) return true;
+        if (length_squared(ac - along * ab) > distance * distance) return true;
         const Vec3 la = K_.to_local(a), lb = K_.to_local(b);
         if (K_.core() == Core::Hull)
         {
@@ -288,7 +288,7 @@ private:
             const Vec3& n = s_.triangles()[e.side[i]].normal;
             if (dot(n, K_.support(-n) - a) - K_.radius() >= out_.limit()) return;
         }
-        if (out_of_reach(a, b)) return;
+        if (beyond_limit(a, b)) return;
         const Solid rod = Solid::rod(a, b);
         const Separation s = separation_of(K_, rod);
         if (!(s.gap < out_.limit()) || !leads_away(e, -s.normal, s.point_b)) return;

@@ -50,9 +50,9 @@ std::vector<Mark> log_ticks(const Scale& s, int most)
 
 std::vector<Mark> symlog_ticks(const Scale& s, int most)
 {
-    const double reach = std::max(std::fabs(s.low), std::fabs(s.high));
+    const double largest = std::max(std::fabs(s.low), std::fabs(s.high));
     const int first = static_cast<int>(std::ceil(std::log10(s.threshold) - 1e-9)),
-              last = static_cast<int>(std::floor(std::log10(reach) + 1e-9));
+              last = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
     const int stride = std::max(1, (2 * (last - first + 1) + most) / most);
     std::vector<Mark> out{{0, "0"}};
     for (int e = first; e <= last; e += stride)
@@ -95,9 +95,9 @@ Scale Scale::around(Kind kind, const std::vector<double>& values)
     }
     if (kind == Kind::SymLog)
     {
-        const double reach = std::max({std::fabs(low), std::fabs(high), 1e-300});
+        const double largest = std::max({std::fabs(low), std::fabs(high), 1e-300});
         // At most twelve decades: smaller values are negligible beside the rest.
-        out.threshold = std::max(std::isfinite(smallest) ? std::pow(10.0, std::floor(std::log10(smallest))) : reach, reach * 1e-12);
+        out.threshold = std::max(std::isfinite(smallest) ? std::pow(10.0, std::floor(std::log10(smallest))) : largest, largest * 1e-12);
         out.low = low < 0 ? low * 2 : 0, out.high = high > 0 ? high * 2 : 0;
         if (out.low == out.high) out.high = 1;
         return out;

@@ -12,7 +12,7 @@ namespace
 /// Direction to the light: over the left shoulder of a viewer at the default view.
 const Vec3 kToLight = normalized(Vec3{-0.42, -0.55, 1.05});
 /// Planes and shadows end this many times the distance from the eye to the focus.
-constexpr double kReach = 14;
+constexpr double kPlaneRange = 14;
 /// About this many cells of the grid lie between eye and focus.
 constexpr double kCells = 5;
 
@@ -43,7 +43,7 @@ Box3 casters(const Drawing& drawing, const Frame& frame, const Basis& light, con
     for (std::size_t i = 0; i < drawing.items.size(); ++i)
     {
         const Item& item = drawing.items[i];
-        if (item.form == Form::Plane || !can_be_drawn(item) || length(item.pose.p - frame.focus) > frame.reach) continue;
+        if (item.form == Form::Plane || !can_be_drawn(item) || length(item.pose.p - frame.focus) > frame.plane_range) continue;
         const Vec3 p = frame.from_eye(item.pose.p);
         const Vec3 along{dot(p, light.right), dot(p, light.up), dot(p, light.back)};
         for (int k = 0; k < 3; ++k)
@@ -63,7 +63,7 @@ void aim_light(Frame& frame, const Drawing& drawing, const std::vector<double>& 
     frame.shadows = box.low.x <= box.high.x;
     if (!frame.shadows) return;
     // A square with a margin, so that nothing lies on the edge, and with a minimum depth.
-    const double most = std::max({box.high.x - box.low.x, box.high.y - box.low.y, 1e-6 * frame.reach});
+    const double most = std::max({box.high.x - box.low.x, box.high.y - box.low.y, 1e-6 * frame.plane_range});
     const Vec3 middle = (box.low + box.high) * 0.5;
     const double half = 0.53 * most;
     frame.casters = {{middle.x - half, middle.y - half, box.low.z - 0.05 * most},
@@ -116,12 +116,12 @@ Result<Frame> make_frame(const Drawing& drawing, const std::vector<double>& mesh
     const double distance = length(back);
     out.basis = basis_of(back, view.up);
     out.pixels_per_radian = height / (2 * std::tan(0.5 * view.field_of_view));
-    out.reach = kReach * distance;
+    out.plane_range = kPlaneRange * distance;
     out.grid = round_length(distance / kCells);
 
     std::vector<double> radii;
     for (const Item& item : drawing.items) radii.push_back(radius_of(item, mesh_radii));
-    double nearest = distance, farthest = 1.5 * out.reach;
+    double nearest = distance, farthest = 1.5 * out.plane_range;
     for (std::size_t i = 0; i < radii.size(); ++i)
     {
         if (drawing.items[i].form == Form::Plane || !can_be_drawn(drawing.items[i])) continue;

@@ -17,7 +17,7 @@ struct Frame
     Basis basis;
     Mat4 clip_from_E;
     double pixels_per_radian = 0;  ///< at the centre of the picture
-    double reach = 0;              ///< visible range of planes, from the focus, m
+    double plane_range = 0;        ///< visible range of planes, from the focus, m
     double grid = 1;               ///< width of its cells, m
 
     Vec3 to_light;  ///< unit, W

@@ -207,9 +207,9 @@ void OsmesaRenderer::draw_plane(const Frame& frame, const Pose& pose, const Vec3
     program.use();
     program.set("clip_from_E", frame.clip_from_E);
     program.set("middle", frame.from_eye(frame.focus - n * dot(n, focus)));
-    program.set("side_u", u * frame.reach);
-    program.set("side_v", v * frame.reach);
-    program.set("cells", frame.reach / frame.grid);
+    program.set("side_u", u * frame.plane_range);
+    program.set("side_v", v * frame.plane_range);
+    program.set("cells", frame.plane_range / frame.grid);
     program.set("phase", std::fmod(dot(u, focus) / frame.grid, 10), std::fmod(dot(v, focus) / frame.grid, 10));
     program.set("color", color);
     program.set("opacity", opacity);
@@ -234,7 +234,7 @@ void OsmesaRenderer::draw_plane_shadow(const Frame& frame, const Vec3& origin, c
     program.set("side_v", along_light(frame.light.up) * half.y);
     program.set("normal", normal);
     program.set("focus", frame.from_eye(frame.focus));
-    program.set("reach", frame.reach);
+    program.set("plane_range", frame.plane_range);
     // Drawn slightly in front of the plane itself.
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(-1, -4);

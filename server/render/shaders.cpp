@@ -214,11 +214,11 @@ void main()
 constexpr const char* kPlaneShadowFragment = R"(
 in vec3 point;
 uniform vec3 normal, focus;  // focus relative to the eye
-uniform float reach;         // m
+uniform float plane_range;        // m
 out vec4 result;
 void main()
 {
-    float fade = 1.0 - smoothstep(0.15, 1.0, distance(point, focus) / reach);
+    float fade = 1.0 - smoothstep(0.15, 1.0, distance(point, focus) / plane_range);
     result = vec4(0.02, 0.03, 0.05, 0.34 * fade * (1.0 - lit(point, normal, 8)));
 }
 )";

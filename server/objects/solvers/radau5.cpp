@@ -176,7 +176,7 @@ void Radau5Rows::describe(Schema& schema)
     describe_control(schema);
     schema.output(factorisations, "factorisations", unit::one, "pairs of linear systems that were factorised in the last step");
     // The name is part of the format of snapshots; with another name, files of earlier versions could not be read.
-    schema.state(reported_size, "told_size", unit::one, "an event has said that the group is large");
+    schema.state(reported_size, "reported_size", unit::one, "an event has said that the group is large");
     schema.scratch(memory, "memory", "working vectors and matrices");
 }
 

@@ -13,16 +13,16 @@ namespace plab
 enum class Surface : std::uint8_t
 {
     None,
-    Bowl,       ///< the inside of the sphere of `radius` around the origin of S, where z <= reach
-    Bore,       ///< the inside of the cylinder of `radius` about z of S, where |z| <= reach
+    Bowl,       ///< the inside of the sphere of `radius` around the origin of S, where z <= rim_height
+    Bore,       ///< the inside of the cylinder of `radius` about z of S, where |z| <= rim_height
     Triangles,  ///< the mesh's triangles, touched from the side from which they appear counter-clockwise
 };
 
-/// `radius`, `reach` (m): of bowls and bores.
-inline void set_surface(Geometry& mesh, Surface surface, double radius = 0, double reach = 0)
+/// `radius`, `rim_height` (m): of bowls and bores.
+inline void set_surface(Geometry& mesh, Surface surface, double radius = 0, double rim_height = 0)
 {
     mesh.hull_collides = false;
-    mesh.size = {radius, static_cast<double>(surface), reach};
+    mesh.size = {radius, static_cast<double>(surface), rim_height};
 }
 
 inline Surface surface_of(const Geometry& geometry)
