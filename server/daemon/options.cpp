@@ -211,11 +211,19 @@ Result<ScheduledOperation> parse_set(const std::string& text)
     return out;
 }
 
-std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& options)
+namespace
 {
-    CLI::App app{"plabd: a simulation server for interacting objects", "plabd"};
-    app.footer(kExamples);
-    app.set_version_flag("--version", std::string("plabd ") + PLAB_VERSION);
+
+/// Options as they were written; they are read once all of them are known.
+struct WrittenOptions
+{
+    std::string rate, states, recorded_states;
+    std::vector<std::string> swaps, sets;
+    bool check = false, expand = false, explain = false, no_bus = false;
+};
+
+void add_run_options(CLI::App& app, DaemonOptions& options, WrittenOptions& written)
+{
     app.add_option("scene", options.scene, "blueprint (XML)");
     app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")->check(&not_seconds, "");
     app.add_option("--out", options.out, "write the final state as JSON to FILE (- is standard output)")->type_name("FILE");
@@ -235,52 +243,80 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& opti
     app.add_flag("--table", options.table, "show a live table of the scene's state");
     app.add_flag("--hashes", options.hashes, "print the state hash of every step");
     app.add_flag("--maps", options.maps, "print the libraries that are mapped at the end of the run");
-    std::string rate;
-    app.add_option("--rate", rate, "real, max, or a factor of real time; default: max with --until, else real");
-    std::vector<std::string> swaps, sets;
-    app.add_option("--swap", swaps, "[STEP:]ID=TYPE: exchange a component at a step boundary (may be repeated)")
+    app.add_option("--rate", written.rate, "real, max, or a factor of real time; default: max with --until, else real");
+    app.add_option("--swap", written.swaps, "[STEP:]ID=TYPE: exchange a component at a step boundary (may be repeated)")
         ->take_all()
         ->allow_extra_args(false);
-    app.add_option("--set", sets, "[STEP:]ID.name=value: set a parameter or state (may be repeated)")->take_all()->allow_extra_args(false);
-    bool check = false, expand = false, explain = false;
-    app.add_flag("--check", check, "check the blueprint and exit");
-    app.add_flag("--expand", expand, "print the long form of the blueprint");
-    app.add_flag("--explain", explain, "print what is loaded, resolved and left out, and why");
+    app.add_option("--set", written.sets, "[STEP:]ID.name=value: set a parameter or state (may be repeated)")
+        ->take_all()
+        ->allow_extra_args(false);
+}
+
+/// Options that print something instead of running the scene.
+void add_task_options(CLI::App& app, DaemonOptions& options, WrittenOptions& written)
+{
+    app.add_flag("--check", written.check, "check the blueprint and exit");
+    app.add_flag("--expand", written.expand, "print the long form of the blueprint");
+    app.add_flag("--explain", written.explain, "print what is loaded, resolved and left out, and why");
     app.add_option("--reference", options.reference,
                    "print the reference of all component types, of one (Response/Rows, Rows) or of a kind")
         ->expected(0, 1)
         ->type_name("[TYPE]");
-    app.add_flag("--paused", options.paused, "wait before the first step until a client sends resume or step");
-    bool no_bus = false;
-    std::string states;
-    add_bus_options(app, options, states, no_bus);
-    std::string recorded_states;
-    add_record_options(app, options, recorded_states);
-    add_past_options(app, options);
-    if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return end;
-    options.scene = program::file_or_installed(options.scene);
-    const bool reference = app.count("--reference") > 0;
-    if (int(check) + int(expand) + int(explain) + int(reference) > 1)
-        return ParseEnd{2, "plabd: --check, --expand, --explain and --reference exclude one another\n"};
-    options.task = check ? Task::Check : expand ? Task::Expand : explain ? Task::Explain : reference ? Task::Reference : Task::Run;
+}
+
+/// Reads which task, scene and rate are wanted; a reason if they contradict one another.
+std::string take_task(bool reference, const WrittenOptions& written, DaemonOptions& options)
+{
+    if (int(written.check) + int(written.expand) + int(written.explain) + int(reference) > 1)
+        return "--check, --expand, --explain and --reference exclude one another";
+    options.task = written.check     ? Task::Check
+                   : written.expand  ? Task::Expand
+                   : written.explain ? Task::Explain
+                   : reference       ? Task::Reference
+                                     : Task::Run;
     if (options.scene.empty() && options.load.empty() && options.replay.file.empty() && options.task != Task::Reference)
-        return ParseEnd{2, "plabd: needs a scene; see plabd --help\n"};
-    if (!rate.empty())
-    {
-        const auto factor = control::parse_rate(rate);
-        if (!factor) return ParseEnd{2, "plabd: --rate: " + factor.error().reason + "\n"};
-        options.rate = *factor;
-    }
-    if (const std::string why = take_bus_options(states, no_bus, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
-    if (const std::string why = take_past_options(app, recorded_states, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
-    if (options.paused && !options.bus) return ParseEnd{2, "plabd: --paused needs the bus: without it, no client could resume the run\n"};
-    for (const auto& [texts, parse] : {std::pair(&swaps, &parse_swap), std::pair(&sets, &parse_set)})
+        return "needs a scene; see plabd --help";
+    if (written.rate.empty()) return {};
+    const auto factor = control::parse_rate(written.rate);
+    if (!factor) return "--rate: " + factor.error().reason;
+    options.rate = *factor;
+    return {};
+}
+
+std::string take_operations(const WrittenOptions& written, DaemonOptions& options)
+{
+    for (const auto& [texts, parse] : {std::pair(&written.swaps, &parse_swap), std::pair(&written.sets, &parse_set)})
         for (const std::string& text : *texts)
         {
             auto parsed = parse(text);
-            if (!parsed) return ParseEnd{2, "plabd: " + parsed.error().reason + "\n"};
+            if (!parsed) return parsed.error().reason;
             options.operations.push_back(*parsed);
         }
+    return {};
+}
+
+}  // namespace
+
+std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& options)
+{
+    CLI::App app{"plabd: a simulation server for interacting objects", "plabd"};
+    app.footer(kExamples);
+    app.set_version_flag("--version", std::string("plabd ") + PLAB_VERSION);
+    WrittenOptions written;
+    add_run_options(app, options, written);
+    add_task_options(app, options, written);
+    app.add_flag("--paused", options.paused, "wait before the first step until a client sends resume or step");
+    add_bus_options(app, options, written.states, written.no_bus);
+    add_record_options(app, options, written.recorded_states);
+    add_past_options(app, options);
+    if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return end;
+    options.scene = program::file_or_installed(options.scene);
+    std::string why = take_task(app.count("--reference") > 0, written, options);
+    if (why.empty()) why = take_bus_options(written.states, written.no_bus, options);
+    if (why.empty()) why = take_past_options(app, written.recorded_states, options);
+    if (why.empty() && options.paused && !options.bus) why = "--paused needs the bus: without it, no client could resume the run";
+    if (why.empty()) why = take_operations(written, options);
+    if (!why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
     return {};
 }
 

@@ -92,6 +92,29 @@ void print_report(const replay::ReplayReport& report, const DaemonOptions& optio
         std::printf("verified: %" PRId64 " state hashes are identical\n", report.verified);
 }
 
+/// Says what the replay found and writes the files that were asked for. Returns the exit code.
+int conclude(const replay::ReplayReport& report, const record::RunLog& log, simulation::Simulation& simulation,
+             const DaemonOptions& options)
+{
+    print_report(report, options);
+    for (const std::string& doubt : report.doubts) std::printf("%s: %s\n", report.mismatch ? "the cause may be" : "note", doubt.c_str());
+    if (report.interrupted)
+    {
+        if (!options.save.empty() || !options.out.empty()) spdlog::warn("--save and --out are not written: the end was not reached");
+        return program::code_of_interruption();
+    }
+    const std::string beyond = beyond_the_end(report, options);
+    const bool nothing = options.replay.verify && report.verified == 0 && !report.mismatch;
+    if (!beyond.empty())
+        (void)std::fprintf(stderr, "%s\n", beyond.c_str());
+    else if (nothing)
+        (void)std::fprintf(stderr, "nothing was verified: %s\n", why_nothing(log, report, options).c_str());
+    if (!options.save.empty())
+        if (auto saved = write_snapshot(simulation.capture(), {}, options.save); !saved) return fail(saved.errors());
+    if (!options.out.empty() && !write_end_state(simulation, options.out)) return 1;
+    return report.mismatch || nothing || !beyond.empty() ? 1 : 0;
+}
+
 }  // namespace
 
 /// "step 1200 of run 2, t = 5 s, 1200 state hashes are the same"
@@ -168,23 +191,7 @@ int replay_recording(plugins::PluginLibrary& library, const DaemonOptions& optio
     }
     if (!report) return fail(report.errors());
     if (trace) trace->sample(simulation, true);
-    print_report(*report, options);
-    for (const std::string& doubt : report->doubts) std::printf("%s: %s\n", report->mismatch ? "the cause may be" : "note", doubt.c_str());
-    if (report->interrupted)
-    {
-        if (!options.save.empty() || !options.out.empty()) spdlog::warn("--save and --out are not written: the end was not reached");
-        return program::code_of_interruption();
-    }
-    const std::string beyond = beyond_the_end(*report, options);
-    const bool nothing = options.replay.verify && report->verified == 0 && !report->mismatch;
-    if (!beyond.empty())
-        (void)std::fprintf(stderr, "%s\n", beyond.c_str());
-    else if (nothing)
-        (void)std::fprintf(stderr, "nothing was verified: %s\n", why_nothing(**log, *report, options).c_str());
-    if (!options.save.empty())
-        if (auto saved = write_snapshot(simulation.capture(), {}, options.save); !saved) return fail(saved.errors());
-    if (!options.out.empty() && !write_end_state(simulation, options.out)) return 1;
-    return report->mismatch || nothing || !beyond.empty() ? 1 : 0;
+    return conclude(*report, **log, simulation, options);
 }
 
 }  // namespace plab::daemon

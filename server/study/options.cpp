@@ -121,15 +121,8 @@ std::string typed(int argc, char** argv)
     return out;
 }
 
-}  // namespace
-
-std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& options)
+void add_study_options(CLI::App& app, StudyOptions& options, Texts& texts, std::string& suite)
 {
-    CLI::App app{"plab-study: error against run time, for one scene and many algorithms", "plab-study"};
-    app.footer(kExamples);
-    app.set_version_flag("--version", std::string("plab-study ") + PLAB_VERSION);
-    Texts texts;
-    std::string suite;
     const auto many = [&](const char* name, std::vector<std::string>& into, const char* what)
     { app.add_option(name, into, what)->take_all()->allow_extra_args(false); };
     app.add_option("scene", options.scene, "blueprint (XML)");
@@ -164,6 +157,18 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
     auto* const quiet = app.add_flag("--quiet", options.quiet, "print no progress on standard error");
     app.add_flag("--progress", options.progress, "print the progress every five seconds on standard error, even if that is not a terminal")
         ->excludes(quiet);
+}
+
+}  // namespace
+
+std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& options)
+{
+    CLI::App app{"plab-study: error against run time, for one scene and many algorithms", "plab-study"};
+    app.footer(kExamples);
+    app.set_version_flag("--version", std::string("plab-study ") + PLAB_VERSION);
+    Texts texts;
+    std::string suite;
+    add_study_options(app, options, texts, suite);
     if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return end;
     options.scene = program::file_or_installed(options.scene);
     options.suite = app.count("--suite") > 0;
