@@ -16,6 +16,8 @@ constexpr double kSlack = 0.1;
 constexpr double kSlackOfMargin = 2;
 /// A box that has become this many times as large as requested is replaced.
 constexpr double kMostSlack = 4;
+/// Members whose pairs are sorted in one job.
+constexpr std::size_t kMembersPerJob = 512;
 /// m: no box extends further than this.
 constexpr double kLargest = 1e30;
 /// Half extents, along the axes of W, of a box with half extents h rotated by q.
@@ -88,8 +90,7 @@ void BroadPhase::move(std::uint32_t index, const Collider& collider, const Pose&
     {
         const Vec3 n = part.normal = rotate(X_WS.q, {0, 0, 1});
         part.offset = dot(n, X_WS.p);
-        search_->set_half_space(index, n, part.offset + raised_);
-        stale_ = true;
+        part.tilted = true;
         return;
     }
     const bool round = collider.kind() == ColliderKind::Sphere;
@@ -102,10 +103,15 @@ void BroadPhase::move(std::uint32_t index, const Collider& collider, const Pose&
 /// search.
 void BroadPhase::raise_half_spaces()
 {
-    if (growth_ <= raised_ && (growth_ == 0 || raised_ <= 4 * kSlackOfMargin * growth_)) return;
-    raised_ = kSlackOfMargin * growth_;
-    for (const std::uint32_t i : half_spaces_) search_->set_half_space(i, parts_[i].normal, parts_[i].offset + raised_);
-    stale_ = stale_ || !half_spaces_.empty();
+    const bool raises = growth_ > raised_ || (growth_ > 0 && raised_ > 4 * kSlackOfMargin * growth_);
+    if (raises) raised_ = kSlackOfMargin * growth_;
+    for (const std::uint32_t i : half_spaces_)
+    {
+        if (!raises && !parts_[i].tilted) continue;
+        search_->set_half_space(i, parts_[i].normal, parts_[i].offset + raised_);
+        parts_[i].tilted = false;
+        stale_ = true;
+    }
 }
 
 bool BroadPhase::near(const Part& a, const Part& b) const
@@ -121,16 +127,16 @@ bool BroadPhase::near(const Part& a, const Part& b) const
     return true;
 }
 
-void BroadPhase::search()
+void BroadPhase::search(Workers* workers)
 {
-    search_->find(near_);
-    sort_pairs();
+    search_->find(near_, workers);
+    sort_pairs(workers);
     stale_ = false;
 }
 
 /// The order in which a search finds pairs depends on which part moved last; sorting removes that dependence. Parts are numbered by member,
 /// so pairs are first distributed by the member of their first part, which leaves short runs to sort.
-void BroadPhase::sort_pairs()
+void BroadPhase::sort_pairs(Workers* workers)
 {
     const std::size_t members = parts_.empty() ? 0 : parts_.back().member + std::size_t{1};
     run_ends_.assign(members + 1, 0);
@@ -140,22 +146,32 @@ void BroadPhase::sort_pairs()
     for (const Pair& p : near_) sorted_[run_ends_[parts_[p.first].member]++] = p;  // a run's start becomes its end
     const auto before = [&](const Pair& x, const Pair& y)
     { return std::tuple(parts_[x.second].member, x.first, x.second) < std::tuple(parts_[y.second].member, y.first, y.second); };
-    for (std::size_t m = 0, begin = 0; m < members; begin = run_ends_[m++])
-        std::sort(sorted_.begin() + begin, sorted_.begin() + run_ends_[m], before);
+    const auto sort_runs = [&](std::size_t job)
+    {
+        const std::size_t first = job * kMembersPerJob, end = std::min(first + kMembersPerJob, members);
+        for (std::size_t m = first, begin = m == 0 ? 0 : run_ends_[m - 1]; m < end; begin = run_ends_[m++])
+            std::sort(sorted_.begin() + static_cast<std::ptrdiff_t>(begin), sorted_.begin() + run_ends_[m], before);
+    };
+    run_jobs(workers, (members + kMembersPerJob - 1) / kMembersPerJob, sort_runs);
     near_.swap(sorted_);
     near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
 }
 
-const std::vector<BroadPhase::Pair>& BroadPhase::find_pairs(double margin)
+const std::vector<BroadPhase::Pair>& BroadPhase::find_candidates(double margin, Workers* workers)
 {
     growth_ = std::min(0.5 * margin, kLargest);
     for (std::uint32_t i = 0; i < parts_.size(); ++i)
         if (parts_[i].collides && !parts_[i].unbounded && !fits(parts_[i])) widen(i);
     raise_half_spaces();
-    if (stale_) search();
+    if (stale_) search(workers);
+    return near_;
+}
+
+const std::vector<BroadPhase::Pair>& BroadPhase::find_pairs(double margin)
+{
     pairs_.clear();
-    for (const Pair& p : near_)
-        if (near(parts_[p.first], parts_[p.second])) pairs_.push_back(p);
+    for (const Pair& p : find_candidates(margin, nullptr))
+        if (is_near(p)) pairs_.push_back(p);
     return pairs_;
 }
 

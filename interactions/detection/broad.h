@@ -30,11 +30,17 @@ public:
     void reset(const std::string& kind, std::size_t parts);
     /// Parts are numbered in the order of these calls; `member` (the body) must not decrease.
     void add(const Collider& collider, std::uint32_t member, Membership membership);
+    /// Several threads may move different parts at a time.
     void move(std::uint32_t part, const Collider& collider, const Pose& X_WS);
-    /// Pairs (i, j), i < j, whose tight boxes are at most `margin` (m) apart; ordered by members, then parts.
+    /// Pairs (i, j), i < j, ordered by members, then parts. Those among them whose tight boxes are at most `margin` (m) apart, as
+    /// is_near() tells, are all pairs of which that is true. `workers`: threads that may share the search; null: none.
+    const std::vector<Pair>& find_candidates(double margin, Workers* workers);
+    /// Those near pairs, in that order.
     const std::vector<Pair>& find_pairs(double margin = 0);
+    /// For a pair of the last find_candidates().
+    bool is_near(const Pair& pair) const { return near(parts_[pair.first], parts_[pair.second]); }
     /// Pairs (i, j), i < j, of which at least one part is in `parts`, whose tight boxes overlap when each is grown by the margin
-    /// (m, may be infinite) that it was last given by grow(); each at least once, in any order. No result of find_pairs() depends
+    /// (m, may be infinite) that it was last given by grow(); each at least once, in any order. No result of find_candidates() depends
     /// on these two.
     void grow(std::uint32_t part, double margin);
     void find_grown(std::span<const std::uint32_t> parts, std::vector<Pair>& pairs) { grown_search_->find_of(parts, pairs); }
@@ -45,16 +51,17 @@ private:
         std::uint32_t member = 0;
         bool collides = false;
         bool unbounded = false;
-        Vec3 normal;        // for unbounded parts: the half-space normal . p <= offset
-        double offset = 0;  // m
+        bool tilted = false;  // unbounded and moved since the search structure was told
+        Vec3 normal;          // for unbounded parts: the half-space normal . p <= offset
+        double offset = 0;    // m
         Box tight, wide;
     };
     bool near(const Part& a, const Part& b) const;
     bool fits(const Part& part) const;
     void widen(std::uint32_t part);
     void raise_half_spaces();
-    void search();
-    void sort_pairs();
+    void search(Workers* workers);
+    void sort_pairs(Workers* workers);
 
     std::unique_ptr<PairSearch> search_;
     std::unique_ptr<TreeSearch> grown_search_;  // not one of ODE's spaces: these boxes differ in every step

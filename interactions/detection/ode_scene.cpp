@@ -8,6 +8,9 @@ namespace plab::detection
 {
 namespace
 {
+/// Sizes of jobs. They do not depend on the number of threads. Contacts of kChunksAtOnce chunks wait to be delivered in order.
+constexpr std::size_t kMembersPerJob = 512, kPairsPerChunk = 128, kChunksAtOnce = 128;
+
 /// Encodes the shapes of the two bodies and the feature within that pair of shapes. Numbers wrap around for bodies with more
 /// than 64 shapes; flush() keeps the features of one pair of bodies distinct even then.
 std::uint32_t feature_of(std::uint32_t slot_a, std::uint32_t slot_b, std::uint32_t local)
@@ -60,7 +63,7 @@ bool OdeScene::update(const StepContext& context, const std::string& space, cons
         space_ = space, between_ = between, against_ = against;
         rebuild(bodies, shapes, order);
     }
-    move_parts(bodies, rebuilds);
+    move_parts(bodies, rebuilds, context.workers);
     return rebuilds;
 }
 
@@ -142,11 +145,16 @@ void OdeScene::move_member(Member& m, const Bodies& bodies)
     }
 }
 
-void OdeScene::move_parts(const Bodies& bodies, bool all)
+void OdeScene::move_parts(const Bodies& bodies, bool all, Workers* workers)
 {
     // Poses are compared, since not only the solver moves bodies: requests and rewinds do so as well.
-    for (Member& m : members_)
-        if (all || !(m.position == bodies.position[m.body] && m.orientation == bodies.orientation[m.body])) move_member(m, bodies);
+    const auto move_some = [&](std::size_t job)
+    {
+        for (std::size_t i = job * kMembersPerJob, end = std::min(i + kMembersPerJob, members_.size()); i < end; ++i)
+            if (Member& m = members_[i]; all || m.position != bodies.position[m.body] || m.orientation != bodies.orientation[m.body])
+                move_member(m, bodies);
+    };
+    run_jobs(workers, (members_.size() + kMembersPerJob - 1) / kMembersPerJob, move_some);
 }
 
 void OdeScene::move_active(const StepContext& context, const Bodies& bodies)
@@ -192,7 +200,7 @@ Pose OdeScene::place(const Part& part, const Vec3& p_OC, const Bodies& bodies) c
     return {p_OC + rotate(q, part.in_body.p - bodies.center_B[body]), q * part.in_body.q};
 }
 
-void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies)
+void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies, Narrow& narrow) const
 {
     const Part &pa = parts_[part_a], &pb = parts_[part_b];
     const Member &ma = members_[pa.member], &mb = members_[pb.member];
@@ -202,34 +210,48 @@ void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shi
     const Vec3 origin = bodies.position[ma.body];
     const Pose X_a = place(pa, {}, bodies);
     const Pose X_b = place(pb, (bodies.position[mb.body] - origin) + shift, bodies);
-    contact_points_.clear(margin_);
-    collide(ca, X_a, cb, X_b, contact_points_);
-    further_pairs_ += further_pairs_of(ca, cb, contact_points_.triangles()) + (parts_met_++ > 0 ? 1.0 : 0.0);
-    for (ContactPoint contact_point : contact_points_.all())
+    ContactPoints& contact_points = narrow.contact_points;
+    contact_points.clear(margin_);
+    collide(ca, X_a, cb, X_b, contact_points);
+    narrow.further_pairs += further_pairs_of(ca, cb, contact_points.triangles()) + (narrow.parts_met++ > 0 ? 1.0 : 0.0);
+    for (const ContactPoint& contact_point : contact_points.all())
     {
-        contact_point.point += origin;
-        contact_point.feature = feature_of(part_a - ma.first_part, part_b - mb.first_part, contact_point.feature);
-        found_.push_back(contact_point);
+        ContactPoint& at = narrow.found.emplace_back(MemberContact{pa.member, pb.member, contact_point}).at;
+        at.point += origin;
+        at.feature = feature_of(part_a - ma.first_part, part_b - mb.first_part, contact_point.feature);
     }
 }
 
-void OdeScene::flush(const Member& a, const Member& b, double shift, ContactSink& sink)
+/// After the last query for a pair of members: sorts its contacts and keeps their features distinct.
+void OdeScene::finish_pair(double shift, Narrow& narrow)
 {
-    const auto key = [](const ContactPoint& t) { return std::tie(t.feature, t.point.x, t.point.y, t.point.z); };
-    std::sort(found_.begin(), found_.end(), [&](const ContactPoint& s, const ContactPoint& t) { return key(s) < key(t); });
+    const auto key = [](const MemberContact& t) { return std::tie(t.at.feature, t.at.point.x, t.at.point.y, t.at.point.z); };
+    const auto own = std::span(narrow.found).subspan(narrow.first);
+    std::sort(own.begin(), own.end(), [&](const MemberContact& s, const MemberContact& t) { return key(s) < key(t); });
     std::uint32_t next = 0;
-    for (const ContactPoint& contact_point : found_)
+    for (MemberContact& c : own)
     {
-        Contact c;
-        c.a = {Facet::Body, a.body}, c.b = {Facet::Body, b.body};
-        c.feature = std::max(contact_point.feature, next);
-        c.point = contact_point.point, c.normal = contact_point.normal, c.depth = contact_point.depth - shift;
-        next = c.feature + 1;
-        penetration_ = std::max(penetration_, c.depth);
+        c.at.feature = std::max(c.at.feature, next);
+        c.at.depth -= shift;
+        next = c.at.feature + 1;
+        narrow.penetration = std::max(narrow.penetration, c.at.depth);
+    }
+    narrow.first = narrow.found.size();
+    narrow.parts_met = 0;
+}
+
+void OdeScene::deliver(const Narrow& narrow, ContactSink& sink)
+{
+    Contact c;
+    for (const MemberContact& found : narrow.found)
+    {
+        c.a = {Facet::Body, members_[found.a].body}, c.b = {Facet::Body, members_[found.b].body};
+        c.feature = found.at.feature, c.point = found.at.point, c.normal = found.at.normal, c.depth = found.at.depth;
         sink.add(c);
     }
-    found_.clear();
-    parts_met_ = 0;
+    pairs_ += narrow.pairs;
+    further_pairs_ += narrow.further_pairs;  // multiples of 1/64: exact in any order
+    penetration_ = std::max(penetration_, narrow.penetration);
 }
 
 void OdeScene::measure(GapQuery& query, const Bodies& bodies) const
@@ -278,6 +300,7 @@ void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactS
     if (!sink.motion_margin().empty()) return report_near(context, sink);
     penetration_ = 0, further_pairs_ = 0;
     margin_ = sink.margin();
+    if (narrow_.empty()) narrow_.resize(1);
     collect_persistent(context, sink);
     query_persistent(bodies, sink);
     if (!sink.only_persistent()) query_near(context, bodies, sink);
@@ -286,27 +309,55 @@ void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactS
 
 void OdeScene::query_persistent(const Bodies& bodies, ContactSink& sink)
 {
+    Narrow& narrow = narrow_.front();
+    narrow.clear();
     for (std::size_t i = 0; i < persistent_.size(); ++i)
     {
         const PersistentQuery& s = persistent_[i];
         if (i > 0 && s.a == persistent_[i - 1].a && s.b == persistent_[i - 1].b) continue;
         const Member &a = members_[s.a], &b = members_[s.b];
         for (std::uint32_t p = a.first_part; p < a.end_part; ++p)
-            for (std::uint32_t q = b.first_part; q < b.end_part; ++q) query(p, q, s.shift, bodies);
-        flush(a, b, length(s.shift), sink);
+            for (std::uint32_t q = b.first_part; q < b.end_part; ++q) query(p, q, s.shift, bodies, narrow);
+        finish_pair(length(s.shift), narrow);
+    }
+    deliver(narrow, sink);
+}
+
+/// The narrow phase of the candidates of one chunk. A pair of members belongs to the chunk in which its first candidate lies.
+void OdeScene::query_chunk(std::size_t chunk, const StepContext& context, const Bodies& bodies, Narrow& narrow) const
+{
+    narrow.clear();
+    const auto goes_on = [&](std::size_t i)  // the pair of members of the candidate before
+    { return i > 0 && i < candidates_.size() && members_of(candidates_[i]) == members_of(candidates_[i - 1]); };
+    std::size_t i = chunk * kPairsPerChunk, end = std::min(i + kPairsPerChunk, candidates_.size());
+    while (goes_on(i)) ++i;
+    while (goes_on(end)) ++end;
+    for (; i < end; ++i)
+    {
+        if (broad_.is_near(candidates_[i]))
+        {
+            ++narrow.pairs;
+            const auto [a, b] = members_of(candidates_[i]);
+            if (may_meet(members_[a], members_[b], context) && !is_persistent(a, b))
+                query(candidates_[i].first, candidates_[i].second, {}, bodies, narrow);
+        }
+        if (!goes_on(i + 1)) finish_pair(0, narrow);
     }
 }
 
 void OdeScene::query_near(const StepContext& context, const Bodies& bodies, ContactSink& sink)
 {
-    const auto& near = broad_.find_pairs(margin_);
-    pairs_ = near.size();
-    const auto members = [&](const BroadPhase::Pair& p) { return BroadPhase::Pair{parts_[p.first].member, parts_[p.second].member}; };
-    for (std::size_t i = 0; i < near.size(); ++i)
+    candidates_ = broad_.find_candidates(margin_, context.workers);
+    pairs_ = 0;
+    const std::size_t chunks = (candidates_.size() + kPairsPerChunk - 1) / kPairsPerChunk;
+    const bool alone = !context.workers || context.workers->threads() < 2;
+    const std::size_t at_once = alone ? 1 : std::min(chunks, kChunksAtOnce);
+    if (narrow_.size() < at_once) narrow_.resize(at_once);
+    for (std::size_t first = 0; first < chunks; first += at_once)
     {
-        const auto [a, b] = members(near[i]);
-        if (may_meet(members_[a], members_[b], context) && !is_persistent(a, b)) query(near[i].first, near[i].second, {}, bodies);
-        if (i + 1 == near.size() || members(near[i + 1]) != BroadPhase::Pair{a, b}) flush(members_[a], members_[b], 0, sink);
+        const std::size_t count = std::min(at_once, chunks - first);
+        run_jobs(context.workers, count, [&](std::size_t k) { query_chunk(first + k, context, bodies, narrow_[k]); });
+        for (std::size_t k = 0; k < count; ++k) deliver(narrow_[k], sink);
     }
 }
 

@@ -61,7 +61,7 @@ private:
     void add_members(const RefList& bodies, bool between, const Bodies& table);
     void add_colliders(const Bodies& bodies, const Shapes& shapes);
     void add_part(std::uint32_t member, std::uint32_t shape, const Pose& X_BP);
-    void move_parts(const Bodies& bodies, bool all);
+    void move_parts(const Bodies& bodies, bool all, Workers* workers);
     void move_active(const StepContext& context, const Bodies& bodies);
     void move_member(Member& member, const Bodies& bodies);
     bool may_meet(const Member& a, const Member& b, const StepContext& context) const;
@@ -69,10 +69,35 @@ private:
     void collect_persistent(const StepContext& context, const ContactSink& sink);
     bool is_persistent(std::uint32_t a, std::uint32_t b) const;
     Pose place(const Part& part, const Vec3& p_OC, const Bodies& bodies) const;
-    void query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies);
+    /// A contact of two members.
+    struct MemberContact
+    {
+        std::uint32_t a = 0, b = 0;  // members
+        ContactPoint at;
+    };
+    /// What one thread needs for the narrow phase of some pairs, and what it finds.
+    struct Narrow
+    {
+        ContactPoints contact_points;
+        std::vector<MemberContact> found;
+        std::size_t first = 0;      // in `found`: where the present pair of members begins
+        std::size_t parts_met = 0;  // shape pairs of the present pair of members
+        std::size_t pairs = 0;      // shape pairs with boxes that overlap
+        double further_pairs = 0;   // for ContactSink::took
+        double penetration = 0;     // m
+
+        void clear() { found.clear(), first = 0, parts_met = 0, pairs = 0, further_pairs = 0, penetration = 0; }
+    };
+    void query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies, Narrow& narrow) const;
     void query_persistent(const Bodies& bodies, ContactSink& sink);
     void query_near(const StepContext& context, const Bodies& bodies, ContactSink& sink);
-    void flush(const Member& a, const Member& b, double shift, ContactSink& sink);
+    std::pair<std::uint32_t, std::uint32_t> members_of(const BroadPhase::Pair& pair) const
+    {
+        return {parts_[pair.first].member, parts_[pair.second].member};
+    }
+    void query_chunk(std::size_t chunk, const StepContext& context, const Bodies& bodies, Narrow& narrow) const;
+    static void finish_pair(double shift, Narrow& narrow);
+    void deliver(const Narrow& narrow, ContactSink& sink);
 
     // What the scene was built from.
     std::string space_;
@@ -88,13 +113,12 @@ private:
     // Scratch data of one detection pass.
     std::vector<std::uint32_t> member_of_body_;
     std::vector<PersistentQuery> persistent_;
-    ContactPoints contact_points_;
-    std::vector<ContactPoint> found_;
+    std::vector<Narrow> narrow_;  // by chunk; the first serves a pass without threads
+    std::span<const BroadPhase::Pair> candidates_;
     std::vector<std::uint32_t> asked_;    // parts of the bodies that are advanced
     std::vector<BroadPhase::Pair> near_;  // pairs that may collide within the step: parts, then members
     std::size_t pairs_ = 0;
-    std::size_t parts_met_ = 0;  // shape pairs of the present pair of bodies
-    double further_pairs_ = 0;   // for ContactSink::took
+    double further_pairs_ = 0;  // for ContactSink::took
     double penetration_ = 0;
     double margin_ = 0;  // m, of the present detection pass
 };

@@ -107,7 +107,7 @@ void OdeSpace::note(void* pairs, dxGeom* a, dxGeom* b)
     static_cast<std::vector<PartPair>*>(pairs)->push_back(std::minmax(part_of(a), part_of(b)));
 }
 
-void OdeSpace::find(std::vector<PartPair>& pairs)
+void OdeSpace::find(std::vector<PartPair>& pairs, Workers* /*workers*/)
 {
     if (quadtree_) fit_tree();
     pairs.clear();

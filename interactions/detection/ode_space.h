@@ -19,7 +19,7 @@ public:
     void add_half_space(std::uint32_t part, Membership membership) override;
     void set_box(std::uint32_t part, const Box& box) override;
     void set_half_space(std::uint32_t part, const Vec3& normal, double offset) override;
-    void find(std::vector<PartPair>& pairs) override;
+    void find(std::vector<PartPair>& pairs, Workers* /*workers*/) override;
 
 private:
     static void note(void* pairs, dxGeom* a, dxGeom* b);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/box.h"
+#include "plab/workers.h"
 
 namespace plab::detection
 {
@@ -26,6 +27,14 @@ struct Membership
 
 inline bool may_meet(Membership a, Membership b) { return (a.between || b.between) && (a.dynamic || b.dynamic); }
 
+/// Runs job(0) .. job(count - 1), on the threads if there are any.
+template <class Job>
+void run_jobs(Workers* workers, std::size_t count, Job&& job)
+{
+    if (workers && workers->threads() > 1 && count > 1) return workers->run(count, job);
+    for (std::size_t i = 0; i < count; ++i) job(i);
+}
+
 class PairSearch
 {
 public:
@@ -40,7 +49,8 @@ public:
     virtual void set_half_space(std::uint32_t part, const Vec3& normal, double offset) = 0;
     /// Updates `pairs`, which must hold the result of the last call or be empty, to all (i, j), i < j, whose boxes overlap and
     /// that may collide; each at least once, in any order. A box and a half-space form a pair if the box reaches into it.
-    virtual void find(std::vector<PartPair>& pairs) = 0;
+    /// `workers`: threads that may share the search; null: none.
+    virtual void find(std::vector<PartPair>& pairs, Workers* workers) = 0;
 };
 
 /// `kind`: "tree" ("hash" in older files), or an ODE space: "simple", "sweep_and_prune" or "quadtree". `parts`: one more than

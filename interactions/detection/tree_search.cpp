@@ -4,6 +4,11 @@
 
 namespace plab::detection
 {
+namespace
+{
+/// Sizes of the jobs into which a search is divided. They do not depend on the number of threads.
+constexpr std::size_t kTreeParts = 64, kBoxesPerJob = 128;
+}  // namespace
 
 TreeSearch::TreeSearch(std::size_t parts)
     : boxes_(parts), memberships_(parts), has_box_(parts, 0), is_moved_(parts, 0), is_stale_(parts, 0), is_asked_(parts, 0)
@@ -46,67 +51,109 @@ void TreeSearch::set_half_space(std::uint32_t part, const Vec3& normal, double o
     note_moved(part);
 }
 
-/// Searches for all pairs.
-void TreeSearch::find_all(std::vector<PartPair>& pairs)
+/// Runs job(i, searcher) for each i < count, and adds the pairs that they find in the order of jobs.
+template <class Job>
+void TreeSearch::run_jobs(std::size_t count, std::vector<PartPair>& pairs, Workers* workers, Job&& job)
 {
-    pairs.clear();
-    tree_.query_pairs(
-        [&](std::uint32_t i, std::uint32_t j)
-        {
-            if (may_meet(memberships_[i], memberships_[j])) pairs.push_back(std::minmax(i, j));
-        });
+    const bool alone = !workers || workers->threads() < 2 || count < 2;
+    if (searchers_.size() < (alone ? 1 : count)) searchers_.resize(alone ? 1 : count);
+    if (alone)
+    {
+        searchers_.front().pairs.swap(pairs);
+        for (std::size_t i = 0; i < count; ++i) job(i, searchers_.front());
+        searchers_.front().pairs.swap(pairs);
+        return;
+    }
+    workers->run(count,
+                 [&](std::size_t i)
+                 {
+                     searchers_[i].pairs.clear();
+                     job(i, searchers_[i]);
+                 });
+    for (std::size_t i = 0; i < count; ++i) pairs.insert(pairs.end(), searchers_[i].pairs.begin(), searchers_[i].pairs.end());
+}
+
+void TreeSearch::add_of_half_spaces(std::span<const std::uint32_t> parts, std::vector<PartPair>& pairs) const
+{
     for (const HalfSpace& h : half_spaces_)
-        for (const std::uint32_t i : bounded_)
+        for (const std::uint32_t i : parts)
             if (may_meet(memberships_[h.part], memberships_[i]) && reaches(h.normal, h.offset, boxes_[i]))
                 pairs.push_back(std::minmax(h.part, i));
 }
 
+/// Searches for all pairs.
+void TreeSearch::find_all(std::vector<PartPair>& pairs, Workers* workers)
+{
+    pairs.clear();
+    const auto tree_parts = tree_.divide_pairs(kTreeParts);
+    run_jobs(tree_parts.size(), pairs, workers,
+             [&](std::size_t k, Searcher& s)
+             {
+                 tree_.query_pairs(tree_parts[k], s.node_pairs,
+                                   [&](std::uint32_t i, std::uint32_t j)
+                                   {
+                                       if (may_meet(memberships_[i], memberships_[j])) s.pairs.push_back(std::minmax(i, j));
+                                   });
+             });
+    add_of_half_spaces(bounded_, pairs);
+}
+
 /// Adds the pairs with at least one of `parts`; if both are, the one of lower index reports the pair.
-void TreeSearch::find_chosen(std::span<const std::uint32_t> parts, std::span<const std::uint8_t> is_chosen, std::vector<PartPair>& pairs)
+void TreeSearch::find_chosen(std::span<const std::uint32_t> parts, std::span<const std::uint8_t> is_chosen, std::vector<PartPair>& pairs,
+                             Workers* workers)
 {
     for (const HalfSpace& h : half_spaces_)
         for (const std::uint32_t i : is_chosen[h.part] != 0 ? std::span<const std::uint32_t>(bounded_) : parts)
             if (has_box_[i] != 0 && may_meet(memberships_[h.part], memberships_[i]) && reaches(h.normal, h.offset, boxes_[i]))
                 pairs.push_back(std::minmax(h.part, i));
-    for (const std::uint32_t i : parts)
+    const auto search_for = [&](std::uint32_t i, Searcher& s)
     {
-        if (has_box_[i] == 0) continue;
-        tree_.query(boxes_[i],
+        if (has_box_[i] == 0) return;
+        tree_.query(boxes_[i], s.stack,
                     [&](std::uint32_t j)
                     {
                         if (j == i || (is_chosen[j] != 0 && j < i) || !may_meet(memberships_[i], memberships_[j])) return;
-                        pairs.push_back(std::minmax(i, j));
+                        s.pairs.push_back(std::minmax(i, j));
                     });
-    }
+    };
+    run_jobs((parts.size() + kBoxesPerJob - 1) / kBoxesPerJob, pairs, workers,
+             [&](std::size_t k, Searcher& s)
+             {
+                 const std::size_t first = k * kBoxesPerJob;
+                 for (const std::uint32_t i : parts.subspan(first, std::min(kBoxesPerJob, parts.size() - first))) search_for(i, s);
+             });
 }
 
-/// Enters the boxes that have changed into the tree. If many have, or after as many changes as there are boxes, a rebuilt tree is
-/// cheaper and better; returns whether it was rebuilt.
+/// Enters the boxes that have changed into the tree; returns whether many have. Single boxes are reinserted, many are fitted where they
+/// are. After as many insertions as there are boxes, or if the tree has become worse, a rebuilt tree is cheaper.
 bool TreeSearch::refresh_tree()
 {
-    moves_since_build_ += stale_.size();
-    const bool rebuilds = fresh_ || 4 * stale_.size() > bounded_.size() || moves_since_build_ > bounded_.size();
+    constexpr std::size_t kRefitsPerMove = 32;  // so many fitted boxes do the harm of one reinsertion
+    const bool many = fresh_ || 4 * stale_.size() > bounded_.size();
+    moves_since_build_ += many ? stale_.size() / kRefitsPerMove : stale_.size();
+    bool rebuilds = fresh_ || moves_since_build_ > bounded_.size();
+    if (!rebuilds && many) rebuilds = !tree_.refit(boxes_, stale_);
     if (rebuilds)
     {
         tree_.build(boxes_, bounded_);
         moves_since_build_ = 0;
         fresh_ = false;
     }
-    else
+    else if (!many)
         for (const std::uint32_t i : stale_) tree_.move(i, boxes_[i]);
     for (const std::uint32_t i : stale_) is_stale_[i] = 0;
     stale_.clear();
-    return rebuilds;
+    return rebuilds || many;
 }
 
-void TreeSearch::find(std::vector<PartPair>& pairs)
+void TreeSearch::find(std::vector<PartPair>& pairs, Workers* workers)
 {
     if (refresh_tree() || 4 * moved_.size() > bounded_.size())
-        find_all(pairs);
+        find_all(pairs, workers);
     else
     {
         std::erase_if(pairs, [&](const PartPair& p) { return is_moved_[p.first] != 0 || is_moved_[p.second] != 0; });
-        find_chosen(moved_, is_moved_, pairs);
+        find_chosen(moved_, is_moved_, pairs, workers);
     }
     for (const std::uint32_t i : moved_) is_moved_[i] = 0;
     moved_.clear();
@@ -117,7 +164,7 @@ void TreeSearch::find_of(std::span<const std::uint32_t> parts, std::vector<PartP
     refresh_tree();
     pairs.clear();
     for (const std::uint32_t i : parts) is_asked_[i] = 1;
-    find_chosen(parts, is_asked_, pairs);
+    find_chosen(parts, is_asked_, pairs, nullptr);
     for (const std::uint32_t i : parts) is_asked_[i] = 0;
 }
 

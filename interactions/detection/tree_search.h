@@ -16,7 +16,7 @@ public:
     void add_half_space(std::uint32_t part, Membership membership) override;
     void set_box(std::uint32_t part, const Box& box) override;
     void set_half_space(std::uint32_t part, const Vec3& normal, double offset) override;
-    void find(std::vector<PartPair>& pairs) override;
+    void find(std::vector<PartPair>& pairs, Workers* workers) override;
     /// Sets `pairs` to all (i, j), i < j, that overlap, may collide and have at least one part in `parts`; each at least once, in
     /// any order. What find() returns next does not depend on these calls.
     void find_of(std::span<const std::uint32_t> parts, std::vector<PartPair>& pairs);
@@ -28,10 +28,21 @@ private:
         Vec3 normal;
         double offset = 0;  // m
     };
+    /// What one thread needs to search a part of the tree.
+    struct Searcher
+    {
+        std::vector<PartPair> pairs;
+        std::vector<std::uint32_t> stack;
+        std::vector<geometry::BoxTree::NodePair> node_pairs;
+    };
+    template <class Job>
+    void run_jobs(std::size_t count, std::vector<PartPair>& pairs, Workers* workers, Job&& job);
     void note_moved(std::uint32_t part);
     bool refresh_tree();
-    void find_all(std::vector<PartPair>& pairs);
-    void find_chosen(std::span<const std::uint32_t> parts, std::span<const std::uint8_t> is_chosen, std::vector<PartPair>& pairs);
+    void find_all(std::vector<PartPair>& pairs, Workers* workers);
+    void find_chosen(std::span<const std::uint32_t> parts, std::span<const std::uint8_t> is_chosen, std::vector<PartPair>& pairs,
+                     Workers* workers);
+    void add_of_half_spaces(std::span<const std::uint32_t> parts, std::vector<PartPair>& pairs) const;
 
     geometry::BoxTree tree_;
     std::vector<Box> boxes_;               // by part
@@ -44,7 +55,8 @@ private:
     std::vector<std::uint32_t> moved_;     // parts with is_moved_
     std::vector<std::uint32_t> stale_;     // parts with is_stale_
     std::vector<HalfSpace> half_spaces_;
-    bool fresh_ = true;  // no tree has been built yet
+    std::vector<Searcher> searchers_;  // by job; the first serves a search without threads
+    bool fresh_ = true;                // no tree has been built yet
     std::size_t moves_since_build_ = 0;
 };
 

@@ -7,6 +7,9 @@ namespace plab::geometry
 {
 namespace
 {
+/// The tree is worth a new build if the surface of its inner nodes has grown to this many times what it was when built.
+constexpr double kMostGrowth = 1.3;
+
 /// Twice the centre along an axis; 0 if that is NaN, so that sorting by it remains a valid order.
 double place(const Box& box, int axis)
 {
@@ -39,6 +42,7 @@ void BoxTree::build(std::span<const Box> boxes, std::span<const std::uint32_t> i
         tasks_.pop_back();
         split(task, boxes);
     }
+    built_surface_ = surface_of_branches();
 }
 
 void BoxTree::split(const Task& task, std::span<const Box> boxes)
@@ -92,7 +96,7 @@ std::uint32_t BoxTree::take_out(std::uint32_t leaf)
     else
     {
         (nodes_[above].left == parent ? nodes_[above].left : nodes_[above].right) = sibling;
-        refit(above);
+        refit_upwards(above);
     }
     return parent;
 }
@@ -130,13 +134,71 @@ void BoxTree::put_in(std::uint32_t leaf, std::uint32_t free_node)
         root_ = free_node;
     else
         (nodes_[above].left == sibling ? nodes_[above].left : nodes_[above].right) = free_node;
-    refit(free_node);
+    refit_upwards(free_node);
 }
 
-void BoxTree::refit(std::uint32_t node)
+void BoxTree::refit_upwards(std::uint32_t node)
 {
     for (; node != kNone; node = nodes_[node].parent)
         nodes_[node].box = joined(nodes_[nodes_[node].left].box, nodes_[nodes_[node].right].box);
+}
+
+double BoxTree::surface_of_branches() const
+{
+    double sum = 0;
+    for (const Node& node : nodes_)
+        if (node.left != kNone) sum += half_surface(node.box);
+    return sum;
+}
+
+bool BoxTree::refit(std::span<const Box> boxes, std::span<const std::uint32_t> items)
+{
+    if (root_ == kNone) return true;
+    for (const std::uint32_t i : items) nodes_[leaf_of_item_[i]].box = boxes[i];
+    // Parents before their children, then backwards.
+    order_.clear();
+    stack_.assign(1, root_);
+    while (!stack_.empty())
+    {
+        const std::uint32_t at = stack_.back();
+        stack_.pop_back();
+        if (nodes_[at].left == kNone) continue;
+        order_.push_back(at);
+        stack_.push_back(nodes_[at].left), stack_.push_back(nodes_[at].right);
+    }
+    for (std::size_t i = order_.size(); i-- > 0;)
+    {
+        Node& node = nodes_[order_[i]];
+        node.box = joined(nodes_[node.left].box, nodes_[node.right].box);
+    }
+    return surface_of_branches() <= kMostGrowth * built_surface_;  // false for NaN
+}
+
+std::span<const BoxTree::NodePair> BoxTree::divide_pairs(std::size_t parts)
+{
+    node_pairs_.clear();
+    if (root_ == kNone) return {};
+    node_pairs_.push_back({root_, root_});
+    const auto is_of_leaves = [&](const NodePair& p) { return nodes_[p.first].left == kNone && nodes_[p.second].left == kNone; };
+    while (node_pairs_.size() < parts)
+    {
+        inner_pairs_.clear();
+        bool divides = false;
+        for (const NodePair& p : node_pairs_)
+        {
+            if (p.first != p.second && !overlap(nodes_[p.first].box, nodes_[p.second].box)) continue;
+            if (is_of_leaves(p))
+            {
+                if (p.first != p.second) inner_pairs_.push_back(p);
+                continue;
+            }
+            divides = true;
+            push_inner_pairs(p, inner_pairs_);
+        }
+        node_pairs_.swap(inner_pairs_);
+        if (!divides) break;
+    }
+    return node_pairs_;
 }
 
 }  // namespace plab::geometry

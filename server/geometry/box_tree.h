@@ -1,8 +1,9 @@
 /// A binary bounding-volume tree of axis-aligned boxes: finds which of n boxes overlap a given one, in about log n tests.
 ///
 /// It is built top-down by splitting at the median along the longest axis. A box that moves later is removed and reinserted
-/// where it enlarges the tree least (surface area heuristic, Goldsmith and Salmon 1987). The shape of the tree depends on that
-/// history, but the set of boxes that a query finds does not.
+/// where it enlarges the tree least (surface area heuristic, Goldsmith and Salmon 1987); if many have moved, the boxes of the
+/// inner nodes are fitted again instead. The shape of the tree depends on that history, but the set of boxes that a query finds
+/// does not.
 #pragma once
 
 #include <cstdint>
@@ -22,50 +23,53 @@ public:
     void build(std::span<const Box> boxes, std::span<const std::uint32_t> items);
     /// Changes the box of an item that was passed to build().
     void move(std::uint32_t item, const Box& box);
+    /// Changes the boxes of `items` at once and keeps the branches of the tree. False: it has become worth a new build().
+    bool refit(std::span<const Box> boxes, std::span<const std::uint32_t> items);
     /// Calls found(item) for each item whose box overlaps `box`; the order is unspecified.
     template <class Found>
     void query(const Box& box, Found&& found)
     {
+        query(box, stack_, found);
+    }
+    /// The same with scratch memory of the caller, so that several threads may search at a time.
+    template <class Found>
+    void query(const Box& box, std::vector<std::uint32_t>& stack, Found&& found) const
+    {
         if (root_ == kNone) return;
-        stack_.assign(1, root_);
-        while (!stack_.empty())
+        stack.assign(1, root_);
+        while (!stack.empty())
         {
-            const Node& node = nodes_[stack_.back()];
-            stack_.pop_back();
+            const Node& node = nodes_[stack.back()];
+            stack.pop_back();
             if (!overlap(node.box, box)) continue;
             if (node.left == kNone)
                 found(node.item);
             else
-                stack_.push_back(node.left), stack_.push_back(node.right);
+                stack.push_back(node.left), stack.push_back(node.right);
         }
     }
 
-    /// Calls found(i, j) once for each pair of items whose boxes overlap; the order, also of i and j, is unspecified.
+    /// Two nodes between which pairs of items are searched for; twice the same: among its items.
+    using NodePair = std::pair<std::uint32_t, std::uint32_t>;
+    /// Divides the search for all pairs of items with overlapping boxes into at least `parts` parts, if there is as much to do. The
+    /// division depends on the tree alone. Valid until the tree changes.
+    std::span<const NodePair> divide_pairs(std::size_t parts);
+    /// Calls found(i, j) once for each pair of items of one part whose boxes overlap; the order, also of i and j, is unspecified.
+    /// `stack`: scratch memory.
     template <class Found>
-    void query_pairs(Found&& found)
+    void query_pairs(const NodePair& part, std::vector<NodePair>& stack, Found&& found) const
     {
-        if (root_ == kNone) return;
-        node_pairs_.assign(1, {root_, root_});
-        while (!node_pairs_.empty())
+        stack.assign(1, part);
+        while (!stack.empty())
         {
-            const auto [a, b] = node_pairs_.back();
-            node_pairs_.pop_back();
-            const Node &one = nodes_[a], &other = nodes_[b];
-            if (a == b)
-            {
-                if (one.left == kNone) continue;
-                for (const auto& [x, y] : {std::pair{one.left, one.right}, {one.left, one.left}, {one.right, one.right}})
-                    node_pairs_.emplace_back(x, y);
-                continue;
-            }
-            if (!overlap(one.box, other.box)) continue;
-            const bool leaf = one.left == kNone, other_leaf = other.left == kNone;
-            if (leaf && other_leaf)
-                found(one.item, other.item);
-            else if (other_leaf || (!leaf && half_surface(one.box) >= half_surface(other.box)))
-                node_pairs_.emplace_back(one.left, b), node_pairs_.emplace_back(one.right, b);
+            const NodePair pair = stack.back();
+            stack.pop_back();
+            const Node &one = nodes_[pair.first], &other = nodes_[pair.second];
+            if (pair.first != pair.second && !overlap(one.box, other.box)) continue;
+            if (pair.first == pair.second || one.left != kNone || other.left != kNone)
+                push_inner_pairs(pair, stack);
             else
-                node_pairs_.emplace_back(a, other.left), node_pairs_.emplace_back(a, other.right);
+                found(one.item, other.item);
         }
     }
 
@@ -78,6 +82,20 @@ private:
         std::uint32_t left = kNone, right = kNone;  // kNone: this is a leaf
         std::uint32_t item = 0;                     // of a leaf only
     };
+    /// The pairs of children that a pair of nodes consists of; none for a leaf with itself.
+    void push_inner_pairs(const NodePair& pair, std::vector<NodePair>& to) const
+    {
+        const auto [a, b] = pair;
+        const Node &one = nodes_[a], &other = nodes_[b];
+        if (a == b)
+        {
+            if (one.left != kNone) to.insert(to.end(), {{one.left, one.right}, {one.left, one.left}, {one.right, one.right}});
+        }
+        else if (other.left == kNone || (one.left != kNone && half_surface(one.box) >= half_surface(other.box)))
+            to.insert(to.end(), {{one.left, b}, {one.right, b}});
+        else
+            to.insert(to.end(), {{a, other.left}, {a, other.right}});
+    }
     struct Task  // items [first, end) become the subtree at `node`
     {
         std::uint32_t node, first, end;
@@ -86,14 +104,16 @@ private:
     std::uint32_t take_out(std::uint32_t leaf);
     std::uint32_t best_sibling(const Box& box) const;
     void put_in(std::uint32_t leaf, std::uint32_t free_node);
-    void refit(std::uint32_t node);
+    void refit_upwards(std::uint32_t node);
+    double surface_of_branches() const;
 
     std::vector<Node> nodes_;
     std::uint32_t root_ = kNone;
+    double built_surface_ = 0;  // m^2, of all inner nodes when the tree was built
     std::vector<std::uint32_t> leaf_of_item_;
-    std::vector<std::uint32_t> stack_, order_;                         // scratch
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> node_pairs_;  // scratch
-    std::vector<Task> tasks_;                                          // scratch
+    std::vector<std::uint32_t> stack_, order_;        // scratch
+    std::vector<NodePair> node_pairs_, inner_pairs_;  // scratch
+    std::vector<Task> tasks_;                         // scratch
 };
 
 }  // namespace plab::geometry

@@ -1,5 +1,6 @@
 // The same hash for any number of threads, any observer, two worlds in one process. Other builds (-O0, clang) are
 // compared by tests/golden.
+#include "plab/random.h"
 #include "support/scene.h"
 
 using namespace plab;
@@ -74,6 +75,33 @@ TEST_CASE("pairwise couplings are swept train by train: the number of threads ha
         Scene s(body, "dt=\"1/100\"", threads);
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(1);
+        hashes.push_back(s.hash());
+    }
+    for (const std::uint64_t h : hashes) CHECK(h == hashes.front());
+}
+
+TEST_CASE("a heap of mixed shapes has the same hash with 1 to 16 threads: detection is divided among them")
+{
+    std::string body =
+        R"(<component id="q" type="Shape/Box" half_extents="0.1 0.12 0.1"/><component id="s" type="Shape/Sphere" radius="0.11"/>
+        <component id="c" type="Shape/Capsule" radius="0.08" half_length="0.07"/><component id="floor" type="Shape/Plane"/>
+        <component id="ground" type="State/Static" shape="floor"/><component id="g" type="Field/Gravity" between="*"/>
+        <component id="contact" type="CDetection/ODE" between="*" resolution="Resolution/None" response="Response/Rows"
+                   response.friction="0.4"/>)";
+    const char* const shapes[] = {"q", "s", "c"};
+    std::uint64_t seed = 9;
+    for (int i = 0; i < 300; ++i)
+    {
+        const auto at = [&](int cell) { return std::to_string(0.23 * cell + 0.02 * next_uniform(seed)); };
+        body += "<component id=\"b" + std::to_string(i) + "\" type=\"State/RigidBody\" mass=\"1\" shape=\"" + shapes[i % 3] +
+                "\" position=\"" + at(i % 6) + " " + at(i / 6 % 6) + " " + at(1 + i / 36) + "\"/>";
+    }
+    std::vector<std::uint64_t> hashes;
+    for (const int threads : {1, 2, 3, 4, 16})
+    {
+        Scene s(body, "dt=\"1/120\"", threads);
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(0.5);
         hashes.push_back(s.hash());
     }
     for (const std::uint64_t h : hashes) CHECK(h == hashes.front());

@@ -1,7 +1,5 @@
 #include "simulation/systems/system_pool.h"
 
-#include <algorithm>
-
 namespace plab::simulation
 {
 namespace
@@ -22,25 +20,51 @@ std::uint64_t hash_of(std::span<const std::uint32_t> groups, std::span<const std
 
 void SystemPool::clear(const world::World& world)
 {
-    entries_.clear();
+    entries_.clear(), large_.clear();
+    members_ = 0;
     scratch_.fit(world);
 }
 
 GroupSystem& SystemPool::of(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed)
 {
     const std::uint64_t key = hash_of(groups, observed);
+    const std::size_t members = groups.size() + observed.size();
+    if (members >= kLargeSet && kLargeShare * members >= frame.groups->all.size()) return large_of(frame, key, groups, observed);
     const auto [begin, end] = entries_.equal_range(key);
     for (auto it = begin; it != end; ++it)
-        if (std::ranges::equal(it->second.groups, groups) && std::ranges::equal(it->second.observed, observed))
+        if (it->second.is_of(groups, observed))
         {
             it->second.system->set_frame(frame);
             return *it->second.system;
         }
     // A caller holds at most one system at a time and requests it again before each advance, so clearing is safe here.
-    if (entries_.size() >= kMost) entries_.clear();
-    Entry fresh{{groups.begin(), groups.end()}, {observed.begin(), observed.end()}, std::make_unique<GroupSystem>(scratch_)};
+    if (entries_.size() >= kMost || members_ >= kMost + kMostMembers * frame.groups->all.size()) entries_.clear(), members_ = 0;
+    members_ += members;
+    Entry fresh{
+        {groups.begin(), groups.end()}, {observed.begin(), observed.end()}, std::make_unique<GroupSystem>(scratch_), key, frame.tick};
     fresh.system->configure(frame, groups, observed);
     return *entries_.emplace(key, std::move(fresh))->second.system;
+}
+
+/// A system that neither this step nor the last one has used serves again, with its memory.
+GroupSystem& SystemPool::large_of(const StepFrame& frame, std::uint64_t key, std::span<const std::uint32_t> groups,
+                                  std::span<const std::uint32_t> observed)
+{
+    for (Entry& e : large_)
+    {
+        if (e.key != key || !e.is_of(groups, observed)) continue;
+        e.used = frame.tick;
+        e.system->set_frame(frame);
+        return *e.system;
+    }
+    auto place = std::ranges::min_element(large_, {}, &Entry::used);
+    if (place == large_.end() || (large_.size() < kMostLarge && place->used + 1 >= frame.tick))
+        place = large_.insert(large_.end(), {{}, {}, std::make_unique<GroupSystem>(scratch_), 0, 0});
+    place->groups.assign(groups.begin(), groups.end()), place->observed.assign(observed.begin(), observed.end());
+    place->key = key, place->used = frame.tick;
+    place->system->hold_rows(false), place->system->set_extra_forces(nullptr);  // as a new one
+    place->system->configure(frame, groups, observed);
+    return *place->system;
 }
 
 }  // namespace plab::simulation
