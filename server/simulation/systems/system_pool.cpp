@@ -37,7 +37,7 @@ GroupSystem& SystemPool::of(const StepFrame& frame, std::span<const std::uint32_
             return *it->second.system;
         }
     // A caller holds at most one system at a time and requests it again before each advance, so clearing is safe here.
-    if (entries_.size() >= kMost) entries_.clear();
+    if (entries_.size() >= std::max(kMost, 2 * frame.groups->all.size())) entries_.clear();
     Entry fresh{{groups.begin(), groups.end()}, {observed.begin(), observed.end()}, std::make_unique<GroupSystem>(scratch_)};
     fresh.system->configure(frame, groups, observed);
     return *entries_.emplace(key, std::move(fresh))->second.system;
