@@ -54,7 +54,10 @@ bool OdeScene::update(const StepContext& context, const std::string& space, cons
 {
     if (!context.active_bodies.empty() && !members_.empty())
     {
-        move_active(context, bodies);
+        list_active(context, between, against);
+        // The narrow phase of pairs that are named reads the present poses itself.
+        if (!order.only_persistent())
+            for (const std::uint32_t m : active_) move_member(members_[m], bodies);
         return false;
     }
     const bool rebuilds = !is_current(space, between, against, bodies, shapes, order);
@@ -157,10 +160,13 @@ void OdeScene::move_parts(const Bodies& bodies, bool all, Workers* workers)
     run_jobs(workers, (members_.size() + kMembersPerJob - 1) / kMembersPerJob, move_some);
 }
 
-void OdeScene::move_active(const StepContext& context, const Bodies& bodies)
+/// The host may name the active participants, so that an impact of two bodies costs no pass over all of them.
+void OdeScene::list_active(const StepContext& context, const RefList& between, const RefList& against)
 {
-    for (Member& m : members_)
-        if (context.active_bodies[m.body] != 0) move_member(m, bodies);
+    active_.clear();
+    for (const RefList* list : {&between, &against})
+        for (const Ref& r : context.among(*list))
+            if (const std::uint32_t m = member_of_body_[r.index]; m != kNoIndex && context.active_bodies[r.index] != 0) active_.push_back(m);
 }
 
 bool OdeScene::may_meet(const Member& a, const Member& b, const StepContext& context) const
@@ -281,11 +287,14 @@ void OdeScene::report_near(const StepContext& context, ContactSink& sink)
     const std::span<const double> motion_margin = sink.motion_margin();
     const bool all = context.active_bodies.empty();
     asked_.clear();
-    for (const Member& m : members_)
+    const auto ask = [&](const Member& m)
     {
-        if (!all && context.active_bodies[m.body] == 0) continue;
         for (std::uint32_t p = m.first_part; p < m.end_part; ++p) broad_.grow(p, motion_margin[m.body]), asked_.push_back(p);
-    }
+    };
+    if (all)
+        for (const Member& m : members_) ask(m);
+    else
+        for (const std::uint32_t m : active_) ask(members_[m]);
     broad_.find_grown(asked_, near_);
     for (BroadPhase::Pair& pair : near_) pair = {parts_[pair.first].member, parts_[pair.second].member};
     // Pairs of bodies with several parts may occur several times.

@@ -62,7 +62,7 @@ private:
     void add_colliders(const Bodies& bodies, const Shapes& shapes);
     void add_part(std::uint32_t member, std::uint32_t shape, const Pose& X_BP);
     void move_parts(const Bodies& bodies, bool all, Workers* workers);
-    void move_active(const StepContext& context, const Bodies& bodies);
+    void list_active(const StepContext& context, const RefList& between, const RefList& against);
     void move_member(Member& member, const Bodies& bodies);
     bool may_meet(const Member& a, const Member& b, const StepContext& context) const;
     void report_near(const StepContext& context, ContactSink& sink);
@@ -115,7 +115,8 @@ private:
     std::vector<PersistentQuery> persistent_;
     std::vector<Narrow> narrow_;  // by chunk; the first serves a pass without threads
     std::span<const BroadPhase::Pair> candidates_;
-    std::vector<std::uint32_t> asked_;    // parts of the bodies that are advanced
+    std::vector<std::uint32_t> active_;   // members that are advanced, if not all are
+    std::vector<std::uint32_t> asked_;    // their parts
     std::vector<BroadPhase::Pair> near_;  // pairs that may collide within the step: parts, then members
     std::size_t pairs_ = 0;
     double further_pairs_ = 0;  // for ContactSink::took

@@ -39,6 +39,7 @@ struct Figures
     double step = 0;      ///< s, mean of the others
     double steps = 0;     ///< how many they are
     double contacts = 0;  ///< contact points in the last step
+    double impacts = 0;   ///< located, per step
     double memory = 0;    ///< bytes, at the end, beyond what an empty scene takes
 };
 
@@ -90,10 +91,10 @@ Figures run_here(const std::string& scene_text, int most_steps)
     for (int i = 0; i < most_steps; ++i)
     {
         simulation.step();
-        ++out.steps;
+        ++out.steps, out.impacts += simulation.stepper().report().events;
         if (processor_time() - begin > kMostSeconds) break;
     }
-    out.step = (processor_time() - begin) / out.steps;
+    out.step = (processor_time() - begin) / out.steps, out.impacts /= out.steps;
     out.contacts = contact_points(simulation);
     out.memory = peak_memory() - idle;
     return out;
@@ -225,6 +226,36 @@ std::string newcomers_heap(int n)
                     i % 2 == 0 ? "shape=\"s\" mass=\"1\"" : "shape=\"q\" mass=\"1\"");
     }
     return scene("1/240", out + component("contact", "CDetection/ODE", "between=\"*\" response.friction=\"0.5\""));
+}
+
+/// Balls far from one another that bounce at random times, each impact located. `above`: m, of the lowest height.
+std::string dropped_balls(int n, double above)
+{
+    std::string out = kGravity + kGround + component("s", "Shape/Sphere", "radius=\"0.1\"");
+    std::uint64_t random = 5;
+    const int side = static_cast<int>(std::ceil(std::sqrt(n)));
+    for (int i = 0; i < n; ++i) out += body(i, {2.0 * (i % side), 2.0 * (i / side), 0.1 + above + 4 * next_uniform(random)});
+    return scene("1/240", out + component("contact", "CDetection/ODE",
+                                          "between=\"*\" resolution=\"Resolution/LocalRoot\" response=\"Response/Impulse\" "
+                                          "response.restitution=\"0.95\""));
+}
+
+/// The same balls out of reach of the ground show what a step costs without an impact.
+void impacts_table()
+{
+    std::printf(
+        "\n| balls dropped | impacts a step | step, ms | CPU s per simulated s | without impacts, ms | us each impact | against the first "
+        "row "
+        "|\n|---|---|---|---|---|---|---|\n");
+    double first = 0;
+    for (const int n : {100, 1000, 10000})
+    {
+        const Figures with = measure(dropped_balls(n, 0.2), 720), without = measure(dropped_balls(n, 1000), 720);
+        const double each = (with.step - without.step) / with.impacts;
+        if (first == 0) first = each;
+        std::printf("| %d | %.3g | %.3g | %.3g | %.3g | %.3g | %.2f |\n", n, with.impacts, with.step * 1e3, with.step * 240,
+                    without.step * 1e3, each * 1e6, each / first);
+    }
 }
 
 std::string gears(const char* algorithm, int n)
@@ -365,6 +396,7 @@ void draw_growth(const std::vector<Growth>& all, const std::string& path)
 int main(int argc, char** argv)
 {
     scenes_table();
+    impacts_table();
     const std::vector<int> tens{10, 100, 1000, 10000}, hundreds{100, 1000, 10000};
     std::vector<Growth> all;
     all.push_back(growth_table("free bodies", {100, 1000, 10000, 50000}, 2000, free_bodies));

@@ -27,32 +27,31 @@ void Advance::advance_all()
 
 void Advance::split_by_contact(std::span<const std::uint32_t> groups)
 {
-    group_flags_.assign(step_.groups.all.size(), 0);
-    for (const std::uint32_t g : groups) group_flags_[g] = 1;
-    for (const PairState& p : contacts_.cache().pairs())
-        if (p.resting)
-            for (const Ref r : {p.a, p.b})
-                if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex && group_flags_[g]) group_flags_[g] = 2;
+    touching_.begin(step_.groups.all.size());
+    contacts_.resting().find(groups, places_);
+    for (const std::uint32_t place : places_)
+        for (const PairState& p = contacts_.cache().pairs()[place]; const Ref r : {p.a, p.b})
+            if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) touching_.add(g);
     for (const std::uint32_t g : groups)
-        if (hard_.holds_joints_of(g)) group_flags_[g] = 2;
+        if (hard_.holds_joints_of(g)) touching_.add(g);
     smooth_.clear(), in_contact_.clear();
     for (const std::uint32_t g : groups)
     {
         const Group& group = step_.groups.all[g];
         const bool moves = !(group.bodies.empty() && group.shafts.empty());
-        (group_flags_[g] == 2 && moves ? in_contact_ : smooth_).push_back(g);
+        (touching_.has(g) && moves ? in_contact_ : smooth_).push_back(g);
     }
 }
 
 void Advance::collect_observed(std::span<const std::uint32_t> groups)
 {
-    group_flags_.assign(step_.groups.all.size(), 0);
-    for (const std::uint32_t g : groups) group_flags_[g] = 1;
+    known_.begin(step_.groups.all.size());
+    for (const std::uint32_t g : groups) known_.add(g);
     observed_.clear();
     const auto add_upstream = [&](std::uint32_t g)
     {
         for (const std::uint32_t up : step_.groups.all[g].upstream)
-            if (!group_flags_[up]) group_flags_[up] = 1, observed_.push_back(up);
+            if (known_.add(up)) observed_.push_back(up);
     };
     for (const std::uint32_t g : groups) add_upstream(g);
     for (std::size_t i = 0; i < observed_.size(); ++i) add_upstream(observed_[i]);

@@ -38,7 +38,8 @@ private:
     ContactForces& forces_;
     BatchedAdvance batches_;
     bool some_without_solver_ = false;
-    std::vector<std::uint8_t> group_flags_;
+    IndexSet known_, touching_;  ///< scratch, groups
+    std::vector<std::uint32_t> places_;
     std::vector<std::uint32_t> smooth_, in_contact_, observed_;
 };
 

@@ -63,9 +63,48 @@ Errors ContactBook::rebuild()
     detectors_ = find_detectors(step_.world, step_.schedule);
     if (Errors refused = check_contacts(step_.world, detectors_); !refused.empty()) return refused;
     cache_.refresh(step_.world, detectors_);
+    resting_.forget();
     found_.clear();
     measure_bodies();
+    list_participants();
     return {};
+}
+
+void ContactBook::list_participants()
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    participants_.assign(detectors_.size(), {}), seen_in_.assign(detectors_.size(), 0);
+    for (std::size_t d = 0; d < detectors_.size(); ++d)
+    {
+        for (const Role& role : step_.world.tables()[detectors_[d].table]->schema().roles())
+        {
+            if (!role.many) continue;
+            Participants& list = participants_[d].emplace_back();
+            list.all = &(*role.many)[detectors_[d].row];
+            list.place.assign(bodies.size(), kNoIndex);
+            for (std::uint32_t i = 0; i < list.all->size(); ++i)
+                if (const Ref r = (*list.all)[i]; r.facet == Facet::Body) list.place[r.index] = i;
+        }
+        std::sort(participants_[d].begin(), participants_[d].end(),
+                  [](const Participants& x, const Participants& y) { return std::less<>()(x.all, y.all); });
+    }
+}
+
+/// Which of the detector's participants are active: it need not go through all of them.
+std::span<const Shortlist> ContactBook::shortlists_of(std::size_t detector, const IndexSet& active)
+{
+    const std::vector<Participants>& lists = participants_[detector];
+    if (shortlists_.size() < lists.size()) shortlists_.resize(lists.size());
+    for (std::size_t i = 0; i < lists.size(); ++i)
+    {
+        short_places_.clear();
+        for (const std::uint32_t b : active.members())
+            if (lists[i].place[b] != kNoIndex) short_places_.push_back(lists[i].place[b]);
+        std::sort(short_places_.begin(), short_places_.end());
+        shortlists_[i].all = lists[i].all, shortlists_[i].active.clear();
+        for (const std::uint32_t place : short_places_) shortlists_[i].active.push_back((*lists[i].all)[place]);
+    }
+    return std::span(shortlists_).first(lists.size());
 }
 
 void ContactBook::measure_bodies()
@@ -93,10 +132,16 @@ void ContactBook::measure_bodies()
         }
 }
 
-void ContactBook::query(const Detector& detector, ContactSink& sink, std::span<const std::uint8_t> active)
+void ContactBook::query(const Detector& detector, ContactSink& sink, const IndexSet* active)
 {
+    const auto index = static_cast<std::size_t>(&detector - detectors_.data());
     ComponentCall question(step_, *step_.world.tables()[detector.table], detector.row);
-    question.context.active_bodies = active, question.call.contacts = &sink;
+    question.call.contacts = &sink;
+    step_.report.looked_at += active ? active->members().size() : step_.world.host().bodies.size();
+    if (active)
+        question.context.active_bodies = active->flags(), question.context.shortlists = shortlists_of(index, *active);
+    else
+        seen_in_[index] = step_.serial;
     const CostScope scope(step_.meter, step_.meter.of_component(detector.component));
     step_.meter.ran(detector.table, Phase::Detect);
     if (const auto done = question.run(*detector.command); !done)
@@ -108,7 +153,11 @@ void ContactBook::detect(const Detector& detector, std::uint32_t index, std::spa
 {
     ContactCollector sink(step_.world, out);
     sink.begin_query(index, persistent, only_persistent, margin);
-    query(detector, sink);
+    const bool some = only_persistent && seen_in_[index] == step_.serial;
+    asked_.begin(step_.world.host().bodies.size());
+    if (some)
+        for (const PersistentPair& p : persistent) asked_.add(p.a.index), asked_.add(p.b.index);
+    query(detector, sink, some ? &asked_ : nullptr);
     step_.report.further_pairs += sink.further_pairs();
 }
 
@@ -217,18 +266,15 @@ void ContactBook::drop_far(std::vector<FoundContact>& out, double h) const
 
 void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h)
 {
-    const auto member = [&](Ref r)
-    {
-        const std::uint32_t g = step_.groups.of(r);
-        return g != kNoIndex && std::binary_search(groups.begin(), groups.end(), g);
-    };
+    resting_.find(groups, places_);
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         persistent_.clear();
         double margin = 0;
-        for (const PairState& p : cache_.pairs())
+        for (const std::uint32_t place : places_)
         {
-            if (!p.resting || p.detector != detectors_[d].component || !(member(p.a) || member(p.b))) continue;
+            const PairState& p = std::as_const(cache_).pairs()[place];
+            if (p.detector != detectors_[d].component) continue;
             persistent_.push_back({p.a, p.b, {}});
             margin = std::max({margin, persistence_margin(p), gap_margin(p, h)});
         }

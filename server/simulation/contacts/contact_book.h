@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "simulation/contacts/contacts.h"
+#include "simulation/contacts/resting_pairs.h"
 #include "simulation/motion/step_state.h"
 
 namespace plab::simulation
@@ -21,7 +21,7 @@ public:
     /// To be called after any structural change: finds detectors and sizes of bodies, and drops pairs whose detector or bodies are gone.
     /// Errors: see contact_rules.h.
     Errors rebuild();
-    void begin_step() { releases_.clear(); }
+    void begin_step() { releases_.clear(), resting_.forget(); }
     /// Lets the resolutions that adapt choose how the impacts of this step are found. True if one of them chose otherwise than before: then
     /// what was detected with the former margins does not serve this step.
     bool choose_search();
@@ -29,6 +29,8 @@ public:
     const std::vector<Detector>& detectors() const { return detectors_; }
     ContactCache& cache() { return cache_; }
     const ContactCache& cache() const { return cache_; }
+    /// The persistent pairs of some groups.
+    RestingPairs& resting() { return resting_; }
     /// Contacts at the end of the last step, or at the start of the present one until its end is known.
     std::vector<FoundContact>& found() { return found_; }
     const std::vector<FoundContact>& found() const { return found_; }
@@ -52,8 +54,9 @@ public:
     /// Adds what one detector finds. `only_persistent`: for the given pairs only. `margin`, m: gaps up to this count as contacts.
     void detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
                 std::vector<FoundContact>& out, double margin = 0);
-    /// The same with a sink of the caller. `active`, by body: flags of the bodies to consider; empty: all.
-    void query(const Detector& detector, ContactSink& sink, std::span<const std::uint8_t> active = {});
+    /// The same with a sink of the caller. `active`: the bodies to consider, of which one at least is in each pair; null: all. A detector
+    /// must have looked at all bodies before in this step, and nobody but these may have moved since.
+    void query(const Detector& detector, ContactSink& sink, const IndexSet* active = nullptr);
     /// What all detectors find, sorted.
     void detect_all(std::vector<FoundContact>& out);
     /// The contacts of persistent pairs with a member in `groups` (ascending), including gaps that may close within `h` (s).
@@ -102,6 +105,8 @@ public:
 
 private:
     void measure_bodies();
+    void list_participants();
+    std::span<const Shortlist> shortlists_of(std::size_t detector, const IndexSet& active);
     double curves_of(Ref a, Ref b) const { return std::fabs(curve_radius_of_body_[a.index] + curve_radius_of_body_[b.index]); }
     void measure_islands(ContactLoad& load);
     void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
@@ -113,6 +118,7 @@ private:
     StepState& step_;
     std::vector<Detector> detectors_;
     ContactCache cache_;
+    RestingPairs resting_{step_.world, step_.groups, cache_, step_.report.looked_at};
     std::vector<FoundContact> found_;
     std::vector<double> radius_of_body_;        ///< m, about C; infinite for planes
     std::vector<double> curve_radius_of_body_;  ///< m, of the most strongly curved shape; negative inside, infinite if there is none
@@ -120,6 +126,17 @@ private:
 
     // Scratch lists, members to keep their memory.
     mutable std::vector<std::uint32_t> counted_;
+    /// A list of bodies that a detector was given by one of its roles.
+    struct Participants
+    {
+        const RefList* all = nullptr;
+        std::vector<std::uint32_t> place;  ///< by body: in the list; kNoIndex: it is not there
+    };
+    std::vector<std::vector<Participants>> participants_;  ///< by detector, then by address of the list
+    std::vector<std::uint64_t> seen_in_;                   ///< by detector: the step (StepState::serial) in which it looked at all bodies
+    std::vector<Shortlist> shortlists_;                    ///< lists keep their memory
+    std::vector<std::uint32_t> short_places_;
+    IndexSet asked_;  ///< bodies
     struct IslandCount
     {
         std::uint32_t bodies = 0, points = 0;
@@ -127,6 +144,7 @@ private:
     DisjointSets load_islands_;             ///< of bodies
     std::vector<IslandCount> load_counts_;  ///< by representative body
     std::vector<PersistentPair> persistent_;
+    std::vector<std::uint32_t> places_;
     std::vector<Contact> impact_contacts_;
 };
 

@@ -23,25 +23,57 @@ bool HardContacts::needs_islands() const
 void HardContacts::advance(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,
                            WorkBook book, bool trial)
 {
-    const Bodies& bodies = step_.world.host().bodies;
-    islands_.reset(step_.groups.all.size());
-    for (const PairState& p : contacts_.cache().pairs())
-        if (p.resting && bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) islands_.join(step_.groups.of(p.a), step_.groups.of(p.b));
-    if (motion_.extra()) motion_.extra()->join(islands_);
+    join_islands(groups);
     groups_.assign(groups.begin(), groups.end());
-    held_.take(groups_, islands_);
+    held_.take(groups_, islands_, reached_.members(), places_);
     if (held_.holds_any()) held_.advance(observed, islands_, from, to, book, trial);
-    // Islands in the order of their first group; members keep their order.
-    done_.assign(step_.groups.all.size(), 0);
-    for (const std::uint32_t first : groups_)
+    const std::size_t count = list_islands();
+    for (std::size_t i = 0; i < count; ++i) impulses_.advance(members_[i], observed, from, to, book, trial);
+}
+
+/// Joins the groups that persistent contacts hold together with some of `groups`. All others stay single sets, so that the cost of an
+/// impact depends on what it touches.
+void HardContacts::join_islands(std::span<const std::uint32_t> groups)
+{
+    const std::size_t count = step_.groups.all.size();
+    if (islands_.size() == count)
+        islands_.separate(reached_.members());
+    else
+        islands_.reset(count);
+    reached_.begin(count);
+    number_.resize(count);
+    for (const std::uint32_t g : groups) reached_.add(g);
+    // Springs may join any groups.
+    if (motion_.extra())
+        for (const std::uint32_t g : step_.all_groups) reached_.add(g);
+    contacts_.resting().close_over(reached_, places_);
+    const Bodies& bodies = step_.world.host().bodies;
+    for (const std::uint32_t place : places_)
     {
-        if (done_[first]) continue;
-        island_.clear();
-        for (const std::uint32_t g : groups_)
-            if (!done_[g] && islands_.find(g) == islands_.find(first)) done_[g] = 1, island_.push_back(g);
-        std::sort(island_.begin(), island_.end());
-        impulses_.advance(island_, observed, from, to, book, trial);
+        const PairState& p = contacts_.cache().pairs()[place];
+        if (bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) islands_.join(step_.groups.of(p.a), step_.groups.of(p.b));
     }
+    if (motion_.extra()) motion_.extra()->join(islands_);
+}
+
+/// Distributes groups_ over members_: islands in the order of their first group. Returns the number of islands.
+std::size_t HardContacts::list_islands()
+{
+    std::size_t count = 0;
+    for (const std::uint32_t g : groups_) number_[islands_.find(g)] = kNoIndex;
+    for (const std::uint32_t g : groups_)
+    {
+        std::uint32_t& number = number_[islands_.find(g)];
+        if (number == kNoIndex)
+        {
+            number = static_cast<std::uint32_t>(count++);
+            if (members_.size() < count) members_.emplace_back();
+            members_[number].clear();
+        }
+        members_[number].push_back(g);
+    }
+    for (std::size_t i = 0; i < count; ++i) std::sort(members_[i].begin(), members_[i].end());
+    return count;
 }
 
 void HardContacts::update_pair(PairState& pair, std::span<FoundContact> found)

@@ -38,6 +38,8 @@ public:
 private:
     bool ends(PairState& pair, std::size_t& at, double time);
     void update_pair(PairState& pair, std::span<FoundContact> found);
+    void join_islands(std::span<const std::uint32_t> groups);
+    std::size_t list_islands();
 
     StepState& step_;
     GroupMotion& motion_;
@@ -45,9 +47,12 @@ private:
     PositionCorrection positions_;
     HeldIslands held_;
     ImpulseIslands impulses_;
-    DisjointSets islands_;
-    std::vector<std::uint32_t> groups_, island_;
-    std::vector<std::uint8_t> done_;  ///< by group
+    DisjointSets islands_;             ///< of groups; single sets but for those in reached_
+    IndexSet reached_;                 ///< groups that hold together with those of the present advance
+    std::vector<std::uint32_t> places_;  ///< of the pairs between them
+    std::vector<std::uint32_t> groups_;
+    std::vector<std::uint32_t> number_;  ///< by representative group: of its island in the present advance
+    std::vector<std::vector<std::uint32_t>> members_;  ///< groups, by island; lists keep their memory
 };
 
 }  // namespace plab::simulation

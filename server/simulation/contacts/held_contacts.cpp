@@ -61,6 +61,7 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
     }
     if (fresh_.empty()) return;
     contacts_.cache().add_sorted(fresh_, step_.world);
+    contacts_.resting().forget();
     for (std::size_t k = 0; k < fresh_.size(); ++k)
         if (!fresh_[k].ahead) report_begin(fresh_[k], found[first_found_[k]].contact, time);
 }
@@ -112,14 +113,15 @@ void HeldIslands::collect_contacts(double from, double h, bool trial)
     std::size_t near = 0;
     const auto pair_of = [&](const FoundContact& f)
     { return contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world, near); };
-    const bool known = from == 0 && is_current();
-    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); });
+    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); }),
+               persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); });
+    const bool known = persists && from == 0 && is_current();
     if (!known || locates)
     {
         contacts_.touching_pairs_of(held_, touching_, h);
         contacts_.warm_start(touching_, trial);
     }
-    if (!known || !std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); }))
+    if (!known)
     {
         for (const FoundContact& f : touching_) pair_of_contact_.push_back(pair_of(f));
         return;

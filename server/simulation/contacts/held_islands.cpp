@@ -26,7 +26,9 @@ void HeldIslands::rebuild()
     any_ = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(), [](const Detector& d) { return d.by_rows; });
     holds_joints_ = false;
     yields_.assign(step_.groups.all.size(), 0);
-    yielding_groups_.clear();
+    manager_of_island_.resize(step_.groups.all.size());
+    island_of_group_.assign(step_.groups.all.size(), kNoIndex);
+    yielding_groups_.clear(), numbered_.clear();
     const auto& blocks = step_.schedule.of(Phase::Constrain);
     for (std::uint32_t g = 0; g < manager_of_group_.size(); ++g)
         for (const BlockRow& row : step_.groups.all[g].rows)
@@ -69,26 +71,27 @@ std::uint32_t HeldIslands::manager_of(const PairState& pair) const
 /// Takes the groups out of `groups` that belong to an island with a manager: because one of its persistent contacts names the manager, or
 /// a joint row that may yield does. If an island's contacts and joints name several managers, the first one by id solves all of it, since
 /// an island cannot be solved in parts. All other groups advance by their solvers, with full order.
-void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands)
+void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands, std::span<const std::uint32_t> reached,
+                       std::span<const std::uint32_t> places)
 {
     held_.clear();
     if (!any_) return;
-    manager_of_island_.assign(step_.groups.all.size(), kNoIndex);
+    for (const std::uint32_t g : reached) manager_of_island_[islands.find(g)] = kNoIndex;
     const auto name = [&](std::uint32_t group, std::uint32_t manager)
     {
         if (group == kNoIndex || manager == kNoIndex) return;
         std::uint32_t& known = manager_of_island_[islands.find(group)];
         if (known == kNoIndex || step_.world.rank(manager) < step_.world.rank(known)) known = manager;
     };
-    for (const PairState& p : contacts_.cache().pairs())
+    for (const std::uint32_t place : places)
     {
-        if (!p.resting) continue;
+        const PairState& p = contacts_.cache().pairs()[place];
         const std::uint32_t manager = manager_of(p);
         if (manager == kNoIndex) continue;
         for (const Ref r : {p.a, p.b})
             if (step_.world.host().bodies.dynamic(r.index)) name(step_.groups.of(r), manager);
     }
-    for (const std::uint32_t g : yielding_groups_)
+    for (const std::uint32_t g : reached)
         if (yields_[g]) name(g, manager_of_group_[g]);
     std::size_t kept = 0;
     for (const std::uint32_t g : groups)
@@ -102,7 +105,8 @@ void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands
 
 void HeldIslands::make_islands(DisjointSets& islands)
 {
-    island_of_group_.assign(step_.groups.all.size(), kNoIndex);
+    for (const std::uint32_t g : numbered_) island_of_group_[g] = kNoIndex;
+    numbered_.clear();
     island_count_ = 0;
     for (const std::uint32_t g : held_)
     {
@@ -117,6 +121,7 @@ void HeldIslands::make_islands(DisjointSets& islands)
             fresh.groups.clear(), fresh.contacts.clear(), fresh.places.clear();
         }
         island_of_group_[g] = number;
+        numbered_.push_back(root), numbered_.push_back(g);
         HeldIsland& island = *islands_[number];
         island.groups.push_back(g);
         island.has_rows = island.has_rows || !step_.groups.all[g].rows.empty();

@@ -117,8 +117,10 @@ public:
     void note_state();
     /// Notes that they do not serve the next step: contacts are detected otherwise there.
     void forget_state() { known_ = false; }
-    /// Takes the groups that managers advance out of `groups` (ascending).
-    void take(std::vector<std::uint32_t>& groups, DisjointSets& islands);
+    /// Takes the groups that managers advance out of `groups` (ascending). `reached`: these groups and all others of their islands;
+    /// `places`: where the cache has the persistent pairs of those.
+    void take(std::vector<std::uint32_t>& groups, DisjointSets& islands, std::span<const std::uint32_t> reached,
+              std::span<const std::uint32_t> places);
     bool holds_any() const { return !held_.empty(); }
     void advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
 
@@ -168,7 +170,8 @@ private:
     std::vector<std::uint8_t> yields_;              ///< by group: such a joint has one-sided or bounded rows in this step
     std::vector<std::uint32_t> manager_of_island_;  ///< by representative group
     std::vector<std::uint32_t> held_;
-    std::vector<std::uint32_t> island_of_group_;
+    std::vector<std::uint32_t> island_of_group_;  ///< kNoIndex but for numbered_
+    std::vector<std::uint32_t> numbered_;         ///< groups
     std::vector<std::unique_ptr<HeldIsland>> islands_;
     std::size_t island_count_ = 0;
     MidpointContacts midpoint_;

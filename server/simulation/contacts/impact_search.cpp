@@ -81,6 +81,7 @@ bool ContactBook::choose_search()
         // A pair between two bounces is a contact like any other where impacts are not located.
         for (PairState& p : cache_.pairs())
             if (p.detector == d.component) p.resting = true;
+        resting_.forget();
     }
     return changed;
 }

@@ -187,6 +187,7 @@ void EventLocator::announce_rest(const FoundContact& f, PairState& pair)
     if (!f.contact.resting || pair.resting) return;
     pair.resting = true;
     pair.bounces = {};
+    contacts_.resting().add(pair);
     for (const Ref r : {pair.a, pair.b})
         if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) rests_[g] = 1;
     step_.emit(contacts_.contact_event("contact.rest", pair, rest_time_, f.contact, f.contact.impulse));

@@ -20,7 +20,7 @@ void EventLocator::begin_motion_bounds()
     {
         motions_.assign(bodies.size(), {});
         for (std::uint32_t b = 0; b < bodies.size(); ++b) extents_.push_back(extent_of(bodies, host.shapes, b));
-        motion_margin_.assign(bodies.size(), 0.0), active_.assign(bodies.size(), 0);
+        motion_margin_.assign(bodies.size(), 0.0), active_.begin(bodies.size());
     }
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
     {
@@ -64,25 +64,21 @@ void EventLocator::end_pieces()
 void EventLocator::find_near(bool only_rewound)
 {
     const Bodies& bodies = step_.world.host().bodies;
-    const auto activate = [&](std::uint8_t flag)
-    {
-        for (const std::uint32_t g : scope_)
-            if (disturbed_[g] != 0)
-                for (const std::uint32_t b : step_.groups.all[g].bodies) active_[b] = flag;
-    };
-    if (only_rewound) activate(1);
+    active_.clear();
+    if (only_rewound)
+        for (const std::uint32_t g : disturbed_)
+            for (const std::uint32_t b : step_.groups.all[g].bodies) active_.add(b);
     for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d)
     {
         const Detector& detector = contacts_.detectors()[d];
         if (!detector.certifies) continue;
         near_.clear();
         NearCollector sink(step_.world, motion_margin_, near_);
-        contacts_.query(detector, sink, only_rewound ? std::span<const std::uint8_t>(active_) : std::span<const std::uint8_t>());
+        contacts_.query(detector, sink, only_rewound ? &active_ : nullptr);
         budget_.spend(WorkBudget::kListedPair * static_cast<double>(near_.size()));
         for (const NearCollector::Pair& pair : near_)
             if (bodies.dynamic(pair.a.index) || bodies.dynamic(pair.b.index)) consider_near(d, pair.a, pair.b);
     }
-    if (only_rewound) activate(0);
 }
 
 /// Detects the contacts of one pair as if b were displaced by `shift` (m). Only these two bodies are active in the detection, which knows
@@ -91,12 +87,12 @@ void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, st
 {
     const Detector& detector = contacts_.detectors()[candidate.detector];
     const PersistentPair pair{candidate.a, candidate.b, shift};
-    active_[candidate.a.index] = active_[candidate.b.index] = 1;
+    active_.clear();
+    active_.add(candidate.a.index), active_.add(candidate.b.index);
     ContactCollector sink(step_.world, found);
     sink.begin_query(candidate.detector, std::span(&pair, 1), true);
-    contacts_.query(detector, sink, active_);
+    contacts_.query(detector, sink, &active_);
     step_.report.further_pairs += sink.further_pairs();
-    active_[candidate.a.index] = active_[candidate.b.index] = 0;
     sort_contacts(found, step_.world);
 }
 

@@ -137,33 +137,36 @@ void EventLocator::note_resting_groups()
     }
 }
 
+/// Adds whatever rests on a member, because an impact propagates through persistent contacts and is rewound with all it reaches.
 void EventLocator::close_over_resting_pairs()
 {
-    // Whatever rests on a member is rewound with it, because an impact propagates through persistent contacts.
-    for (bool grown = true; grown;)
+    for (std::size_t known = 0; known != in_scope_.members().size();)
     {
-        grown = forces_.any() && forces_.close_over(in_scope_);
-        for (const PairState& p : contacts_.cache().pairs())
-        {
-            const std::uint32_t ga = step_.groups.of(p.a), gb = step_.groups.of(p.b);
-            const Bodies& bodies = step_.world.host().bodies;
-            if (!p.resting || !bodies.dynamic(p.a.index) || !bodies.dynamic(p.b.index) || in_scope_[ga] == in_scope_[gb]) continue;
-            in_scope_[ga] = in_scope_[gb] = 1;
-            grown = true;
-        }
+        contacts_.resting().close_over(in_scope_, resting_places_);
+        known = in_scope_.members().size();
+        if (forces_.any()) close_over_forces();
     }
+}
+
+/// Adds the groups that springs may connect with members.
+void EventLocator::close_over_forces()
+{
+    flags_.assign(step_.groups.all.size(), 0);
+    for (const std::uint32_t g : in_scope_.members()) flags_[g] = 1;
+    (void)forces_.close_over(flags_);
+    for (std::uint32_t g = 0; g < flags_.size(); ++g)
+        if (flags_[g] != 0) in_scope_.add(g);
 }
 
 /// m: an overlap up to this at the start of a piece is treated like a gap of 0.
 double EventLocator::overlap_tolerance(Ref a, Ref b) const { return contacts_.overlap_tolerance(a, b); }
 
-void EventLocator::scope_of(const Candidate& candidate, bool local)
+/// Adds the pair's own groups, and what rests on them.
+void EventLocator::scope_of(const Candidate& candidate)
 {
-    const std::size_t groups = step_.groups.all.size();
-    if (!local) in_scope_.assign(groups, 1);
-    bool rests = !local;
+    bool rests = false;
     for (const Ref r : {candidate.a, candidate.b})
-        if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) in_scope_[g] = 1, rests = rests || rests_[g] != 0;
+        if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) in_scope_.add(g), rests = rests || rests_[g] != 0;
     if (rests) close_over_resting_pairs();
 }
 
@@ -263,13 +266,11 @@ void EventLocator::process()
         record(candidates_[chosen_.front()], candidates_[chosen_.front()].contacts, step_.frame.start_time + time);
         return;
     }
-    in_scope_.assign(step_.groups.all.size(), 0);
-    for (const std::uint32_t slot : chosen_) scope_of(candidates_[slot], true);
-    disturbed_ = in_scope_;
-    if (!detector.local && !first.at_end) scope_of(first, false);
-    scope_.clear();
-    for (std::uint32_t g = 0; g < in_scope_.size(); ++g)
-        if (in_scope_[g]) scope_.push_back(g);
+    in_scope_.begin(step_.groups.all.size());
+    for (const std::uint32_t slot : chosen_) scope_of(candidates_[slot]);
+    in_scope_.sort();
+    disturbed_ = in_scope_.members();
+    scope_ = detector.local || first.at_end ? disturbed_ : step_.all_groups;
     if (first.at_end)
     {
         // Answered where the step ends: nothing is rewound, only velocities change.
@@ -290,7 +291,8 @@ void EventLocator::process()
     for (const std::uint32_t g : scope_) motion_.save_segment(g);
     if (any_certifies_) start_pieces(time);
     if (time < step_.frame.step) go_on(time);
-    for (const std::uint32_t g : scope_) motion_.save_end(g), versions_[g] += disturbed_[g];
+    for (const std::uint32_t g : scope_) motion_.save_end(g);
+    for (const std::uint32_t g : disturbed_) ++versions_[g];
     if (any_certifies_) end_pieces();
 }
 

@@ -117,8 +117,9 @@ private:
     std::uint64_t version_of(const Candidate& c) const { return version_of(c.a, c.b); }
     void note_live();
     bool is_live(std::uint32_t detector, Ref a, Ref b) const;
-    void scope_of(const Candidate& candidate, bool local);
+    void scope_of(const Candidate& candidate);
     void close_over_resting_pairs();
+    void close_over_forces();
     void gather(std::uint32_t first);
     void gather_until(double until);
     void take(std::uint32_t slot, double until);
@@ -216,7 +217,10 @@ private:
     std::vector<std::uint32_t> set_aside_;            ///< slots
     std::vector<std::uint32_t> scope_;                ///< groups that are rewound, ascending
     std::vector<std::uint32_t> left_;                 ///< scratch of move_scope()
-    std::vector<std::uint8_t> in_scope_, disturbed_;  ///< by group; disturbed_: belongs to the last answer's pairs or rests on them
+    std::vector<std::uint32_t> resting_places_;       ///< of the persistent pairs in a scope
+    std::vector<std::uint8_t> flags_;                 ///< by group, scratch
+    IndexSet in_scope_;                               ///< groups, while a scope is collected
+    std::vector<std::uint32_t> disturbed_;            ///< groups of the last answer's pairs, and what rests on them
     std::vector<std::uint8_t> rests_;                 ///< by group: it takes part in a persistent contact
     bool any_rests_ = false;                          ///< a group in the scope of the present answer takes part in a persistent contact
     bool rewound_ = false;                            ///< the last answer rewound groups
@@ -244,7 +248,7 @@ private:
     std::vector<MotionBound> motions_;   ///< by body
     std::vector<BodyExtent> extents_;    ///< by body
     std::vector<double> motion_margin_;  ///< m, by body: how far its AABB is expanded by its motion
-    std::vector<std::uint8_t> active_;   ///< by body
+    IndexSet active_;                    ///< bodies of which pairs are detected
     std::vector<NearCollector::Pair> near_;
     struct Accelerated
     {

@@ -128,10 +128,10 @@ void EventLocator::scope_of_pair(const Candidate& candidate)
             if (g != kNoIndex && (scope_.empty() || scope_.back() != g)) scope_.push_back(g);
         return;
     }
-    in_scope_.assign(step_.groups.all.size(), 0);
-    scope_of(candidate, true);
-    for (std::uint32_t g = 0; g < in_scope_.size(); ++g)
-        if (in_scope_[g]) scope_.push_back(g);
+    in_scope_.begin(step_.groups.all.size());
+    scope_of(candidate);
+    in_scope_.sort();
+    scope_ = in_scope_.members();
 }
 
 EventLocator::DistanceSample EventLocator::sample_at(const Candidate& candidate, double time)

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/groups/index_set.h"
 #include "simulation/groups/schedule.h"
 
 namespace plab::simulation
@@ -64,6 +65,12 @@ class DisjointSets
 public:
     explicit DisjointSets(std::size_t n = 0) { reset(n); }
     void reset(std::size_t n);
+    std::size_t size() const { return parent_.size(); }
+    /// Makes single sets of `members` again; to be called for all members that were joined.
+    void separate(std::span<const std::uint32_t> members)
+    {
+        for (const std::uint32_t i : members) parent_[i] = i;
+    }
     std::uint32_t find(std::uint32_t i);
     void join(std::uint32_t a, std::uint32_t b);
 

@@ -38,7 +38,9 @@ GroupSystem& SystemPool::of(const StepFrame& frame, std::span<const std::uint32_
             return *it->second.system;
         }
     // A caller holds at most one system at a time and requests it again before each advance, so clearing is safe here.
-    if (entries_.size() >= kMost || members_ >= kMost + kMostMembers * frame.groups->all.size()) entries_.clear(), members_ = 0;
+    const std::size_t groups_of_all = frame.groups->all.size();
+    if (entries_.size() >= std::max(kMost, 2 * groups_of_all) || members_ >= kMost + kMostMembers * groups_of_all)
+        entries_.clear(), members_ = 0;
     members_ += members;
     Entry fresh{
         {groups.begin(), groups.end()}, {observed.begin(), observed.end()}, std::make_unique<GroupSystem>(scratch_), key, frame.tick};

@@ -25,7 +25,8 @@ public:
     StageScratch& scratch() { return scratch_; }
 
 private:
-    /// Sets of groups change with contacts; beyond this number the cache is cleared.
+    /// Sets of groups change with contacts; beyond this number, or twice as many as there are groups, the cache is cleared. So each group
+    /// of a large scene may have a system of its own: one impact each rewinds them one by one.
     static constexpr std::size_t kMost = 4096;
     /// The same for the members of all cached sets together, as a multiple of the number of groups.
     static constexpr std::size_t kMostMembers = 4;

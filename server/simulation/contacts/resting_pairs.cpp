@@ -1,0 +1,91 @@
+#include "simulation/contacts/resting_pairs.h"
+
+#include <algorithm>
+
+namespace plab::simulation
+{
+namespace
+{
+
+void sort_places(std::vector<std::uint32_t>& places)
+{
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+}
+
+}  // namespace
+
+void RestingPairs::put(const PairState& pair, std::size_t place)
+{
+    const std::uint32_t ga = groups_.of(pair.a), gb = groups_.of(pair.b);
+    const auto put_in = [&](std::uint32_t group)
+    {
+        nodes_.push_back({pair.detector, pair.a, pair.b, place, first_[group]});
+        first_[group] = static_cast<std::uint32_t>(nodes_.size() - 1);
+    };
+    if (ga != kNoIndex) put_in(ga);
+    if (gb != kNoIndex && gb != ga) put_in(gb);
+}
+
+void RestingPairs::build()
+{
+    ready_ = true;
+    first_.assign(groups_.all.size(), kNoIndex);
+    nodes_.clear();
+    const std::vector<PairState>& pairs = cache_.pairs();
+    looked_at_ += pairs.size();
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (pairs[i].resting) put(pairs[i], i);
+}
+
+void RestingPairs::add(const PairState& pair)
+{
+    if (ready_) put(pair, static_cast<std::size_t>(&pair - cache_.pairs().data()));
+}
+
+template <class Found>
+void RestingPairs::each_of(std::uint32_t group, Found&& found)
+{
+    if (!ready_) build();
+    for (std::uint32_t i = first_[group]; i != kNoIndex; i = nodes_[i].next)
+    {
+        Node& node = nodes_[i];
+        ++looked_at_;
+        const PairState* pair = cache_.find(node.detector, node.a, node.b, world_, node.place);
+        if (pair && pair->resting) found(*pair, static_cast<std::uint32_t>(node.place));
+    }
+}
+
+void RestingPairs::find(std::span<const std::uint32_t> groups, std::vector<std::uint32_t>& places)
+{
+    places.clear();
+    if (!is_most_of_all(groups))
+    {
+        for (const std::uint32_t g : groups) each_of(g, [&](const PairState&, std::uint32_t place) { places.push_back(place); });
+        return sort_places(places);
+    }
+    wanted_.begin(groups_.all.size());
+    for (const std::uint32_t g : groups) wanted_.add(g);
+    const auto is_wanted = [&](Ref r) { return groups_.of(r) != kNoIndex && wanted_.has(groups_.of(r)); };
+    const std::vector<PairState>& pairs = cache_.pairs();
+    looked_at_ += pairs.size();
+    for (std::uint32_t i = 0; i < pairs.size(); ++i)
+        if (pairs[i].resting && (is_wanted(pairs[i].a) || is_wanted(pairs[i].b))) places.push_back(i);
+}
+
+void RestingPairs::close_over(IndexSet& groups, std::vector<std::uint32_t>& places)
+{
+    places.clear();
+    const Bodies& bodies = world_.host().bodies;
+    // A group is never left again once it is a member, so each is visited once.
+    for (std::size_t i = 0; i < groups.members().size(); ++i)
+        each_of(groups.members()[i],
+                [&](const PairState& p, std::uint32_t place)
+                {
+                    places.push_back(place);
+                    if (bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) groups.add(groups_.of(p.a)), groups.add(groups_.of(p.b));
+                });
+    sort_places(places);
+}
+
+}  // namespace plab::simulation
