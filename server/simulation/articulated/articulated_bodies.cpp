@@ -37,11 +37,15 @@ std::size_t ArticulatedBodies::freedom(JointKind kind)
 {
     switch (kind)
     {
-        case JointKind::Weld: return 0;
+        case JointKind::Weld:
+            return 0;
         case JointKind::Hinge:
-        case JointKind::Slider: return 1;
-        case JointKind::Ball: return 3;
-        case JointKind::Free: break;
+        case JointKind::Slider:
+            return 1;
+        case JointKind::Ball:
+            return 3;
+        case JointKind::Free:
+            break;
     }
     return 6;
 }
@@ -132,11 +136,20 @@ void ArticulatedBodies::place(Bodies& bodies, std::span<const double> x, std::sp
         link.turn = {};
         switch (link.kind)
         {
-            case JointKind::Weld: break;
-            case JointKind::Hinge: link.turn = u[k] * link.axis, relative = cross(link.turn, link.r); break;
-            case JointKind::Slider: l += x[k] * link.axis, relative = u[k] * link.axis; break;
-            case JointKind::Ball: link.turn = link.R * part(u, k), relative = cross(link.turn, link.r); break;
-            case JointKind::Free: l += part(x, k), link.turn = link.R * part(u, k + 3), relative = part(u, k); break;
+            case JointKind::Weld:
+                break;
+            case JointKind::Hinge:
+                link.turn = u[k] * link.axis, relative = cross(link.turn, link.r);
+                break;
+            case JointKind::Slider:
+                l += x[k] * link.axis, relative = u[k] * link.axis;
+                break;
+            case JointKind::Ball:
+                link.turn = link.R * part(u, k), relative = cross(link.turn, link.r);
+                break;
+            case JointKind::Free:
+                l += part(x, k), link.turn = link.R * part(u, k + 3), relative = part(u, k);
+                break;
         }
         link.l = l, link.c = c_P + l;
         link.w = w_P + link.turn;

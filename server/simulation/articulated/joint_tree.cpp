@@ -13,10 +13,7 @@ constexpr double kJointTolerance = 1e-6;
 
 using Twist = std::array<double, 6>;  ///< linear (m/s), angular (rad/s) times a length
 
-double dot6(const Twist& a, const Twist& b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
-}
+double dot6(const Twist& a, const Twist& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5]; }
 
 /// An orthonormal set of twists that grows.
 struct TwistBasis
@@ -95,7 +92,8 @@ std::string_view as_ball_joint(std::span<const Twist> t, double arm, const Vec3&
     const Vec3 r{0.5 * (entry(1, 2) - entry(2, 1)), 0.5 * (entry(2, 0) - entry(0, 2)), 0.5 * (entry(0, 1) - entry(1, 0))};
     for (int i = 0; i < 3; ++i)
         for (int j = i; j < 3; ++j)
-            if (std::fabs(entry(i, j) + entry(j, i)) > kJointTolerance * arm) return "a joint with three degrees of freedom is not a ball joint";
+            if (std::fabs(entry(i, j) + entry(j, i)) > kJointTolerance * arm)
+                return "a joint with three degrees of freedom is not a ball joint";
     joint.kind = JointKind::Ball, joint.anchor_W = center - r;
     return {};
 }
@@ -111,7 +109,8 @@ std::string_view unfit(const Bodies& bodies, const ConstraintRow& row)
         const Ref p = row.blocks[k].participant;
         if (p.facet != Facet::Body || !p.valid()) return "a joint couples a shaft";
         if (bodies.dynamic(p.index)) continue;
-        if (length(bodies.velocity[p.index]) + length(bodies.angular_velocity[p.index]) > 0) return "a joint is held by a body that is driven";
+        if (length(bodies.velocity[p.index]) + length(bodies.angular_velocity[p.index]) > 0)
+            return "a joint is held by a body that is driven";
     }
     if (row.count == 1) return {};
     const RowBlock &a = row.blocks[0], &b = row.blocks[1];
@@ -150,7 +149,8 @@ std::string_view JointTree::add_joint(const Bodies& bodies, std::span<const Cons
     const ConstraintRow& first = rows[0];
     const std::uint32_t last = first.blocks[first.count - 1].participant.index;
     RecognizedJoint joint;
-    const auto moving = [&](std::uint32_t k) { return bodies.dynamic(first.blocks[k].participant.index) ? first.blocks[k].participant.index : kNoIndex; };
+    const auto moving = [&](std::uint32_t k)
+    { return bodies.dynamic(first.blocks[k].participant.index) ? first.blocks[k].participant.index : kNoIndex; };
     joint.a = first.count == 2 ? moving(0) : kNoIndex, joint.b = moving(first.count - 1);
     joint.component = first.component;
     const Vec3& center = bodies.position[last];
@@ -158,9 +158,12 @@ std::string_view JointTree::add_joint(const Bodies& bodies, std::span<const Cons
     std::array<Twist, 6> free{};
     const std::size_t freedom = null_space(basis, free);
     std::string_view reason;
-    if (freedom == 1) reason = as_line_joint(free[0], arm, center, joint);
-    else if (freedom == 3) reason = as_ball_joint({free.data(), 3}, arm, center, joint);
-    else if (freedom != 0) reason = "a joint has neither 0, 1 nor 3 degrees of freedom";
+    if (freedom == 1)
+        reason = as_line_joint(free[0], arm, center, joint);
+    else if (freedom == 3)
+        reason = as_ball_joint({free.data(), 3}, arm, center, joint);
+    else if (freedom != 0)
+        reason = "a joint has neither 0, 1 nor 3 degrees of freedom";
     joints_.push_back(joint);
     return reason;
 }
