@@ -1,5 +1,6 @@
 #include "plab/plugin.h"
 
+#include "articulated.h"
 #include "automatic.h"
 #include "dormand_prince54.h"
 #include "exact.h"
@@ -104,6 +105,14 @@ void declare_adaptive(plab::Registrar& registrar)
         .source(
             "Dormand, Prince, J. Comput. Appl. Math. 6 (1980) 19; Hairer, Norsett, Wanner, Solving ordinary differential equations I, "
             "II.4");
+    registrar.component<ArticulatedRows>("Solver/Articulated", "DormandPrince54 in the coordinates of the joints; order 5")
+        .family("Solver")
+        .command<advance_articulated>(Phase::Advance, kAdvance, kAdvanceDoc)
+        .order(5)
+        .strengths("chains and trees of hinges, sliders, ball joints and welds: joints hold to rounding, at a cost linear in the bodies")
+        .cost("evaluations as DormandPrince54, each without multipliers")
+        .limits("loops, limits, motors and gears: DormandPrince54 is used on the rows, and an event reports it")
+        .source("Featherstone, Rigid Body Dynamics Algorithms (2008), section 7.3; Dormand, Prince, J. Comput. Appl. Math. 6 (1980) 19");
     registrar.component<Radau5Rows>("Solver/Radau5", "stiff solver with error control: implicit, L-stable; order 5")
         .family("Solver")
         .command<advance_radau5>(Phase::Advance, kAdvance, kAdvanceDoc)

@@ -19,6 +19,7 @@ enum class Fallback : std::int64_t
     Constrained = 1,
     NotUniform = 2,
     TooLarge = 4,
+    NotTree = 8,
 };
 
 struct ResolvedColumns
@@ -29,7 +30,7 @@ struct ResolvedColumns
     void describe(Schema& schema)
     {
         schema.output(resolved, "resolved", unit::one, "the method used for the group that was advanced last");
-        schema.state(announced, "announced", unit::one, "fallbacks reported by events: 1 joints, 2 forces, 4 size (a sum)").not_negative();
+        schema.state(announced, "announced", unit::one, "fallbacks reported by events: 1 joints, 2 forces, 4 size, 8 no tree of joints (a sum)").not_negative();
     }
     /// To be called before the first evaluation, because it emits with the context's own rows.
     void say(const StepContext& context, Row row, std::string_view method)

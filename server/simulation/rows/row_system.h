@@ -109,6 +109,15 @@ public:
     /// Stores what is reported about them and the errors that remain at the present state. Books their work, computed with the mean of
     /// the speeds before and after, and returns its sum (J).
     double take_impulses(const StepContext& context, std::span<const ConstraintRow> held, double h, const RowBook& book);
+    /// Joints held by other means than multipliers (simulation/articulated): there are none, until react() computes some.
+    void forget_multipliers() { lambda_.clear(); }
+    /// To be called after project(): the reactions to report, for each component that has rows, in the order of its rows.
+    template <class Reactions>
+    void take_reactions(const Reactions& reactions)
+    {
+        reactions_.clear();
+        for (const auto& r : reactions) reactions_.push_back({r.component, r.force, r.torque});
+    }
     /// Writes what the last react() or take_impulses(), and the last projection, found.
     void report_to(RowReportTable& table) const;
 

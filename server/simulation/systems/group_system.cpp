@@ -44,10 +44,16 @@ void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_
     shaft_system_.configure(world, *frame.schedule, *frame.groups, groups_, *frame.graph);
     quantity_values_ = 0;
     for (const std::uint32_t q : quantities_) quantity_values_ += host.quantities.value[q].size();
-    const std::size_t n = 6 * bodies_.size() + roots_.size() + quantity_values_;
-    coordinates_.resize(n), speeds_.resize(n), coordinate_rates_.resize(n), speed_rates_.resize(n);
+    size_vectors(6 * bodies_.size());
     start_position_.resize(bodies_.size()), start_orientation_.resize(bodies_.size()), start_angle_.resize(roots_.size());
     configure_rows();
+}
+
+void GroupSystem::size_vectors(std::size_t body_values)
+{
+    body_values_ = body_values;
+    const std::size_t n = body_values_ + roots_.size() + quantity_values_;
+    for (auto* v : {&coordinates_, &speeds_, &coordinate_rates_, &speed_rates_}) v->resize(n);
 }
 
 void GroupSystem::collect_members(std::span<const std::uint32_t> groups)
@@ -143,6 +149,8 @@ void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events
     context_.active_bodies = scratch_->active_bodies, context_.active_shafts = scratch_->active_shafts;
     if (rows_ && !rows_held_) join();
 
+    minimal_ = false;
+    size_vectors(6 * bodies_.size());
     const world::HostTables& host = frame_.world->host();
     std::fill(coordinates_.begin(), coordinates_.end(), 0.0);
     for (std::size_t i = 0; i < bodies_.size(); ++i)
@@ -181,10 +189,10 @@ void GroupSystem::scatter_prescribed(double since_step_start)
     }
 }
 
-void GroupSystem::scatter(double t)
+void GroupSystem::scatter_bodies()
 {
     world::HostTables& host = frame_.world->host();
-    scatter_prescribed(from_ + t);
+    if (minimal_) return articulated_.place(host.bodies, coordinates_, speeds_);
     for (std::size_t i = 0; i < bodies_.size(); ++i)
     {
         const std::uint32_t b = bodies_[i];
@@ -197,7 +205,14 @@ void GroupSystem::scatter(double t)
             host.bodies.angular_momentum[b] = get(speeds_, 6 * i + 3);
         host.bodies.refresh_spin(b);
     }
-    const std::size_t base = 6 * bodies_.size();
+}
+
+void GroupSystem::scatter(double t)
+{
+    world::HostTables& host = frame_.world->host();
+    scatter_prescribed(from_ + t);
+    scatter_bodies();
+    const std::size_t base = body_values_;
     for (std::size_t i = 0; i < roots_.size(); ++i)
     {
         host.shafts.angle[roots_[i]] = start_angle_[i] + coordinates_[base + i];
@@ -280,6 +295,7 @@ void GroupSystem::run_force(const Selected& s, PhaseCall& call, bool booked)
 void GroupSystem::rates_of_bodies()
 {
     const Bodies& bodies = frame_.world->host().bodies;
+    if (minimal_) return articulated_.coordinate_rates(coordinates_, speeds_, coordinate_rates_);
     for (std::size_t i = 0; i < bodies_.size(); ++i)
     {
         const std::uint32_t b = bodies_[i];
@@ -313,7 +329,7 @@ void GroupSystem::rates_of_shafts(double weight)
     shaft_system_.solve_accelerations(context_, scratch_->wrenches.shaft_torque);
     // Couplings of observed groups are booked when their own group is advanced.
     if (book_.work && weight != 0 && !has_observed_) shaft_system_.account(*book_.work, book_.sign * weight * context_.dt);
-    const std::size_t base = 6 * bodies_.size();
+    const std::size_t base = body_values_;
     for (std::size_t i = 0; i < roots_.size(); ++i)
     {
         coordinate_rates_[base + i] = host.shafts.speed[roots_[i]];
@@ -323,7 +339,7 @@ void GroupSystem::rates_of_shafts(double weight)
 
 void GroupSystem::rates_of_quantities()
 {
-    std::size_t next = 6 * bodies_.size() + roots_.size();
+    std::size_t next = body_values_ + roots_.size();
     for (const std::uint32_t q : quantities_)
         for (const double rate : scratch_->wrenches.quantity_rate[q]) coordinate_rates_[next] = 0, speed_rates_[next++] = rate;
 }
@@ -341,7 +357,7 @@ void GroupSystem::evaluate(double t, double weight)
     scatter(t);
     clear_wrenches();
     run_forces(weight);
-    if (rows_ && !rows_held_)
+    if (rows_ && !rows_held_ && !minimal_)
     {
         const CostScope scope(scratch_->meter(), scratch_->rows_ns);
         (void)rows_->react(context_, scratch_->wrenches);  // non-finite results are detected at the end of the advance
@@ -349,7 +365,8 @@ void GroupSystem::evaluate(double t, double weight)
     }
     rates_of_bodies();
     const Bodies& bodies = frame_.world->host().bodies;
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
+    if (minimal_) articulated_.accelerate(bodies, scratch_->wrenches, speed_rates_);
+    for (std::size_t i = 0; !minimal_ && i < bodies_.size(); ++i)
     {
         put(speed_rates_, 6 * i, scratch_->wrenches.force[bodies_[i]] * bodies.inverse_mass[bodies_[i]]);
         put(speed_rates_, 6 * i + 3, bodies.needle[bodies_[i]] != 0 ? spin_rate_B(bodies_[i]) : scratch_->wrenches.torque[bodies_[i]]);
@@ -374,14 +391,14 @@ void GroupSystem::evaluate_kinematics()
 {
     scatter(0);
     rates_of_bodies();
-    const std::size_t base = 6 * bodies_.size();
+    const std::size_t base = body_values_;
     for (std::size_t i = 0; i < roots_.size(); ++i) coordinate_rates_[base + i] = speeds_[base + i];
     for (std::size_t i = base + roots_.size(); i < coordinate_rates_.size(); ++i) coordinate_rates_[i] = 0;
 }
 
 void GroupSystem::move_shafts(double h, Shafts& shafts)
 {
-    const std::size_t base = 6 * bodies_.size();
+    const std::size_t base = body_values_;
     for (std::size_t i = 0; i < roots_.size(); ++i)
     {
         const double before = speeds_[base + i];

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "plab/interruption.h"
+#include "plab/minimal_coordinates.h"
+#include "simulation/articulated/articulated_bodies.h"
 #include "simulation/groups/groups.h"
 #include "simulation/rows/row_system.h"
 #include "simulation/shafts/shaft_system.h"
@@ -72,7 +74,7 @@ public:
     virtual void join(DisjointSets& /*groups*/) const {}
 };
 
-class GroupSystem final : public DynamicSystem
+class GroupSystem final : public DynamicSystem, public MinimalCoordinates
 {
 public:
     explicit GroupSystem(StageScratch& scratch) : scratch_(&scratch) {}
@@ -135,7 +137,8 @@ public:
     void evaluate(double t, double weight) override;
     void evaluate_kinematics() override;
     std::span<double> workspace(int i) override;
-    std::size_t body_count() const override { return bodies_.size(); }
+    std::string_view use_minimal_coordinates() override;
+    std::size_t body_count() const override { return minimal_ ? 0 : bodies_.size(); }
     RigidMember rigid(std::size_t body) const override;
     std::size_t quantity_count() const override { return quantity_values_; }
     bool interrupted() const override { return frame_.interruption && frame_.interruption->due(); }
@@ -161,6 +164,9 @@ private:
     void filter_forces();
     void make_shortlists(Selected& selected);
     void configure_rows();
+    void keep_reactions();
+    void size_vectors(std::size_t body_values);
+    void scatter_bodies();
     void announce_contradictions(const ProjectionReport& report);
     void scatter(double t);
     void scatter_prescribed(double since_step_start);
@@ -194,6 +200,10 @@ private:
     std::unique_ptr<RowSystem> rows_;
     bool rows_held_ = false;
     std::vector<std::uint32_t> joints_;  ///< components that rows_ belong to
+    bool minimal_ = false;               ///< in this advance the bodies have the coordinates of their joints
+    std::size_t body_values_ = 0;        ///< coordinates of bodies: six each, or those of joints
+    JointTree tree_;
+    ArticulatedBodies articulated_;
 
     std::vector<double> coordinates_, speeds_, coordinate_rates_, speed_rates_;
     std::array<std::vector<double>, 32> workspace_;

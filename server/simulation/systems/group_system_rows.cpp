@@ -33,6 +33,30 @@ void GroupSystem::join()
     rows_->join(context_, row_book());
 }
 
+/// The state is what the tables hold, and begin() has made the speeds fit the joints; so nothing is kept from advance to advance.
+std::string_view GroupSystem::use_minimal_coordinates()
+{
+    if (!rows_) return {};
+    if (rows_held_) return "a manager holds the joints";
+    Bodies& bodies = frame_.world->host().bodies;
+    const CostScope scope(scratch_->meter(), scratch_->rows_ns);
+    if (const std::string_view reason = tree_.recognize(bodies, bodies_, rows_->rows()); !reason.empty()) return reason;
+    articulated_.start(bodies, tree_);
+    const std::size_t old = body_values_;
+    const std::size_t others = speeds_.size() - old;
+    for (std::size_t i = 0; i < others; ++i) speeds_[articulated_.size() + i] = speeds_[old + i];
+    size_vectors(articulated_.size());
+    articulated_.read_speeds(bodies, speeds_);
+    minimal_ = true;
+    return {};
+}
+
+/// The joints' reactions in the last evaluation, in place of the multipliers that the rows would have had.
+void GroupSystem::keep_reactions()
+{
+    if (minimal_) rows_->take_reactions(articulated_.reactions(tree_));
+}
+
 /// Joints are solved together, so the time is divided among their types by numbers of components.
 void GroupSystem::share_cost_of_rows()
 {
@@ -52,7 +76,9 @@ void GroupSystem::project()
     if (!rows_) return;
     context_.time = frame_.start_time + (from_ + context_.dt);
     scratch_->meter().enter(scratch_->rows_ns);
+    if (minimal_) rows_->forget_multipliers();
     ProjectionReport report = rows_->project(context_, row_book());
+    keep_reactions();
     scratch_->meter().leave();
     const auto by_id = [this](std::uint32_t x, std::uint32_t y) { return frame_.world->rank(x) < frame_.world->rank(y); };
     std::sort(report.contradictory.begin(), report.contradictory.end(), by_id);

@@ -148,7 +148,7 @@ Entries chain_algorithms()
     Entries out;
     for (const char* name : {"SemiImplicitEuler", "StoermerVerlet", "RungeKutta4", "ImplicitMidpoint", "RotationSplitting"})
         out.push_back({smooth(name), steps({20, 30, 60, 120, 240, 480, 1000}), ""});
-    add_adaptive(out, "DormandPrince54", {1, 60});
+    for (const char* name : {"DormandPrince54", "Articulated"}) add_adaptive(out, name, {1, 60});
     return out;
 }
 
