@@ -22,7 +22,7 @@ using Entries = std::vector<Entry>;
 
 const Ladder kFine = steps({30, 60, 120, 240, 480, 1000, 2000, 4000});
 const Ladder kWide = steps({5, 10, 20, 30, 60, 120, 240, 480, 1000});
-const Ladder kLong{{5, 1}, {2, 1}, {1, 1}, {1, 2}, {1, 5}, {1, 10}, {1, 20}, {1, 30}, {1, 60}, {1, 120}, {1, 240}};
+const Ladder kLongSteps{{5, 1}, {2, 1}, {1, 1}, {1, 2}, {1, 5}, {1, 10}, {1, 20}, {1, 30}, {1, 60}, {1, 120}, {1, 240}};
 const Ladder kContact = steps({30, 60, 120, 240, 480});
 const Ladder kBalls = steps({10, 20, 30, 60, 120, 240, 480});
 
@@ -56,8 +56,8 @@ Entries flight_algorithms()
     out.push_back({smooth("RotationSplitting 2", solver("RotationSplitting") + " order=\"2\""), kWide, ""});
     out.push_back({smooth("RotationSplitting 4", solver("RotationSplitting") + " order=\"4\""), kWide, ""});
     out.push_back({smooth("ImplicitMidpoint"), kWide, ""});
-    out.push_back({smooth("Exact"), kLong, ""});
-    out.push_back({smooth("Automatic"), kLong, ""});
+    out.push_back({smooth("Exact"), kLongSteps, ""});
+    out.push_back({smooth("Automatic"), kLongSteps, ""});
     add_adaptive(out, "DormandPrince54", {1, 10});
     return out;
 }
@@ -94,9 +94,9 @@ Entries bounce_algorithms()
     Entries out;
     for (const char* resolution : {"None", "LocalBisection", "LocalRoot", "ConservativeAdvancement"})
         for (const char* name : {"SemiImplicitEuler", "StoermerVerlet", "RungeKutta4", "Exact"})
-            out.push_back({by_events(name, resolution), kLong, ""});
+            out.push_back({by_events(name, resolution), kLongSteps, ""});
     out.push_back({by_force("RungeKutta4", "Penalty"), kContact, ""});
-    out.push_back({by_rows("Direct", "LocalRoot"), kLong, ""});
+    out.push_back({by_rows("Direct", "LocalRoot"), kLongSteps, ""});
     out.push_back({by_rows("SequentialImpulse", "Speculative"), kContact, ""});
     return out;
 }
