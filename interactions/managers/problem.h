@@ -100,11 +100,11 @@ public:
     PacketList<4> fours;
 
 private:
-    /// Calls one(i) for each mover, in parts that threads share.
+    /// Calls one(i) for each i < count, in parts that threads share.
     template <class One>
-    void for_movers(const One& one)
+    void for_each(std::size_t count, const One& one)
     {
-        for_parts(workers, movers.size(), kMoverPart,
+        for_parts(workers, count, kMoverPart,
                   [&](std::size_t begin, std::size_t end)
                   {
                       for (std::size_t i = begin; i < end; ++i) one(i);
