@@ -62,13 +62,29 @@ void PacketList<W>::order_pairs()
 }
 
 template <int W>
-void PacketList<W>::add_packet(std::span<const Point> from, std::span<const std::uint32_t> pairs)
+void PacketList<W>::add_packet(std::uint32_t pair, std::uint32_t pairs)
 {
     Packet<W>& packet = packets_.emplace_back();
     packet.a.fill(kNoIndex), packet.b.fill(kNoIndex);
-    packet.first = static_cast<std::uint32_t>(points_.size());
-    for (const std::uint32_t p : pairs) packet.count = std::max(packet.count, pairs_[p].count);
-    points_.resize(points_.size() + packet.count);
+    packet.first = static_cast<std::uint32_t>(point_count_);
+    first_pair_.push_back(pair);
+    for (const std::uint32_t p : std::span(order_).subspan(pair, pairs)) packet.count = std::max(packet.count, pairs_[p].count);
+    point_count_ += packet.count;
+    for (int l = 0; l < static_cast<int>(pairs); ++l)
+    {
+        const Pair& of = pairs_[order_[pair + static_cast<std::uint32_t>(l)]];
+        for (std::uint32_t k = 0; k < of.count; ++k) places_[of.first + k] = {packet.first + k, l};
+    }
+}
+
+/// Writes a packet's sides and its points.
+template <int W>
+void PacketList<W>::fill(std::size_t number, std::span<const Point> from)
+{
+    Packet<W>& packet = packets_[number];
+    const std::size_t end = number + 1 < first_pair_.size() ? first_pair_[number + 1] : order_.size();
+    const std::span<const std::uint32_t> pairs = std::span(order_).subspan(first_pair_[number], end - first_pair_[number]);
+    for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i) points_[i] = {};
     for (int l = 0; l < static_cast<int>(pairs.size()); ++l)
     {
         const Pair& pair = pairs_[pairs[static_cast<std::size_t>(l)]];
@@ -78,21 +94,33 @@ void PacketList<W>::add_packet(std::span<const Point> from, std::span<const std:
         {
             const Point& p = from[pair.first + k];
             PacketPoint<W>& to = points_[packet.first + k];
-            places_[pair.first + k] = {packet.first + k, l};
             set(to.n, l, p.n), set(to.t1, l, p.t1), set(to.r_a, l, p.r_a), set(to.r_b, l, p.r_b);
+            take(p, to, l);
         }
     }
 }
 
+/// The packets that follow form a section. Colours too small to be divided share one, so that one thread sweeps them in a row.
 template <int W>
-void PacketList<W>::load(std::span<const Point> from, std::size_t movers)
+void PacketList<W>::add_section(bool one_colour)
 {
-    packets_.clear(), points_.clear();
+    if (!one_colour && !sections_.empty() && !sections_.back().one_colour) return;
+    sections_.push_back({packets_.size(), one_colour});
+}
+
+template <int W>
+void PacketList<W>::load(std::span<const Point> from, std::size_t movers, Workers* workers)
+{
+    packets_.clear(), sections_.clear(), first_pair_.clear();
+    point_count_ = 0;
+    workers_ = workers;
     places_.resize(from.size());
     find_pairs(from);
     if constexpr (W == 1)
     {
-        for (std::uint32_t i = 0; i < pairs_.size(); ++i) add_packet(from, std::span(&i, 1));
+        add_section(false);
+        order_.resize(pairs_.size());
+        for (std::uint32_t i = 0; i < pairs_.size(); ++i) order_[i] = i, add_packet(i, 1);
     }
     else
     {
@@ -101,32 +129,45 @@ void PacketList<W>::load(std::span<const Point> from, std::size_t movers)
         for (std::size_t i = 0; i < order_.size();)
         {
             const std::uint32_t colour = pairs_[order_[i]].colour;
+            if (i == 0 || pairs_[order_[i - 1]].colour != colour)
+            {
+                std::size_t last = i;
+                while (last < order_.size() && pairs_[order_[last]].colour == colour) ++last;
+                add_section(colour < kMostColours && last - i > W * kPart);
+            }
             std::size_t end = i + 1;
             while (end < order_.size() && end < i + W && colour < kMostColours && pairs_[order_[end]].colour == colour) ++end;
-            add_packet(from, std::span(order_).subspan(i, end - i));
+            add_packet(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(end - i));
             i = end;
         }
     }
-    reload(from);
+    points_.resize(point_count_);
+    in_parts(
+        [&](std::size_t begin, std::size_t end)
+        {
+            for (std::size_t k = begin; k < end; ++k) fill(k, from);
+        });
 }
 
 template <int W>
 void PacketList<W>::reserve(std::size_t points)
 {
     packets_.reserve(points), points_.reserve(points), places_.reserve(points), pairs_.reserve(points);
+    order_.reserve(points), first_pair_.reserve(points), sections_.reserve(1);
+}
+
+/// Takes what changes between sweeps of one step.
+template <int W>
+void PacketList<W>::take(const Point& p, PacketPoint<W>& to, int l)
+{
+    set(to.given, l, p.given), set(to.impulse, l, p.impulse);
+    set_lane(to.friction, l, p.friction), set_lane(to.least, l, p.least);
 }
 
 template <int W>
 void PacketList<W>::reload(std::span<const Point> from)
 {
-    for (std::size_t i = 0; i < from.size(); ++i)
-    {
-        const Point& p = from[i];
-        PacketPoint<W>& to = at(i);
-        const int l = places_[i].lane;
-        set(to.given, l, p.given), set(to.impulse, l, p.impulse);
-        set_lane(to.friction, l, p.friction), set_lane(to.least, l, p.least);
-    }
+    for (std::size_t i = 0; i < from.size(); ++i) take(from[i], at(i), places_[i].lane);
 }
 
 template <int W>

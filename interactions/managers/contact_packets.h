@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "movers.h"
+#include "plab/parts.h"
 
 namespace plab::managers
 {
@@ -44,12 +45,18 @@ struct Packet
     std::uint32_t first = 0, count = 0;  ///< its points
 };
 
+/// Packets that a thread takes at once: some microseconds of work in a sweep, so that taking it costs little.
+inline constexpr std::size_t kPart = 16;
+/// Islands of single lanes are too small to be divided.
+inline constexpr std::size_t kSmallIsland = 1 << 20;
+
 template <int W>
 class PacketList
 {
 public:
     /// Packs geometry, friction, targets and impulses of the points. Mobilities are still to be computed: set_mobility().
-    void load(std::span<const Point> from, std::size_t movers);
+    /// `workers`: threads for the loops over the packets until the next call; null: none.
+    void load(std::span<const Point> from, std::size_t movers, Workers* workers = nullptr);
     /// Sets memory apart for so many points in as many pairs.
     void reserve(std::size_t points);
     /// Takes targets, friction and impulses anew; the pairs are those that were loaded.
@@ -76,6 +83,15 @@ public:
     std::span<const Packet<W>> packets() const { return packets_; }
     std::span<PacketPoint<W>> points() { return points_; }
     std::span<const PacketPoint<W>> points() const { return points_; }
+    /// Calls loop(begin, end) with parts of packets() between which no mover is shared, then with the parts of the next colour, and so on.
+    template <class Loop>
+    void by_colour(const Loop& loop, bool backwards = false) const;
+    /// The same in parts of any colours, for loops that do not change the movers.
+    template <class Loop>
+    void in_parts(const Loop& loop) const
+    {
+        for_parts(workers_, packets_.size(), W == 1 ? kSmallIsland : kPart, loop);
+    }
 
 private:
     /// The contact points between two bodies, which follow one another.
@@ -87,12 +103,22 @@ private:
     void find_pairs(std::span<const Point> from);
     void colour_pairs(std::size_t movers);
     void order_pairs();
-    void add_packet(std::span<const Point> from, std::span<const std::uint32_t> pairs);
+    void add_packet(std::uint32_t pair, std::uint32_t pairs);
+    void fill(std::size_t number, std::span<const Point> from);
+    static void take(const Point& from, PacketPoint<W>& to, int lane);
 
     PacketPoint<W>& at(std::size_t contact) { return points_[places_[contact].point]; }
     const PacketPoint<W>& at(std::size_t contact) const { return points_[places_[contact].point]; }
     static Vec3 vec(const LaneVec<W>& v, int i) { return {lane(v.x, i), lane(v.y, i), lane(v.z, i)}; }
     static void set(LaneVec<W>& v, int i, const Vec3& to) { set_lane(v.x, i, to.x), set_lane(v.y, i, to.y), set_lane(v.z, i, to.z); }
+
+    /// Packets from `begin` to the next one, which may be swept in parts of kPart packets at once if they are of one colour.
+    struct Section
+    {
+        std::size_t begin = 0;
+        bool one_colour = false;
+    };
+    void add_section(bool one_colour);
 
     std::vector<Packet<W>> packets_;
     std::vector<PacketPoint<W>> points_;
@@ -100,7 +126,24 @@ private:
     std::vector<Pair> pairs_;
     std::vector<std::uint64_t> colours_of_mover_;  ///< a bit for each colour that the mover's pairs have
     std::vector<std::uint32_t> order_, starts_;    ///< pairs by colour and number of points
+    std::vector<std::uint32_t> first_pair_;        ///< by packet, in order_
+    std::size_t point_count_ = 0;
+    std::vector<Section> sections_;
+    Workers* workers_ = nullptr;
 };
+
+template <int W>
+template <class Loop>
+void PacketList<W>::by_colour(const Loop& loop, bool backwards) const
+{
+    for (std::size_t k = 0; k < sections_.size(); ++k)
+    {
+        const std::size_t s = backwards ? sections_.size() - 1 - k : k, begin = sections_[s].begin;
+        const std::size_t end = s + 1 < sections_.size() ? sections_[s + 1].begin : packets_.size();
+        for_parts(workers_, end - begin, sections_[s].one_colour ? kPart : std::max<std::size_t>(1, end - begin),
+                  [&](std::size_t from, std::size_t to) { loop(begin + from, begin + to); });
+    }
+}
 
 /// Takes the movers' masses and inertias, and computes the mobilities of the points with them.
 template <int W>

@@ -166,11 +166,20 @@ PLAB_INLINE void set_point_mobility(const Packet<W>& packet, PacketPoint<W>& p)
 template <int W>
 void set_mobility(PacketList<W>& list, std::span<const Mover> movers)
 {
-    for (Packet<W>& packet : list.packets()) packet.turning = true;
+    const auto all_parts = [&](const auto& loop)
+    {
+        list.in_parts(
+            [&](std::size_t begin, std::size_t end)
+            {
+                for (Packet<W>& packet : list.packets().subspan(begin, end - begin)) loop(packet);
+            });
+    };
+    all_parts([](Packet<W>& packet) { packet.turning = true; });
     refresh_mobility(list, movers);
     const auto turns = [&](std::uint32_t mover) { return mover != kNoIndex && !movers[mover].isotropic; };
-    for (Packet<W>& packet : list.packets())
-        packet.turning = std::any_of(packet.a.begin(), packet.a.end(), turns) || std::any_of(packet.b.begin(), packet.b.end(), turns);
+    all_parts(
+        [&](Packet<W>& packet)
+        { packet.turning = std::any_of(packet.a.begin(), packet.a.end(), turns) || std::any_of(packet.b.begin(), packet.b.end(), turns); });
 }
 
 template <int W>
@@ -188,122 +197,142 @@ void refresh_mobility(PacketList<W>& list, std::span<const Mover> movers)
             set_lane(inverse_inertia.yy, l, I(1, 1)), set_lane(inverse_inertia.yz, l, I(1, 2)), set_lane(inverse_inertia.zz, l, I(2, 2));
         }
     };
-    run<W>(PLAB_LOOP {
-        for (Packet<W>& packet : list.packets())
-        {
-            if (!packet.turning) continue;
-            take(packet.a, packet.inverse_mass_a, packet.inverse_inertia_a);
-            take(packet.b, packet.inverse_mass_b, packet.inverse_inertia_b);
-            for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i) set_point_mobility(packet, list.points()[i]);
-        }
-    });
+    const auto refresh = [&](std::size_t begin, std::size_t end)
+    {
+        run<W>(PLAB_LOOP {
+            for (Packet<W>& packet : list.packets().subspan(begin, end - begin))
+            {
+                if (!packet.turning) continue;
+                take(packet.a, packet.inverse_mass_a, packet.inverse_inertia_a);
+                take(packet.b, packet.inverse_mass_b, packet.inverse_inertia_b);
+                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i) set_point_mobility(packet, list.points()[i]);
+            }
+        });
+    };
+    list.in_parts(refresh);
 }
 
 template <int W>
 void sum_impulses(const PacketList<W>& list, std::span<Momentum> sums)
 {
-    Momentum none;
-    run<W>(PLAB_LOOP {
-        for (const Packet<W>& packet : list.packets())
-        {
-            LaneVec<W> push, turn_a, turn_b;
-            for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+    const auto part = [&](std::size_t begin, std::size_t end)
+    {
+        Momentum none;
+        run<W>(PLAB_LOOP {
+            for (const Packet<W>& packet : list.packets().subspan(begin, end - begin))
             {
-                const PacketPoint<W>& p = list.points()[i];
-                const LaneVec<W> j = scaled(p.t1, p.impulse.x) + scaled(cross(p.n, p.t1), p.impulse.y) + scaled(p.n, p.impulse.z);
-                push = push + j, turn_a = turn_a + cross(p.r_a, j), turn_b = turn_b + cross(p.r_b, j);
+                LaneVec<W> push, turn_a, turn_b;
+                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+                {
+                    const PacketPoint<W>& p = list.points()[i];
+                    const LaneVec<W> j = scaled(p.t1, p.impulse.x) + scaled(cross(p.n, p.t1), p.impulse.y) + scaled(p.n, p.impulse.z);
+                    push = push + j, turn_a = turn_a + cross(p.r_a, j), turn_b = turn_b + cross(p.r_b, j);
+                }
+                const LaneVec<W> zero;
+                add_to<W>(sums, packet.a, &Momentum::push, zero - push, none),
+                    add_to<W>(sums, packet.a, &Momentum::turn, zero - turn_a, none);
+                add_to<W>(sums, packet.b, &Momentum::push, push, none), add_to<W>(sums, packet.b, &Momentum::turn, turn_b, none);
             }
-            const LaneVec<W> zero;
-            add_to<W>(sums, packet.a, &Momentum::push, zero - push, none), add_to<W>(sums, packet.a, &Momentum::turn, zero - turn_a, none);
-            add_to<W>(sums, packet.b, &Momentum::push, push, none), add_to<W>(sums, packet.b, &Momentum::turn, turn_b, none);
-        }
-    });
+        });
+    };
+    list.by_colour(part);
 }
 
 template <int W>
 double sweep_hard(PacketList<W>& list, std::span<Mover> movers, const HardSweep& how)
 {
-    Lanes<W> largest{};
-    Mover none;
-    run<W>(PLAB_LOOP {
-        const auto packets = list.packets();
-        for (std::size_t k = 0; k < packets.size(); ++k)
-        {
-            const Packet<W>& packet = packets[how.backwards ? packets.size() - 1 - k : k];
-            Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
-            for (std::uint32_t i = 0; i < packet.count; ++i)
+    std::atomic<double> most{0};
+    const auto part = [&](std::size_t begin, std::size_t end)
+    {
+        Lanes<W> largest{};
+        Mover none;
+        run<W>(PLAB_LOOP {
+            for (std::size_t k = begin; k < end; ++k)
             {
-                PacketPoint<W>& p = list.points()[packet.first + (how.backwards ? packet.count - 1 - i : i)];
-                const LaneVec<W> t2 = cross(p.n, p.t1), u_W = relative(p, a, b);
-                const LaneVec<W> u{dot(p.t1, u_W) + p.given.x, dot(t2, u_W) + p.given.y, dot(p.n, u_W) + p.given.z};
-                const Lanes<W> wanted = p.impulse.z - how.relaxation * (u.z - p.least) * p.inverse_normal;
-                const LaneVec<W> change = change_impulse(packet, p, t2, u, wanted, how.relaxation, how.friction_scale, a, b);
-                if (!how.measures) continue;
-                // An empty lane has no mobility and no change.
-                const Lanes<W> least = Lanes<W>{} + 1e-300;
-                largest = larger(largest, size_of(change.z) / larger(p.inverse_normal, least));
-                largest = larger(largest, larger(size_of(change.x), size_of(change.y)) / larger(p.inverse_slip, least));
+                const Packet<W>& packet = list.packets()[how.backwards ? begin + end - 1 - k : k];
+                Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
+                for (std::uint32_t i = 0; i < packet.count; ++i)
+                {
+                    PacketPoint<W>& p = list.points()[packet.first + (how.backwards ? packet.count - 1 - i : i)];
+                    const LaneVec<W> t2 = cross(p.n, p.t1), u_W = relative(p, a, b);
+                    const LaneVec<W> u{dot(p.t1, u_W) + p.given.x, dot(t2, u_W) + p.given.y, dot(p.n, u_W) + p.given.z};
+                    const Lanes<W> wanted = p.impulse.z - how.relaxation * (u.z - p.least) * p.inverse_normal;
+                    const LaneVec<W> change = change_impulse(packet, p, t2, u, wanted, how.relaxation, how.friction_scale, a, b);
+                    if (!how.measures) continue;
+                    // An empty lane has no mobility and no change.
+                    const Lanes<W> least = Lanes<W>{} + 1e-300;
+                    largest = larger(largest, size_of(change.z) / larger(p.inverse_normal, least));
+                    largest = larger(largest, larger(size_of(change.x), size_of(change.y)) / larger(p.inverse_slip, least));
+                }
+                scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
             }
-            scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
-        }
-    });
-    double out = 0;
-    for (int l = 0; l < W; ++l) out = larger(out, lane(largest, l));
-    return out;
+        });
+        for (int l = 0; l < W; ++l) raise_to(most, lane(largest, l));
+    };
+    list.by_colour(part, how.backwards);
+    return most;
 }
 
 template <int W>
 void sweep_soft(PacketList<W>& list, std::span<Mover> movers, const SoftSweep& how, std::span<SoftPoint<W>> soft)
 {
-    Mover none;
-    run<W>(PLAB_LOOP {
-        const Lanes<W> zero{};
-        for (Packet<W>& packet : list.packets())
-        {
-            const auto one_sided = packet.one_sided > 0;
-            const auto choose = [&](double single, double both) __attribute__((always_inline))
+    const auto part = [&](std::size_t begin, std::size_t end)
+    {
+        Mover none;
+        run<W>(PLAB_LOOP {
+            const Lanes<W> zero{};
+            for (Packet<W>& packet : list.packets().subspan(begin, end - begin))
             {
-                return one_sided ? zero + single : zero + both;
-            };
-            const Lanes<W> bias_rate = choose(how.one_sided.bias_rate, how.between.bias_rate);
-            const Lanes<W> mass_scale = choose(how.one_sided.mass_scale, how.between.mass_scale);
-            const Lanes<W> impulse_scale = choose(how.one_sided.impulse_scale, how.between.impulse_scale);
-            Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
-            for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
-            {
-                PacketPoint<W>& p = list.points()[i];
-                const LaneVec<W> t2 = cross(p.n, p.t1), u_W = relative(p, a, b);
-                const LaneVec<W> u{dot(p.t1, u_W) + p.given.x, dot(t2, u_W) + p.given.y, dot(p.n, u_W) + p.given.z};
-                // A gap may close, and is hard; overlap is pushed out at a limited speed.
-                const Lanes<W> depth = soft[i].depth;
-                const auto gap = depth < 0;
-                const Lanes<W> least = gap ? depth * how.rate : smaller(bias_rate * depth, zero + how.push_speed);
-                const Lanes<W> scale = gap ? zero + 1.0 : mass_scale, leak = gap ? zero : impulse_scale;
-                const Lanes<W> wanted = p.impulse.z - scale * (u.z - least) * p.inverse_normal - leak * p.impulse.z;
-                (void)change_impulse(packet, p, t2, u, wanted, 1.0, 1.0, a, b);
-                soft[i].greatest = larger(soft[i].greatest, p.impulse.z);
+                const auto one_sided = packet.one_sided > 0;
+                const auto choose = [&](double single, double both) __attribute__((always_inline))
+                {
+                    return one_sided ? zero + single : zero + both;
+                };
+                const Lanes<W> bias_rate = choose(how.one_sided.bias_rate, how.between.bias_rate);
+                const Lanes<W> mass_scale = choose(how.one_sided.mass_scale, how.between.mass_scale);
+                const Lanes<W> impulse_scale = choose(how.one_sided.impulse_scale, how.between.impulse_scale);
+                Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
+                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+                {
+                    PacketPoint<W>& p = list.points()[i];
+                    const LaneVec<W> t2 = cross(p.n, p.t1), u_W = relative(p, a, b);
+                    const LaneVec<W> u{dot(p.t1, u_W) + p.given.x, dot(t2, u_W) + p.given.y, dot(p.n, u_W) + p.given.z};
+                    // A gap may close, and is hard; overlap is pushed out at a limited speed.
+                    const Lanes<W> depth = soft[i].depth;
+                    const auto gap = depth < 0;
+                    const Lanes<W> least = gap ? depth * how.rate : smaller(bias_rate * depth, zero + how.push_speed);
+                    const Lanes<W> scale = gap ? zero + 1.0 : mass_scale, leak = gap ? zero : impulse_scale;
+                    const Lanes<W> wanted = p.impulse.z - scale * (u.z - least) * p.inverse_normal - leak * p.impulse.z;
+                    (void)change_impulse(packet, p, t2, u, wanted, 1.0, 1.0, a, b);
+                    soft[i].greatest = larger(soft[i].greatest, p.impulse.z);
+                }
+                scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
             }
-            scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
-        }
-    });
+        });
+    };
+    list.by_colour(part);
 }
 
 template <int W>
 void advance_depths(PacketList<W>& list, std::span<Mover> movers, double h, std::span<SoftPoint<W>> soft)
 {
-    Mover none;
-    run<W>(PLAB_LOOP {
-        for (const Packet<W>& packet : list.packets())
-        {
-            const Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
-            for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+    const auto part = [&](std::size_t begin, std::size_t end)
+    {
+        Mover none;
+        run<W>(PLAB_LOOP {
+            for (const Packet<W>& packet : list.packets().subspan(begin, end - begin))
             {
-                PacketPoint<W>& p = list.points()[i];
-                soft[i].depth = soft[i].depth - h * (dot(p.n, relative(p, a, b)) + p.given.z);
-                p.least = smaller(soft[i].depth, Lanes<W>{}) / h;
+                const Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
+                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+                {
+                    PacketPoint<W>& p = list.points()[i];
+                    soft[i].depth = soft[i].depth - h * (dot(p.n, relative(p, a, b)) + p.given.z);
+                    p.least = smaller(soft[i].depth, Lanes<W>{}) / h;
+                }
             }
-        }
-    });
+        });
+    };
+    list.in_parts(part);
 }
 
 #define PLAB_INSTANTIATE(W)                                                                                   \

@@ -170,6 +170,7 @@ void solve_sequential(const StepContext& context, Row row, SequentialRows& rows,
     Sweeps method(whole(rows.max_iterations[row]), whole(rows.position_iterations[row]), rows.tolerance[row], rows.relaxation[row]);
     StepChoices choices;
     choices.slop = rows.slop[row], choices.correction_share = rows.overlap_share[row];
+    rows.memory[row].problem.workers = context.workers;
     report(island, advance_island(island, bodies, shafts, method, choices, rows.memory[row]));
     forget_if_given_up(island, rows.memory[row]);
     rows.account.add(context, row, island, rows.tolerance[row]);
@@ -204,6 +205,7 @@ void DirectRows::describe(Schema& s)
 void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
 {
     DirectRows::Memory& memory = rows.memory[row];
+    memory.step.problem.workers = context.workers;
     const Solving how{rows.tolerance[row], whole(rows.max_steps[row]), whole(rows.max_iterations[row])};
     if (island.contacts.size() > static_cast<std::size_t>(rows.max_contacts[row]))
     {
@@ -250,6 +252,7 @@ void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bo
     const SoftChoices choices{whole(rows.substeps[row]), whole(rows.relax_iterations[row]),
                               rows.hertz[row],           rows.damping_ratio[row],
                               rows.push_speed[row],      rows.tolerance[row]};
+    rows.memory[row].step.problem.workers = context.workers;
     report(island, advance_softly(island, bodies, shafts, choices, rows.memory[row]));
     forget_if_given_up(island, rows.memory[row]);
     rows.account.add(context, row, island, rows.tolerance[row]);
@@ -318,6 +321,7 @@ void solve_automatic(const StepContext& context, Row row, AutomaticRows& rows, B
     const double ratio = mass_ratio(island, bodies);
     const bool direct = points <= most || (ratio >= rows.heavy[row] && points <= kHeavyPoints * most);
     AutomaticRows::Memory& memory = rows.memory[row];
+    memory.direct.step.problem.workers = memory.soft.step.problem.workers = context.workers;
     if (direct)
     {
         Exactly method(memory.direct.newton, kAffordable);

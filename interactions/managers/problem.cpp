@@ -68,14 +68,15 @@ void Problem::turn_with(const Bodies& bodies)
 
 void Problem::turn_movers_with(const Bodies& bodies)
 {
-    for (std::size_t i = 0; i < movers.size(); ++i)
-    {
-        if (anchors[i].shaft) continue;
-        if (!movers[i].isotropic) set_inertia(movers[i], anchors[i], bodies);
-        // The momentum is constant while a body turns freely; the spin without impulses is what the impulses have not
-        // contributed to it.
-        anchors[i].w = bodies.angular_velocity[anchors[i].host] - movers[i].inverse_inertia * anchors[i].written;
-    }
+    for_each(movers.size(),
+             [&](std::size_t i)
+             {
+                 if (anchors[i].shaft) return;
+                 if (!movers[i].isotropic) set_inertia(movers[i], anchors[i], bodies);
+                 // The momentum is constant while a body turns freely; the spin without impulses is what the impulses have not
+                 // contributed to it.
+                 anchors[i].w = bodies.angular_velocity[anchors[i].host] - movers[i].inverse_inertia * anchors[i].written;
+             });
     for (Line& line : lines) set_mobility(line);
 }
 
@@ -115,9 +116,9 @@ std::uint32_t Problem::mover_of(Ref participant) const
     return kNoIndex;
 }
 
-void Problem::add_point(const Contact& c, const Bodies& bodies)
+void Problem::set_point(Point& p, const Contact& c, const Bodies& bodies) const
 {
-    Point& p = points.emplace_back();
+    p = {};
     p.a = mover_of(c.a), p.b = mover_of(c.b);
     p.n = c.normal;
     p.t1 = any_perpendicular(p.n), p.t2 = cross(p.n, p.t1);
@@ -167,14 +168,11 @@ void Problem::load_geometry(const Island& island, const Bodies& bodies, const Sh
     add_bodies(island, bodies);
     add_shafts(island, shafts);
     carried_.clear();
-    for (const Contact& c : island.contacts)
-    {
-        add_point(c, bodies);
-        const Point& p = points.back();
-        const bool moves_a = p.a == kNoIndex && bodies.motion[c.a.index] != Motion::Static;
-        const bool moves_b = p.b == kNoIndex && bodies.motion[c.b.index] != Motion::Static;
-        if (moves_a || moves_b) carried_.push_back(static_cast<std::uint32_t>(points.size() - 1));
-    }
+    points.resize(island.contacts.size());
+    for_each(points.size(), [&](std::size_t i) { set_point(points[i], island.contacts[i], bodies); });
+    const auto is_carried = [&](std::uint32_t mover, Ref r) { return mover == kNoIndex && bodies.motion[r.index] != Motion::Static; };
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+        if (is_carried(points[i].a, contacts_[i].a) || is_carried(points[i].b, contacts_[i].b)) carried_.push_back(i);
     for (std::uint32_t i = 0; i < island.rows.size(); ++i) add_line(island.rows[i], i);
     // Only these entries were written, so the maps are empty again for the next island at little cost.
     for (const std::uint32_t b : island.bodies) mover_of_body_[b] = kNoIndex;
@@ -183,14 +181,16 @@ void Problem::load_geometry(const Island& island, const Bodies& bodies, const Sh
 
 void Problem::read_speeds(const Bodies& bodies, const Shafts& shafts)
 {
-    for (Anchor& m : anchors)
-    {
-        m.written = {};
-        if (m.shaft)
-            m.v = {}, m.w = {shafts.speed[m.host], 0, 0};
-        else
-            m.v = bodies.velocity[m.host], m.w = bodies.angular_velocity[m.host];
-    }
+    for_each(movers.size(),
+             [&](std::size_t i)
+             {
+                 Anchor& m = anchors[i];
+                 m.written = {};
+                 if (m.shaft)
+                     m.v = {}, m.w = {shafts.speed[m.host], 0, 0};
+                 else
+                     m.v = bodies.velocity[m.host], m.w = bodies.angular_velocity[m.host];
+             });
     for (const std::uint32_t i : carried_)
     {
         Point& p = points[i];
@@ -266,42 +266,45 @@ void Problem::apply_impulses()
 
 void Problem::sum_by_velocities()
 {
-    for (std::size_t i = 0; i < movers.size(); ++i)
-    {
-        const Anchor& anchor = anchors[i];
-        sums[i].push = (movers[i].v - anchor.v) * anchor.mass;
-        sums[i].turn = anchor.inertia * (movers[i].w - anchor.w);
-    }
+    for_each(movers.size(),
+             [&](std::size_t i)
+             {
+                 const Anchor& anchor = anchors[i];
+                 sums[i].push = (movers[i].v - anchor.v) * anchor.mass;
+                 sums[i].turn = anchor.inertia * (movers[i].w - anchor.w);
+             });
 }
 
 void Problem::apply_same_impulses()
 {
-    for (std::size_t i = 0; i < movers.size(); ++i)
-    {
-        const Anchor& anchor = anchors[i];
-        Mover& m = movers[i];
-        m.v = anchor.v + sums[i].push * m.inverse_mass;
-        m.w = anchor.w + m.inverse_inertia * sums[i].turn;
-    }
+    for_each(movers.size(),
+             [&](std::size_t i)
+             {
+                 const Anchor& anchor = anchors[i];
+                 Mover& m = movers[i];
+                 m.v = anchor.v + sums[i].push * m.inverse_mass;
+                 m.w = anchor.w + m.inverse_inertia * sums[i].turn;
+             });
 }
 
 void Problem::write_speeds(Bodies& bodies, Shafts& shafts)
 {
-    for (std::size_t i = 0; i < movers.size(); ++i)
-    {
-        Anchor& m = anchors[i];
-        if (m.shaft)
-        {
-            shafts.speed[m.host] = movers[i].w.x;
-            continue;
-        }
-        // The angular momentum is the state: it changes by the impulses themselves.
-        bodies.velocity[m.host] = movers[i].v;
-        const Vec3& turn = sums[i].turn;
-        if (turn == m.written) continue;
-        bodies.add_angular_impulse(m.host, turn - m.written);
-        m.written = turn;
-    }
+    for_each(movers.size(),
+             [&](std::size_t i)
+             {
+                 Anchor& m = anchors[i];
+                 if (m.shaft)
+                 {
+                     shafts.speed[m.host] = movers[i].w.x;
+                     return;
+                 }
+                 // The angular momentum is the state: it changes by the impulses themselves.
+                 bodies.velocity[m.host] = movers[i].v;
+                 const Vec3& turn = sums[i].turn;
+                 if (turn == m.written) return;
+                 bodies.add_angular_impulse(m.host, turn - m.written);
+                 m.written = turn;
+             });
 }
 
 double Problem::rate(const Line& line) const

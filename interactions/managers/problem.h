@@ -39,6 +39,9 @@ struct Line
     double impulse = 0;
 };
 
+/// Movers, or contact points, of which one thread computes so many at once: some microseconds of work.
+inline constexpr std::size_t kMoverPart = 128;
+
 class Problem
 {
 public:
@@ -91,14 +94,25 @@ public:
     std::vector<Point> points;    ///< parallel to Island::contacts
     std::vector<Line> lines;      ///< parallel to Island::rows; rows without movers have count 0
     const Interruption* interruption = nullptr;
+    Workers* workers = nullptr;  ///< threads that the host lends; null: none
     /// Working memory of sweeps over the points.
     PacketList<1> single;
     PacketList<4> fours;
 
 private:
+    /// Calls one(i) for each i < count, in parts that threads share.
+    template <class One>
+    void for_each(std::size_t count, const One& one)
+    {
+        for_parts(workers, count, kMoverPart,
+                  [&](std::size_t begin, std::size_t end)
+                  {
+                      for (std::size_t i = begin; i < end; ++i) one(i);
+                  });
+    }
     void add_bodies(const Island& island, const Bodies& bodies);
     void add_shafts(const Island& island, const Shafts& shafts);
-    void add_point(const Contact& contact, const Bodies& bodies);
+    void set_point(Point& point, const Contact& contact, const Bodies& bodies) const;
     void set_mobility(Point& p) const;
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);

@@ -61,7 +61,7 @@ Swept sweep(Problem& problem, const Sweeping& how)
 {
     const auto with = [&](auto& list)
     {
-        list.load(problem.points, problem.movers.size());
+        list.load(problem.points, problem.movers.size(), problem.workers);
         set_mobility(list, std::span<const Mover>(problem.movers));
         const Swept out = sweep(problem, list, how);
         list.store(problem.points);

@@ -65,6 +65,7 @@ private:
     double bounce(double share);
     void bounce_with_limits(double share);
     void give_back();
+    double finish_point(std::size_t contact);
     void finish(Verdict& out);
 
     Island& island_;

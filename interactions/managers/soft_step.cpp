@@ -1,6 +1,7 @@
 #include "soft_step.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "sequential.h"
@@ -66,7 +67,7 @@ void SoftIsland<W>::start()
 {
     problem_.load_geometry(island_, bodies_, shafts_);
     problem_.scale_impulses(1.0 / choices_.substeps);
-    contacts_.load(problem_.points, problem_.movers.size());
+    contacts_.load(problem_.points, problem_.movers.size(), problem_.workers);
     set_mobility(contacts_, std::span<const Mover>(problem_.movers));
     soft_.assign(contacts_.points().size(), {});
     memory_.meeting.clear();
@@ -133,8 +134,12 @@ void SoftIsland<W>::write()
 template <int W>
 void SoftIsland<W>::move()
 {
-    for (std::size_t i = 0; i < soft_.size(); ++i)
-        soft_[i].depth_before = soft_[i].depth, soft_[i].moved_with = contacts_.points()[i].impulse;
+    for_parts(problem_.workers, soft_.size(), kMoverPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i)
+                      soft_[i].depth_before = soft_[i].depth, soft_[i].moved_with = contacts_.points()[i].impulse;
+              });
     memory_.lines_moved_with.clear();
     for (const Line& line : problem_.lines) memory_.lines_moved_with.push_back(line.impulse);
     advance_depths(contacts_, std::span<Mover>(problem_.movers), h_, std::span<SoftPoint<W>>(soft_));
@@ -179,12 +184,16 @@ void SoftIsland<W>::sweep_lines(bool soft)
 template <int W>
 void SoftIsland<W>::gather()
 {
-    for (std::size_t i = 0; i < soft_.size(); ++i)
-    {
-        const LaneVec<W>& j = contacts_.points()[i].impulse;
-        soft_[i].sum = soft_[i].sum + j;
-        soft_[i].greatest = larger(soft_[i].greatest, j.z);
-    }
+    for_parts(problem_.workers, soft_.size(), kMoverPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i)
+                  {
+                      const LaneVec<W>& j = contacts_.points()[i].impulse;
+                      soft_[i].sum = soft_[i].sum + j;
+                      soft_[i].greatest = larger(soft_[i].greatest, j.z);
+                  }
+              });
     for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
 }
 
@@ -274,21 +283,31 @@ int SoftIsland<W>::remove_gained_energy()
     return done.sweeps;
 }
 
+/// Reports the impulse and the slip of a contact. Returns the speed at which its overlap grows although it may act, m/s.
+template <int W>
+double SoftIsland<W>::finish_point(std::size_t i)
+{
+    const Point& p = problem_.points[i];
+    Contact& c = island_.contacts[i];
+    const auto place = contacts_.place(i);
+    const SoftPoint<W>& soft = soft_[place.point];
+    const Vec3 u = problem_.relative_velocity(p), returned = contacts_.impulse(i);
+    const Vec3 j = returned + Vec3{lane(soft.sum.x, place.lane), lane(soft.sum.y, place.lane), lane(soft.sum.z, place.lane)};
+    c.impulse = to_world(p, j);
+    c.slip = std::hypot(u.x, u.y);
+    return returned.z == 0 && p.mobile() && lane(soft.depth, place.lane) >= 0 ? -u.z : 0.0;
+}
+
 template <int W>
 void SoftIsland<W>::finish(Verdict& out)
 {
-    for (std::size_t i = 0; i < problem_.points.size(); ++i)
-    {
-        const Point& p = problem_.points[i];
-        Contact& c = island_.contacts[i];
-        const auto place = contacts_.place(i);
-        const SoftPoint<W>& soft = soft_[place.point];
-        const Vec3 u = problem_.relative_velocity(p), returned = contacts_.impulse(i);
-        const Vec3 j = returned + Vec3{lane(soft.sum.x, place.lane), lane(soft.sum.y, place.lane), lane(soft.sum.z, place.lane)};
-        c.impulse = to_world(p, j);
-        c.slip = std::hypot(u.x, u.y);
-        if (returned.z == 0 && p.mobile() && lane(soft.depth, place.lane) >= 0) out.residual = std::max(out.residual, -u.z);
-    }
+    std::atomic<double> residual{out.residual};
+    for_parts(problem_.workers, problem_.points.size(), kMoverPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i) raise_to(residual, finish_point(i));
+              });
+    out.residual = residual;
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
         const Line& line = problem_.lines[i];

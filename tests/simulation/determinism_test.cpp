@@ -1,6 +1,12 @@
 // The same hash for any number of threads, any observer, two worlds in one process. Other builds (-O0, clang) are
 // compared by tests/golden.
+#include <atomic>
+#include <mutex>
+#include <set>
+
+#include "plab/parts.h"
 #include "plab/random.h"
+#include "simulation/threads/worker_pool.h"
 #include "support/scene.h"
 
 using namespace plab;
@@ -138,4 +144,84 @@ TEST_CASE("the hash depends on every single bit of the state")
     auto& shafts = s.simulation().world().host().shafts;
     shafts.angle[0] = std::nextafter(shafts.angle[0], 1.0);
     CHECK(s.hash() != before);
+}
+
+namespace
+{
+
+/// Balls on a floor in columns of `high`, `apart` (m) from one another; a ball is 0.2 m wide.
+std::string columns(int side, int high, double apart)
+{
+    std::string out = R"(<component id="s" type="Shape/Sphere" radius="0.1"/><component id="floor" type="Shape/Plane"/>
+        <component id="ground" type="State/Static" shape="floor"/><component id="g" type="Field/Gravity" between="*"/>
+        <component id="manager" type="Manager/SoftStep" substeps="4"/>
+        <component id="contact" type="CDetection/ODE" between="*" resolution="Resolution/None" response="Response/Rows"
+                   response.manager="manager" response.friction="0.3"/>)";
+    for (int i = 0; i < side * side * high; ++i)
+    {
+        const double x = apart * (i % side) + 0.003 * (i % 7), y = apart * (i / side % side) + 0.003 * (i % 5);
+        out += "<component id=\"b" + std::to_string(i) + "\" type=\"State/RigidBody\" shape=\"s\" mass=\"1\" position=\"" +
+               std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(0.1 + 0.199 * (i / side / side)) + "\"/>";
+    }
+    return out;
+}
+
+void check_threads(const std::string& heap)
+{
+    std::uint64_t alone = 0;
+    for (const int threads : {1, 2, 3, 4, 16})
+    {
+        Scene s(heap, "dt=\"1/60\"", threads);
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(0.25);
+        if (threads == 1) alone = s.hash();
+        CHECK_MESSAGE(s.hash() == alone, threads);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a heap that is one large island, and many islands: 1 to 16 threads give the same hash")
+{
+    check_threads(columns(12, 6, 0.199));
+    check_threads(columns(8, 4, 0.4));
+}
+
+TEST_CASE("the parts of a loop are the same for any number of threads")
+{
+    using Parts = std::set<std::pair<std::size_t, std::size_t>>;
+    const auto parts_with = [](Workers* workers)
+    {
+        Parts out;
+        std::mutex mutex;
+        for_parts(workers, 1000, 16,
+                  [&](std::size_t begin, std::size_t end)
+                  {
+                      const std::lock_guard lock(mutex);
+                      CHECK(out.insert({begin, end}).second);
+                  });
+        return out;
+    };
+    const Parts alone = parts_with(nullptr);
+    CHECK(alone.size() == 63);
+    for (const int threads : {1, 2, 3, 16})
+    {
+        simulation::WorkerPool pool(threads);
+        CHECK(parts_with(&pool) == alone);
+    }
+}
+
+TEST_CASE("a pool does each job of many short calls once, with and without a processor for each thread")
+{
+    for (const int threads : {2, 16})
+    {
+        simulation::WorkerPool pool(threads);
+        std::vector<std::atomic<int>> done(7);
+        constexpr int kCalls = 3000;
+        for (int call = 1; call <= kCalls; ++call)
+        {
+            pool.run(done.size(), [&](std::size_t i) { ++done[i]; });
+            for (const auto& d : done) REQUIRE(d == call);
+        }
+    }
 }

@@ -225,7 +225,8 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
         for (std::size_t i = 0; i < held.contacts.size(); ++i)
             if (contacts_.is_paradox(held.contacts[i]))
                 contacts_.report_paradox(held.contacts[i], *pair_of_contact_[held.places[i]], step_.frame.start_time + from);
-    held.motion.begin(system, host.bodies, host.shafts, held.members, held.roots, held.contacts, held.rows, book.work != nullptr);
+    held.motion.begin(system, host.bodies, host.shafts, held.members, held.roots, held.contacts, held.rows, book.work != nullptr,
+                      step_.workers);
     Island island;
     island.interruption = step_.frame.interruption;
     island.h = to - from, island.time = step_.frame.start_time + from;

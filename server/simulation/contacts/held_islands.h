@@ -34,7 +34,8 @@ class HeldMotion final : public IslandMotion
 public:
     /// `members`: indices into system.bodies().
     void begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std::span<const std::uint32_t> members,
-               std::span<const std::uint32_t> roots, std::span<Contact> contacts, std::span<ConstraintRow> rows, bool books);
+               std::span<const std::uint32_t> roots, std::span<Contact> contacts, std::span<ConstraintRow> rows, bool books,
+               Workers& workers);
     void kick(double h) override;
     void move(double h) override;
     void move_mean(double h) override;
@@ -71,6 +72,7 @@ private:
     std::span<Contact> contacts_;
     std::span<ConstraintRow> rows_;
     bool books_ = false;
+    Workers* workers_ = nullptr;
     double worked_ = 0, since_start_ = 0;
     KickedBodies kicked_;
     std::vector<double> shaft_before_;

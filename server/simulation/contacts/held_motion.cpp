@@ -8,21 +8,28 @@ namespace plab::simulation
 {
 
 void HeldMotion::begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std::span<const std::uint32_t> members,
-                       std::span<const std::uint32_t> roots, std::span<Contact> contacts, std::span<ConstraintRow> rows, bool books)
+                       std::span<const std::uint32_t> roots, std::span<Contact> contacts, std::span<ConstraintRow> rows, bool books,
+                       Workers& workers)
 {
     system_ = &system, bodies_ = &bodies, shafts_ = &shafts;
     members_ = members, roots_ = roots, contacts_ = contacts, rows_ = rows, books_ = books;
+    workers_ = &workers;
     worked_ = since_start_ = 0;
     shaft_before_.resize(roots.size());
     means_.assign(members.size() + roots.size(), Mean{});
     started_.clear();
     for (const std::uint32_t i : members) started_.push_back(bodies.position[system.bodies()[i]]);
-    arms_.clear();
-    for (const Contact& c : contacts)
-    {
-        const auto arm = [&](Ref r) { return rotate_back(bodies.orientation[r.index], c.point - bodies.position[r.index]); };
-        arms_.push_back({arm(c.a), arm(c.b), c.point, c.depth});
-    }
+    arms_.resize(contacts.size());
+    for_parts(workers_, contacts.size(), kKickedPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i)
+                  {
+                      const Contact& c = contacts[i];
+                      const auto arm = [&](Ref r) { return rotate_back(bodies.orientation[r.index], c.point - bodies.position[r.index]); };
+                      arms_[i] = {arm(c.a), arm(c.b), c.point, c.depth};
+                  }
+              });
 }
 
 double HeldMotion::kinetic_energy() const
@@ -50,7 +57,7 @@ double HeldMotion::count_corrections()
 
 void HeldMotion::kick(double h)
 {
-    kicked_.kick(*system_, *bodies_, members_, h);
+    kicked_.kick(*system_, *bodies_, members_, h, workers_);
     for (std::size_t k = 0; k < roots_.size(); ++k)
     {
         double& speed = shafts_->speed[system_->roots()[roots_[k]]];
@@ -81,7 +88,7 @@ void HeldMotion::commit(double h, bool mean)
 void HeldMotion::move(double h)
 {
     commit(h, false);
-    kicked_.move(h);
+    kicked_.move(h, workers_);
     for (const std::uint32_t r : roots_) shafts_->angle[system_->roots()[r]] += shafts_->speed[system_->roots()[r]] * h;
 }
 

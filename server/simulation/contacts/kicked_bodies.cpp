@@ -60,15 +60,19 @@ void turn_freely(Bodies& bodies, std::uint32_t b, const Vec3& lacking, double h)
     bodies.refresh_spin(b);
 }
 
-void KickedBodies::kick(GroupSystem& system, Bodies& bodies, std::span<const std::uint32_t> members, double h)
+void KickedBodies::kick(GroupSystem& system, Bodies& bodies, std::span<const std::uint32_t> members, double h, Workers* workers)
 {
     system_ = &system, bodies_ = &bodies, members_ = members;
     before_.resize(members.size());
-    for (std::size_t k = 0; k < members.size(); ++k)
-    {
-        before_[k] = {speeds(k, false), bodies.kinetic_energy(body(k))};
-        system.kick(members[k], h);
-    }
+    for_parts(workers, members.size(), kKickedPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t k = begin; k < end; ++k)
+                  {
+                      before_[k] = {speeds(k, false), bodies.kinetic_energy(body(k))};
+                      system.kick(members[k], h);
+                  }
+              });
 }
 
 KickedBodies::Speeds KickedBodies::speeds(std::size_t k, bool mean) const
@@ -96,14 +100,18 @@ double KickedBodies::work_of_contacts(double h) const
     return sum;
 }
 
-void KickedBodies::move(double h)
+void KickedBodies::move(double h, Workers* workers)
 {
-    for (std::size_t k = 0; k < members_.size(); ++k)
-    {
-        const std::uint32_t b = body(k);
-        bodies_->position[b] += bodies_->velocity[b] * h;
-        turn_freely(*bodies_, b, {}, h);
-    }
+    for_parts(workers, members_.size(), kKickedPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t k = begin; k < end; ++k)
+                  {
+                      const std::uint32_t b = body(k);
+                      bodies_->position[b] += bodies_->velocity[b] * h;
+                      turn_freely(*bodies_, b, {}, h);
+                  }
+              });
 }
 
 double KickedBodies::move_mean(double h)

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "plab/parts.h"
 #include "simulation/systems/group_system.h"
 
 namespace plab::simulation
@@ -16,6 +17,9 @@ namespace plab::simulation
 
 /// Rotates body b for h (s) with its angular momentum minus `lacking` (N m s, W); the stored momentum does not change.
 void turn_freely(Bodies& bodies, std::uint32_t b, const Vec3& lacking, double h);
+
+/// Bodies, or contact points, of which one thread moves so many at once: some microseconds of work.
+inline constexpr std::size_t kKickedPart = 128;
 
 class KickedBodies
 {
@@ -28,10 +32,10 @@ public:
     };
 
     /// Changes velocities by the forces over h (s). `members`: indices into system.bodies(). Of two kicks without a move in between only
-    /// the last one counts.
-    void kick(GroupSystem& system, Bodies& bodies, std::span<const std::uint32_t> members, double h);
+    /// the last one counts. `workers`: threads to share the work with; null: none.
+    void kick(GroupSystem& system, Bodies& bodies, std::span<const std::uint32_t> members, double h, Workers* workers = nullptr);
     /// Moves with the present velocities; h < 0 undoes such a move.
-    void move(double h);
+    void move(double h, Workers* workers = nullptr);
     /// Moves with the mean of the present velocities and those before the kick: exact for constant forces. If rotating with the mean
     /// momentum would create energy, as after an impact, bodies rotate with the momentum after it instead.
     /// Returns J: work of contacts and joints since the kick, including the energy error of the rotation.

@@ -1,8 +1,14 @@
 /// Threads that share a list of independent jobs. The result does not depend on which thread does which job.
+///
+/// A call returns when its jobs are done, whether or not all threads have noticed it: one that wakes late finds nothing left. Between
+/// calls a thread looks for work for kWatch and then sleeps, so calls that follow one another quickly, as the colours of a sweep do, cost
+/// about a microsecond each, and a server that is paused needs no processor time. If there are more threads than processors, threads that
+/// look for work would hold up those that do it, so they sleep at once.
 #pragma once
 
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -26,18 +32,25 @@ public:
 private:
     void run_jobs(std::size_t count, Call call, void* job) override;
     void work();
+    /// Takes jobs until none is left.
     void take_jobs();
+    /// Looks at `holds` for kWatch. Returns whether it came to hold.
+    template <class Condition>
+    bool watch(const Condition& holds) const;
+    bool has_work() const;
 
     std::vector<std::thread> workers_;
-    std::mutex mutex_;
-    std::condition_variable wake_, done_;
+    bool may_watch_ = false;  ///< there is a processor for each thread
+    // Written before jobs are offered, and read only by those who have taken one.
     Call call_ = nullptr;
     void* job_ = nullptr;
     std::size_t count_ = 0;
-    std::atomic<std::size_t> next_{0};
-    std::size_t busy_ = 0;
-    std::uint64_t round_ = 0;
-    bool stop_ = false;
+    alignas(64) std::atomic<std::uint64_t> offer_{0};  ///< upper half: number of the call; lower half: jobs that nobody has taken yet
+    alignas(64) std::atomic<std::size_t> unfinished_{0};
+    alignas(64) std::atomic<std::uint32_t> asleep_{0};  ///< threads that wait for wake_
+    std::atomic<bool> caller_sleeps_{false}, stop_{false};
+    std::mutex mutex_;
+    std::condition_variable wake_, done_;
 };
 
 }  // namespace plab::simulation
