@@ -7,7 +7,7 @@ namespace plab::wire
 namespace
 {
 
-constexpr std::array<Topic, 17> kTopics{{
+constexpr std::array<Topic, 18> kTopics{{
     {"plab/server", &plab_v2_Server_desc, Delivery::Catalogue, "the server's state, at least once a second"},
     {"plab/scene", &plab_v2_Scene_desc, Delivery::Catalogue, "the loaded scene, and its cameras"},
     {"plab/objects", &plab_v2_SceneObject_desc, Delivery::Catalogue, "bodies and shafts"},
@@ -15,6 +15,7 @@ constexpr std::array<Topic, 17> kTopics{{
     {"plab/interactions", &plab_v2_Interaction_desc, Delivery::Catalogue, "all other components, with their algorithms"},
     {"plab/types", &plab_v2_Type_desc, Delivery::Catalogue, "types that can be added or swapped in"},
     {"plab/states", &plab_v2_Frame_desc, Delivery::Newest, "positions and velocities, one sample per frame"},
+    {"plab/updates", &plab_v2_FrameUpdate_desc, Delivery::Newest, "the same as key frames and deltas, for many objects and readers"},
     {"plab/collisions", &plab_v2_Collisions_desc, Delivery::Log, "contacts that begin, bounce, rest and end"},
     {"plab/events", &plab_v2_Events_desc, Delivery::Log, "events of interactions, failures, applied requests"},
     {"plab/metrics", &plab_v2_Metrics_desc, Delivery::Catalogue, "cost, error and work of each interaction, energy"},
@@ -45,16 +46,17 @@ PLAB_TOPIC(plab_v2_Shape, 3)
 PLAB_TOPIC(plab_v2_Interaction, 4)
 PLAB_TOPIC(plab_v2_Type, 5)
 PLAB_TOPIC(plab_v2_Frame, 6)
-PLAB_TOPIC(plab_v2_Collisions, 7)
-PLAB_TOPIC(plab_v2_Events, 8)
-PLAB_TOPIC(plab_v2_Metrics, 9)
-PLAB_TOPIC(plab_v2_Request, 10)
-PLAB_TOPIC(plab_v2_Reply, 11)
-PLAB_TOPIC(plab_v2_Image, 12)
-PLAB_TOPIC(plab_v2_Journal, 13)
-PLAB_TOPIC(plab_v2_Hashes, 14)
-PLAB_TOPIC(plab_v2_Snapshot, 15)
-PLAB_TOPIC(plab_v2_Gone, 16)
+PLAB_TOPIC(plab_v2_FrameUpdate, 7)
+PLAB_TOPIC(plab_v2_Collisions, 8)
+PLAB_TOPIC(plab_v2_Events, 9)
+PLAB_TOPIC(plab_v2_Metrics, 10)
+PLAB_TOPIC(plab_v2_Request, 11)
+PLAB_TOPIC(plab_v2_Reply, 12)
+PLAB_TOPIC(plab_v2_Image, 13)
+PLAB_TOPIC(plab_v2_Journal, 14)
+PLAB_TOPIC(plab_v2_Hashes, 15)
+PLAB_TOPIC(plab_v2_Snapshot, 16)
+PLAB_TOPIC(plab_v2_Gone, 17)
 #undef PLAB_TOPIC
 
 Qos qos_of(Delivery delivery)

@@ -1,5 +1,9 @@
 #include "control/frames.h"
 
+#include <algorithm>
+
+#include "link/frame_reader.h"
+
 namespace plab::cli
 {
 
@@ -28,14 +32,12 @@ Frame frame_of(const plab_v2_Frame& f)
 
 std::optional<Frame> next_frame(const link::Session& session, link::Seconds timeout)
 {
-    auto reader = session.reader<plab_v2_Frame>();
-    if (!reader || !session.wait(*reader, timeout)) return {};
+    auto reader = link::FrameReader::open(session);
+    if (!reader) return {};
+    const auto end = link::moment_after(timeout);
     std::optional<Frame> out;
-    (void)reader->take(
-        [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
-        {
-            if (info.valid_data) out = frame_of(f);
-        });
+    while (!out && session.wait(*reader, std::max(link::Seconds(0), link::Seconds(end - std::chrono::steady_clock::now()))))
+        (void)reader->take([&](const plab_v2_Frame& f) { out = frame_of(f); });
     return out;
 }
 

@@ -4,6 +4,7 @@
 #include "control/commands.h"
 #include "control/frames.h"
 #include "link/caller.h"
+#include "link/frame_reader.h"
 #include "link/numbers.h"
 
 namespace plab::cli
@@ -34,15 +35,10 @@ struct RunMoment
 std::optional<RunMoment> wait_for_place(Context& c, link::Catalogue& catalogue, const WaitOptions& o, RunMoment place,
                                         Clock::time_point end)
 {
-    auto frames = c.session().reader<plab_v2_Frame>();
+    auto frames = link::FrameReader::open(c.session());
     while (!c.stopped() && Clock::now() < end && !catalogue.server_is_gone())
     {
-        if (frames)
-            (void)frames->take(
-                [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
-                {
-                    if (info.valid_data) place = {f.run, f.step, f.time};
-                });
+        if (frames) (void)frames->take([&](const plab_v2_Frame& f) { place = {f.run, f.step, f.time}; });
         (void)catalogue.update();
         if (const auto& s = catalogue.now().server; s && (s->run > place.run || (s->run == place.run && s->step > place.step)))
             place = {s->run, s->step, s->time};

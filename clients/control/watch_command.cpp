@@ -6,6 +6,7 @@
 #include "control/stream.h"
 #include "control/watch_print.h"
 #include "idl/samples.h"
+#include "link/frame_reader.h"
 #include "link/names.h"
 #include "link/numbers.h"
 
@@ -52,21 +53,16 @@ struct Watch
     Numbers numbers;
 };
 
-/// Passes samples of T to `handle` until a limit is reached, the server is gone, or Ctrl-C.
-template <class T, class Handle>
-Exit stream(Watch& w, Handle handle)
+/// Calls `take(reader)` until a limit is reached, the server is gone, or Ctrl-C.
+template <class Reader, class Take>
+Exit follow(Watch& w, Result<Reader> reader, Take take)
 {
-    auto reader = w.context.session().reader<T>();
     if (!reader) return w.context.fail(Exit::Failed, reader.errors());
     while (!w.limit.is_reached())
     {
         if (w.context.stopped()) return Exit::Interrupted;
         (void)w.catalogue.update();
-        (void)reader->take(
-            [&](const T& sample, const dds_sample_info_t& info)
-            {
-                if (info.valid_data && !w.limit.is_reached()) handle(sample);
-            });
+        take(*reader);
         if (!w.context.console.flush()) return Exit::Done;  // the reader is gone: `| head` has enough
         if (w.limit.is_reached()) break;
         if (w.catalogue.server_is_gone()) return w.context.fail(Exit::NoServer, "server '" + w.context.session().server() + "' has gone");
@@ -75,16 +71,28 @@ Exit stream(Watch& w, Handle handle)
     return Exit::Done;
 }
 
+/// Passes samples of T to `handle`.
+template <class T, class Handle>
+Exit stream(Watch& w, Handle handle)
+{
+    const auto pass_on = [&](const T& sample, const dds_sample_info_t& info)
+    {
+        if (info.valid_data && !w.limit.is_reached()) handle(sample);
+    };
+    return follow(w, w.context.session().reader<T>(), [&](wire::DataReader<T>& reader) { (void)reader.take(pass_on); });
+}
+
 Exit watch_states(Watch& w)
 {
-    const Exit e = stream<plab_v2_Frame>(w,
-                                         [&](const plab_v2_Frame& sample)
-                                         {
-                                             (void)w.numbers.missed_before(sample.sequence_number, 1);
-                                             if (!w.thinning.takes(sample.run, sample.time)) return;
-                                             w.printer.frame(frame_of(sample), w.catalogue);
-                                             w.limit.count();
-                                         });
+    const auto show = [&](const plab_v2_Frame& frame)
+    {
+        if (w.limit.is_reached()) return;
+        (void)w.numbers.missed_before(frame.sequence_number, 1);
+        if (!w.thinning.takes(frame.run, frame.time)) return;
+        w.printer.frame(frame_of(frame), w.catalogue);
+        w.limit.count();
+    };
+    const Exit e = follow(w, link::FrameReader::open(w.context.session()), [&](link::FrameReader& reader) { (void)reader.take(show); });
     // A slow reader misses frames: states are delivered that way, so this is not a failure.
     if (w.numbers.missed() > 0) w.context.console.say("plabctl: " + std::to_string(w.numbers.missed()) + " frames were not delivered");
     return e;

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "link/session.h"
+#include "link/frame_reader.h"
 
 int main(int argc, char** argv)
 {
@@ -15,13 +15,13 @@ int main(int argc, char** argv)
     if (!options) return std::fprintf(stderr, "plab-hello: %s\n", options.error().text().c_str()), 2;
     auto session = link::Session::find(*options, link::Seconds(5));
     if (!session) return std::fprintf(stderr, "plab-hello: %s\n", session.error().text().c_str()), 3;
-    auto frames = session->reader<plab_v2_Frame>();
+    auto frames = link::FrameReader::open(*session);
     if (!frames) return std::fprintf(stderr, "plab-hello: %s\n", frames.error().text().c_str()), 1;
 
     int printed = 0;
-    const auto print = [&](const plab_v2_Frame& frame, const dds_sample_info_t& info)
+    const auto print = [&](const plab_v2_Frame& frame)
     {
-        if (!info.valid_data || frame.bodies._length == 0 || printed == count) return;
+        if (frame.bodies._length == 0 || printed == count) return;
         const plab_v2_BodyState& body = frame.bodies._buffer[0];
         std::printf("%8.3f s  body %u  %8.3f %8.3f %8.3f m\n", frame.time, body.handle, body.position.x, body.position.y, body.position.z);
         ++printed;

@@ -58,8 +58,8 @@ public:
         return wire::DataWriter<T>::make(participant_, publisher_);
     }
     /// Waits until the reader has samples (true) or the time is over (false).
-    template <class T>
-    bool wait(const wire::DataReader<T>& reader, Seconds timeout) const
+    template <class Reader>
+    bool wait(const Reader& reader, Seconds timeout) const
     {
         return wait_for(reader.entity(), DDS_DATA_AVAILABLE_STATUS, timeout);
     }

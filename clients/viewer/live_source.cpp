@@ -28,7 +28,7 @@ Result<std::unique_ptr<Source>> LiveSource::open(const link::Session& session, c
     if (auto fetched = out->catalogue_->fetch(timeout, stop); !fetched) return fetched.errors();
     out->take_catalogue();
     // Subscribe only now: a reader of states that is not emptied keeps only the last four.
-    auto frames = session.reader<plab_v2_Frame>();
+    auto frames = link::FrameReader::open(session);
     if (!frames) return frames.errors();
     out->frames_ = frames.take();
     out->thread_ = std::jthread([source = out.get()](const std::stop_token& token) { source->read(token); });
@@ -73,9 +73,8 @@ void LiveSource::take_frames()
 {
     const auto now = Clock::now();
     (void)frames_.take(
-        [&](const plab_v2_Frame& frame, const dds_sample_info_t& info)
+        [&](const plab_v2_Frame& frame)
         {
-            if (!info.valid_data) return;
             const bool is_new = any_frame_ && (frame.run != run_ || frame.revision != revision_);
             run_ = frame.run, revision_ = frame.revision, any_frame_ = true;
             const auto until = is_new ? now + kSettle : held_.empty() ? now : held_.back().second;

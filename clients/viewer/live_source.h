@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "link/frame_reader.h"
 #include "viewer/source.h"
 
 namespace plab::view
@@ -32,7 +33,7 @@ private:
     void hand_over();
 
     const link::Session& session_;
-    wire::DataReader<plab_v2_Frame> frames_;
+    link::FrameReader frames_;
     std::optional<link::Catalogue> catalogue_;
     MomentBuffer moments_;
 

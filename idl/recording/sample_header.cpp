@@ -39,12 +39,15 @@ SampleHeader header_with_time(const T& sample)
 }
 SampleHeader header(const plab_v2_Metrics& m) { return header_with_time(m); }
 SampleHeader header(const plab_v2_Reply& r) { return header_with_time(r); }
-SampleHeader header(const plab_v2_Frame& f)
+template <class T>
+SampleHeader header_of_frame(const T& f)
 {
     SampleHeader out = header_with_time(f);
     out.stamp_ns = f.stamp_ns, out.first = f.sequence_number, out.entries = 1;
     return out;
 }
+SampleHeader header(const plab_v2_Frame& f) { return header_of_frame(f); }
+SampleHeader header(const plab_v2_FrameUpdate& f) { return header_of_frame(f); }
 SampleHeader header(const plab_v2_Image& i)
 {
     SampleHeader out = header_with_time(i);
@@ -131,8 +134,8 @@ std::unique_ptr<Peek> make_one_of(const wire::Topic& topic)
 std::unique_ptr<Peek> make_peek(const wire::Topic& topic)
 {
     return make_one_of<plab_v2_Server, plab_v2_Scene, plab_v2_SceneObject, plab_v2_Shape, plab_v2_Interaction, plab_v2_Type, plab_v2_Frame,
-                       plab_v2_Collisions, plab_v2_Events, plab_v2_Metrics, plab_v2_Request, plab_v2_Reply, plab_v2_Image, plab_v2_Journal,
-                       plab_v2_Hashes, plab_v2_Snapshot, plab_v2_Gone>(topic);
+                       plab_v2_FrameUpdate, plab_v2_Collisions, plab_v2_Events, plab_v2_Metrics, plab_v2_Request, plab_v2_Reply,
+                       plab_v2_Image, plab_v2_Journal, plab_v2_Hashes, plab_v2_Snapshot, plab_v2_Gone>(topic);
 }
 
 std::string key_of_gone(ByteView bytes)

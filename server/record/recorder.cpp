@@ -54,8 +54,12 @@ std::function<void(recording::Notice, const std::string&)> log_of(const RecordOp
 Result<void> check_topics(const std::vector<std::string>& topics)
 {
     for (const std::string& topic : topics)
+    {
         if (std::none_of(wire::topics().begin(), wire::topics().end(), [&](const wire::Topic& t) { return topic == t.name; }))
             return reason("'" + topic + "' is not a pLab topic");
+        if (topic == wire::topic_of<plab_v2_FrameUpdate>().name)
+            return reason("'" + topic + "' is not recorded: plab/states has the same frames, complete");
+    }
     return {};
 }
 

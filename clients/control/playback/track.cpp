@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "idl/frame_updates.h"
 #include "idl/recording/cdr.h"
 #include "idl/recording/whole_frame.h"
 
@@ -55,7 +56,10 @@ template <class T>
 class TrackOf final : public Track
 {
 public:
-    TrackOf(wire::DataWriter<T> writer, bool moved_only) : writer_(std::move(writer)), moved_only_(moved_only) {}
+    /// Frames go out as a server's do, also as key frames and deltas.
+    using Writer = std::conditional_t<std::is_same_v<T, plab_v2_Frame>, wire::FrameWriter, wire::DataWriter<T>>;
+
+    TrackOf(Writer writer, bool moved_only) : writer_(std::move(writer)), moved_only_(moved_only) {}
 
     Result<void> send(recording::ByteView bytes, const Changes& changes) override
     {
@@ -71,12 +75,14 @@ public:
     {
         if (decoder_.decode(bytes, sample_)) (void)whole();
     }
-    void dispose(const std::string& key) override
+    void dispose([[maybe_unused]] const std::string& key) override
     {
-        if constexpr (!kHasKey<T>) return;
-        T sample{};
-        put_key(sample, key);
-        (void)writer_.dispose(sample);  // an instance that was never written cannot be disposed of, and need not
+        if constexpr (kHasKey<T>)
+        {
+            T sample{};
+            put_key(sample, key);
+            (void)writer_.dispose(sample);  // an instance that was never written cannot be disposed of, and need not
+        }
     }
     wire::Matched readers() const override { return writer_.matched(); }
     void flush(dds_duration_t longest) override { (void)dds_wait_for_acks(writer_.entity().get(), longest); }
@@ -92,7 +98,7 @@ private:
         return *sample_;
     }
 
-    wire::DataWriter<T> writer_;
+    Writer writer_;
     recording::Decoder decoder_;
     recording::Sample<T> sample_;
     recording::WholeFrame whole_;
@@ -111,7 +117,7 @@ template <class T>
 bool make_if(const wire::Topic& topic, const Ends& ends, Result<std::unique_ptr<Track>>& out)
 {
     if (std::strcmp(wire::topic_of<T>().name, topic.name) != 0) return false;
-    auto writer = wire::DataWriter<T>::make(ends.participant, ends.publisher);
+    auto writer = TrackOf<T>::Writer::make(ends.participant, ends.publisher);
     if (writer)
         out = std::unique_ptr<Track>(std::make_unique<TrackOf<T>>(writer.take(), ends.moved_only));
     else

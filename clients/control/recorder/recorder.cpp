@@ -81,7 +81,8 @@ std::uint64_t write_waiting(recording::TopicFile& file, Waiting& waiting)
 
 Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::string>& names)
 {
-    const auto on_bus = [](const wire::Topic& t) { return !is_topic<plab_v2_Gone>(t); };
+    // plab/updates has the frames of plab/states once more; a recording holds complete ones.
+    const auto on_bus = [](const wire::Topic& t) { return !is_topic<plab_v2_Gone>(t) && !is_topic<plab_v2_FrameUpdate>(t); };
     std::vector<const wire::Topic*> out;
     for (const wire::Topic& t : wire::topics())
     {
@@ -90,7 +91,9 @@ Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::str
     }
     for (const std::string& name : names)
         if (std::none_of(out.begin(), out.end(), [&](const wire::Topic* t) { return name == t->name; }))
-            return reason("'" + name + "' is not a pLab topic: plabctl topics lists them");
+            return name == wire::topic_of<plab_v2_FrameUpdate>().name
+                       ? reason("'" + name + "' is not recorded: plab/states has the same frames, complete")
+                       : reason("'" + name + "' is not a pLab topic: plabctl topics lists them");
     // States last: a client that sees their reader knows that the others exist.
     std::stable_partition(out.begin(), out.end(), [](const wire::Topic* t) { return !is_topic<plab_v2_Frame>(*t); });
     return out;

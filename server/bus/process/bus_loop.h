@@ -16,6 +16,7 @@
 #include "bus/process/presence.h"
 #include "bus/process/stream.h"
 #include "idl/domain.h"
+#include "idl/frame_updates.h"
 #include "idl/samples.h"
 
 namespace plab::bus
@@ -70,7 +71,7 @@ private:
     // Declared before all entities that depend on it; listeners notify until the participant is deleted.
     wire::Participant participant_;
     wire::Entity publisher_, subscriber_;
-    Stream<plab_v2_Frame, wire::Frame> states_;
+    Stream<plab_v2_Frame, wire::Frame, wire::FrameWriter> states_;  ///< also writes plab/updates
     Stream<plab_v2_Collisions, wire::Collisions> collisions_;
     Stream<plab_v2_Events, wire::Events> events_;
     Stream<plab_v2_Metrics, wire::Metrics> metrics_;

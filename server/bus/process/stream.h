@@ -9,8 +9,8 @@
 namespace plab::bus
 {
 
-/// T: type on the wire. Record: its value.
-template <class T, class Record>
+/// T: type on the wire. Record: its value. Writer: writes Ts.
+template <class T, class Record, class Writer = wire::DataWriter<T>>
 class Stream
 {
 public:
@@ -20,7 +20,7 @@ public:
         if (there == writer_.entity().valid()) return {};
         writer_ = {}, seen_ = 0;
         if (!there) return {};
-        auto writer = wire::DataWriter<T>::make(participant, publisher);
+        auto writer = Writer::make(participant, publisher);
         if (!writer) return writer.errors();
         writer_ = writer.take();
         return {};
@@ -51,7 +51,7 @@ public:
 private:
     Record record_;  ///< refilled each time, reusing its memory
     wire::SampleView<T> sample_;
-    wire::DataWriter<T> writer_;
+    Writer writer_;
     bool is_wanted_ = false;
     std::uint64_t joins_ = 0;
     std::uint32_t seen_ = 0;  ///< total number of readers of this writer, at the last check

@@ -1,8 +1,10 @@
 // Measurements of the bus, not a test. Two processes on loopback:
 //
-//   bus_traffic read NAME [SECONDS]                        a reader of states; reports what it received when the time is over
-//   bus_traffic write NAME BODIES RATE|max SECONDS         a server's end that writes frames; RATE in Hz
+//   bus_traffic read NAME [SECONDS]                        a reader of plab/states; reports what it received when the time is over
+//   bus_traffic follow NAME [SECONDS]                      the same by plab/updates
+//   bus_traffic write NAME BODIES RATE|max SECONDS [MOVING]  a server's end that writes frames; RATE in Hz; MOVING: of BODIES, all
 //   bus_traffic raw NAME BODIES RATE|max SECONDS           the same frames by dds_write alone: the limit of DDS on this machine
+//   bus_traffic raw-updates NAME BODIES RATE|max SECONDS   the same, as key frames of plab/updates
 //   bus_traffic answer NAME SECONDS                        answers requests at once, like a step loop
 //   bus_traffic ask NAME COUNT                             sends COUNT requests, and reports how long replies took
 #include <sys/resource.h>
@@ -13,7 +15,9 @@
 #include <thread>
 
 #include "bus/server_bus.h"
+#include "idl/frame_updates.h"
 #include "link/caller.h"
+#include "link/frame_reader.h"
 
 using namespace plab;
 using namespace std::chrono_literals;
@@ -62,11 +66,10 @@ int fail(const Error& error)
     return 1;
 }
 
-int read(const std::string& name, double seconds)
+/// `take(reader, note)` calls note(frame) for each frame that has arrived.
+template <class Reader, class Take>
+int read(const link::Session& session, Result<Reader> reader, double seconds, Take take)
 {
-    auto session = link::Session::join({name, {domain(), ""}});
-    if (!session) return fail(session.error());
-    auto reader = session->reader<plab_v2_Frame>();
     if (!reader) return fail(reader.error());
     const auto end = Clock::now() + std::chrono::duration<double>(seconds);
     std::uint64_t frames = 0, first = 0, last = 0;
@@ -75,15 +78,14 @@ int read(const std::string& name, double seconds)
     Clock::time_point began, ended;
     while (Clock::now() < end)
     {
-        if (!session->wait(*reader, link::Seconds(0.2))) continue;
-        (void)reader->take(
-            [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
-            {
-                if (!info.valid_data) return;
-                if (frames++ == 0) first = f.sequence_number, began = Clock::now();
-                last = f.sequence_number, ended = Clock::now();
-                age_us.push_back(1e-3 * static_cast<double>(now_ns() - f.stamp_ns));
-            });
+        if (!session.wait(*reader, link::Seconds(0.2))) continue;
+        take(*reader,
+             [&](const plab_v2_Frame& f)
+             {
+                 if (frames++ == 0) first = f.sequence_number, began = Clock::now();
+                 last = f.sequence_number, ended = Clock::now();
+                 age_us.push_back(1e-3 * static_cast<double>(now_ns() - f.stamp_ns));
+             });
     }
     const double elapsed = std::chrono::duration<double>(ended - began).count();
     std::printf("read: %lu frames, %lu missed, %.0f frames/s, CPU %.0f us/frame, age p50 %.0f us, p99 %.0f us\n", frames,
@@ -93,6 +95,29 @@ int read(const std::string& name, double seconds)
     return 0;
 }
 
+int read_states(const std::string& name, double seconds)
+{
+    auto session = link::Session::join({name, {domain(), ""}});
+    if (!session) return fail(session.error());
+    const auto take = [](wire::DataReader<plab_v2_Frame>& reader, const auto& note)
+    {
+        (void)reader.take(
+            [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
+            {
+                if (info.valid_data) note(f);
+            });
+    };
+    return read(*session, session->reader<plab_v2_Frame>(), seconds, take);
+}
+
+int read_updates(const std::string& name, double seconds)
+{
+    auto session = link::Session::join({name, {domain(), ""}});
+    if (!session) return fail(session.error());
+    const auto take = [](link::FrameReader& reader, const auto& note) { (void)reader.take(note); };
+    return read(*session, link::FrameReader::open(*session), seconds, take);
+}
+
 Result<std::unique_ptr<bus::ServerBus>> open(const std::string& name)
 {
     bus::BusOptions options;
@@ -100,7 +125,7 @@ Result<std::unique_ptr<bus::ServerBus>> open(const std::string& name)
     return bus::ServerBus::open(options);
 }
 
-int write(const std::string& name, std::size_t bodies, double rate, double seconds)
+int write(const std::string& name, std::size_t bodies, std::size_t moving, double rate, double seconds)
 {
     auto opened = open(name);
     if (!opened) return fail(opened.error());
@@ -118,6 +143,9 @@ int write(const std::string& name, std::size_t bodies, double rate, double secon
         wire::Frame& frame = bus.begin_frame();
         frame.sequence_number = number + 1, frame.stamp_ns = now_ns();
         frame.bodies.resize(bodies);
+        for (std::size_t i = 0; i < bodies; ++i)
+            frame.bodies[i].handle = static_cast<std::uint32_t>(i),
+            frame.bodies[i].position.x = i < moving ? static_cast<double>(number) : 0;
         bus.end_frame();
         push_us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
         if (rate > 0)
@@ -133,23 +161,21 @@ int write(const std::string& name, std::size_t bodies, double rate, double secon
     return 0;
 }
 
-int write_raw(const std::string& name, std::size_t bodies, double rate, double seconds)
+template <class T>
+int write_raw(const std::string& name, T& frame, std::size_t bodies, double rate, double seconds)
 {
     auto session = link::Session::join({name, {domain(), ""}});
     if (!session) return fail(session.error());
-    auto writer = session->writer<plab_v2_Frame>();
+    auto writer = session->writer<T>();
     if (!writer) return fail(writer.error());
     const auto give_up = Clock::now() + 10s;
     while (writer->readers() == 0 && Clock::now() < give_up) std::this_thread::sleep_for(1ms);
-    std::vector<plab_v2_BodyState> states(bodies);
-    const auto count = static_cast<std::uint32_t>(bodies);
-    plab_v2_Frame frame{};
-    frame.bodies = {count, count, states.data(), false};
     const double cpu = cpu_seconds();
     const auto begin = Clock::now(), end = begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     for (auto next = begin; Clock::now() < end;)
     {
         ++frame.sequence_number, frame.stamp_ns = now_ns();
+        if constexpr (requires { frame.key_number; }) frame.key_number = frame.sequence_number;
         (void)writer->write(frame);
         if (rate > 0)
             std::this_thread::sleep_until(next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / rate)));
@@ -157,6 +183,25 @@ int write_raw(const std::string& name, std::size_t bodies, double rate, double s
     std::printf("raw: %lu frames of %zu bodies, CPU %.0f us/frame\n", frame.sequence_number, bodies,
                 1e6 * (cpu_seconds() - cpu) / static_cast<double>(frame.sequence_number));
     return 0;
+}
+
+int write_raw_states(const std::string& name, std::size_t bodies, double rate, double seconds)
+{
+    std::vector<plab_v2_BodyState> states(bodies);
+    const auto count = static_cast<std::uint32_t>(bodies);
+    plab_v2_Frame frame{};
+    frame.bodies = {count, count, states.data(), false};
+    return write_raw(name, frame, bodies, rate, seconds);
+}
+
+int write_raw_updates(const std::string& name, std::size_t bodies, double rate, double seconds)
+{
+    std::vector<std::uint32_t> handles(bodies);
+    std::vector<double> numbers(bodies * wire::kBodyNumbers);
+    const auto count = static_cast<std::uint32_t>(bodies), all = static_cast<std::uint32_t>(numbers.size());
+    plab_v2_FrameUpdate update{};
+    update.body_handles = {count, count, handles.data(), false}, update.bodies = {all, all, numbers.data(), false};
+    return write_raw(name, update, bodies, rate, seconds);
 }
 
 int answer(const std::string& name, double seconds)
@@ -203,16 +248,21 @@ int ask(const std::string& name, int count)
 int main(int argc, char** argv)
 {
     const std::vector<std::string> args(argv + 1, argv + argc);
-    if (args.size() >= 2 && args[0] == "read") return read(args[1], args.size() > 2 ? std::atof(args[2].c_str()) : 5);
-    if (args.size() == 5 && (args[0] == "write" || args[0] == "raw"))
+    if (args.size() >= 2 && args[0] == "read") return read_states(args[1], args.size() > 2 ? std::atof(args[2].c_str()) : 5);
+    if (args.size() >= 2 && args[0] == "follow") return read_updates(args[1], args.size() > 2 ? std::atof(args[2].c_str()) : 5);
+    if (args.size() >= 5 && (args[0] == "write" || args[0] == "raw" || args[0] == "raw-updates"))
     {
         const auto bodies = static_cast<std::size_t>(std::atol(args[2].c_str()));
         const double rate = args[3] == "max" ? 0 : std::atof(args[3].c_str()), seconds = std::atof(args[4].c_str());
-        return args[0] == "raw" ? write_raw(args[1], bodies, rate, seconds) : write(args[1], bodies, rate, seconds);
+        if (args[0] == "raw") return write_raw_states(args[1], bodies, rate, seconds);
+        if (args[0] == "raw-updates") return write_raw_updates(args[1], bodies, rate, seconds);
+        const auto moving = args.size() > 5 ? static_cast<std::size_t>(std::atol(args[5].c_str())) : bodies;
+        return write(args[1], bodies, moving, rate, seconds);
     }
     if (args.size() == 3 && args[0] == "answer") return answer(args[1], std::atof(args[2].c_str()));
     if (args.size() == 3 && args[0] == "ask") return ask(args[1], std::atoi(args[2].c_str()));
     std::fprintf(stderr,
-                 "bus_traffic read NAME [SECONDS] | write|raw NAME BODIES RATE|max SECONDS | answer NAME SECONDS | ask NAME COUNT\n");
+                 "bus_traffic read|follow NAME [SECONDS] | write NAME BODIES RATE|max SECONDS [MOVING] |\n"
+                 "            raw|raw-updates NAME BODIES RATE|max SECONDS | answer NAME SECONDS | ask NAME COUNT\n");
     return 2;
 }

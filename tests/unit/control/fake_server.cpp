@@ -4,6 +4,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "idl/frame_updates.h"
+
 namespace plab::test
 {
 namespace
@@ -51,7 +53,7 @@ struct FakeServer::Ends
     wire::DataWriter<plab_v2_Shape> shapes;
     wire::DataWriter<plab_v2_Interaction> interactions;
     wire::DataWriter<plab_v2_Type> types;
-    wire::DataWriter<plab_v2_Frame> states;
+    wire::FrameWriter states;
     wire::DataWriter<plab_v2_Collisions> collisions;
     wire::DataWriter<plab_v2_Events> events;
     wire::DataWriter<plab_v2_Metrics> metrics;
@@ -72,7 +74,8 @@ FakeServer::FakeServer(std::uint32_t domain, std::string name) : name_(std::move
     e.publisher = need(wire::make_publisher(e.participant, name_));
     e.subscriber = need(wire::make_subscriber(e.participant, name_));
     e.open(e.server), e.open(e.scene), e.open(e.objects), e.open(e.shapes), e.open(e.interactions), e.open(e.types);
-    e.open(e.states), e.open(e.collisions), e.open(e.events), e.open(e.metrics), e.open(e.replies);
+    e.states = need(wire::FrameWriter::make(e.participant, e.publisher));
+    e.open(e.collisions), e.open(e.events), e.open(e.metrics), e.open(e.replies);
     e.requests = need(wire::DataReader<plab_v2_Request>::make(e.participant, e.subscriber));
     publish_catalogue();
     publish_types();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "idl/domain.h"
+#include "idl/frame_updates.h"
 
 namespace plab::test
 {
@@ -27,7 +28,7 @@ public:
         events_ = wire::DataWriter<plab_v2_Events>::make(participant_, publisher_).take();
         collisions_ = wire::DataWriter<plab_v2_Collisions>::make(participant_, publisher_).take();
         metrics_ = wire::DataWriter<plab_v2_Metrics>::make(participant_, publisher_).take();
-        frames_ = wire::DataWriter<plab_v2_Frame>::make(participant_, publisher_).take();
+        frames_ = wire::FrameWriter::make(participant_, publisher_).take();
         publish_state();
     }
 
@@ -119,7 +120,7 @@ private:
     wire::DataWriter<plab_v2_Events> events_;
     wire::DataWriter<plab_v2_Collisions> collisions_;
     wire::DataWriter<plab_v2_Metrics> metrics_;
-    wire::DataWriter<plab_v2_Frame> frames_;
+    wire::FrameWriter frames_;
 };
 
 /// Tests may run side by side, in several checkouts.

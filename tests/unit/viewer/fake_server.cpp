@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "idl/entity.h"
+#include "idl/frame_updates.h"
 
 namespace plab::test
 {
@@ -35,7 +35,8 @@ public:
         : script_(script), name_(name), publisher_(wire::make_publisher(participant, name).take())
     {
         make(participant, server_), make(participant, scene_), make(participant, objects_), make(participant, shapes_);
-        make(participant, interactions_), make(participant, frames_);
+        make(participant, interactions_);
+        frames_ = wire::FrameWriter::make(participant, publisher_).take();
     }
 
     bool is_watched() const { return frames_.readers() > 0; }
@@ -132,7 +133,7 @@ private:
     wire::DataWriter<plab_v2_SceneObject> objects_;
     wire::DataWriter<plab_v2_Shape> shapes_;
     wire::DataWriter<plab_v2_Interaction> interactions_;
-    wire::DataWriter<plab_v2_Frame> frames_;
+    wire::FrameWriter frames_;
     std::uint64_t run_ = 1, sequence_ = 0;
 };
 
