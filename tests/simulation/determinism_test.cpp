@@ -84,7 +84,7 @@ TEST_CASE("a heap of mixed shapes has the same hash with 1 to 16 threads: detect
 {
     std::string body =
         R"(<component id="q" type="Shape/Box" half_extents="0.1 0.12 0.1"/><component id="s" type="Shape/Sphere" radius="0.11"/>
-        <component id="c" type="Shape/Capsule" radius="0.08" half_length="0.07"/><component id="floor" type="Shape/Plane"/>
+        <component id="c" type="Shape/Capsule" radius="0.08" length="0.14"/><component id="floor" type="Shape/Plane"/>
         <component id="ground" type="State/Static" shape="floor"/><component id="g" type="Field/Gravity" between="*"/>
         <component id="contact" type="CDetection/ODE" between="*" resolution="Resolution/None" response="Response/Rows"
                    response.friction="0.4"/>)";
