@@ -134,6 +134,8 @@ void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const Contact
     }
     broad_.reset(space_, parts_.size());
     near_.reserve(parts_.size());
+    if (narrow_.empty()) narrow_.resize(1);
+    narrow_.front().found.reserve(ContactPoints::kCapacity * std::min(2 * parts_.size(), kPairsPerChunk));
     for (const Part& part : parts_) broad_.add(colliders_[part.collider], part.member, members_[part.member].membership);
 }
 

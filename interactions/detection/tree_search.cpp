@@ -8,12 +8,16 @@ namespace
 {
 /// Sizes of the jobs into which a search is divided. They do not depend on the number of threads.
 constexpr std::size_t kTreeParts = 64, kBoxesPerJob = 128;
+/// Room for nodes still to visit, so that a search in a warm step allocates nothing.
+constexpr std::size_t kStack = 256;
 }  // namespace
 
 TreeSearch::TreeSearch(std::size_t parts)
     : boxes_(parts), memberships_(parts), has_box_(parts, 0), is_moved_(parts, 0), is_stale_(parts, 0), is_asked_(parts, 0)
 {
     bounded_.reserve(parts), moved_.reserve(parts), stale_.reserve(parts);
+    searchers_.resize(1);
+    searchers_.front().stack.reserve(kStack), searchers_.front().node_pairs.reserve(kStack);
 }
 
 void TreeSearch::add_box(std::uint32_t part, Membership membership)

@@ -33,6 +33,7 @@ void BoxTree::build(std::span<const Box> boxes, std::span<const std::uint32_t> i
     nodes_.reserve(2 * items.size() - 1);
     leaf_of_item_.assign(boxes.size(), kNone);
     order_.assign(items.begin(), items.end());
+    node_pairs_.reserve(256), inner_pairs_.reserve(256), stack_.reserve(256);
     root_ = 0;
     nodes_.emplace_back();
     tasks_.assign(1, {0, 0, static_cast<std::uint32_t>(order_.size())});
