@@ -1,0 +1,127 @@
+// For how long a swap stops the loop, against the number of bodies beside it or in it, free and in contact. Prints the Markdown table of
+// server/docs/swapping.md: medians and the longest of the pauses in ms. The names of cases may be given as arguments.
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "blueprint/reader.h"
+#include "model/compile.h"
+#include "plugins/library.h"
+#include "simulation/simulation.h"
+#include "support/text.h"
+
+using namespace plab;
+using test::text;
+
+namespace
+{
+
+constexpr int kSettle = 20;  // steps before the first swap
+
+[[noreturn]] void fail(const std::string& why)
+{
+    std::fprintf(stderr, "bench_swap: %s\n", why.c_str());
+    std::exit(1);
+}
+
+std::string component(const std::string& id, const std::string& type, const std::string& more)
+{
+    return "<component id=\"" + id + "\" type=\"" + type + "\" " + more + "/>\n";
+}
+
+/// Two gears with a solver of their own.
+const std::string kMechanism = component("own", "Solver/RungeKutta4", "") + component("s0", "State/Shaft", "inertia=\"1\" solver=\"own\"") +
+                               component("s1", "State/Shaft", "inertia=\"2\" solver=\"own\" angular_velocity=\"0.5\"") +
+                               component("load", "Field/Load", "between=\"s0\" shaft_torque=\"1\"") +
+                               component("gear", "Constraint/AngularVelocity/Graph", "driver=\"s0\" driven=\"s1\" velocity_factor=\"-1\"");
+
+std::string body(int i, const Vec3& at)
+{
+    return component("b" + std::to_string(i), "State/RigidBody", "shape=\"s\" mass=\"1\" solver=\"common\" position=\"" + text(at) + "\"");
+}
+
+std::string scene(int n, bool contact)
+{
+    std::string out = "<plab version=\"1\"><scene dt=\"1/60\"/>\n" + kMechanism + component("common", "Solver/SemiImplicitEuler", "") +
+                      component("gravity", "Field/Gravity", "between=\"*\"") + component("s", "Shape/Box", "half_extents=\"0.25 0.25 0.25\"");
+    const int side = std::max(1, n / 100);
+    for (int i = 0; i < n; ++i)
+        out += body(i, contact ? Vec3{0.55 * (i / 10 % side), 0.55 * (i / 10 / side), 0.251 + 0.501 * (i % 10)}
+                               : Vec3{2.0 * (i % 100), 2.0 * (i / 100), 0});
+    if (contact)
+        out += component("plane", "Shape/Plane", "") + component("ground", "State/Static", "shape=\"plane\"") +
+               component("manager", "Manager/SoftStep", "substeps=\"4\"") +
+               component("contact", "CDetection/ODE",
+                         "between=\"*\" resolution=\"Resolution/None\" response=\"Response/Rows\" response.manager=\"manager\" "
+                         "response.friction=\"0.8\"");
+    return out + "</plab>";
+}
+
+struct Case
+{
+    const char* name;
+    const char* id;
+    const char* types[2];
+    bool contact;
+};
+
+const Case kCases[] = {
+    {"gear beside free bodies", "gear", {"Constraint/AngularVelocity/Impulse", "Constraint/AngularVelocity/Graph"}, false},
+    {"gear beside a pile", "gear", {"Constraint/AngularVelocity/Impulse", "Constraint/AngularVelocity/Graph"}, true},
+    {"solver of the gears beside a pile", "own", {"Solver/DormandPrince54", "Solver/RungeKutta4"}, true},
+    {"solver of all free bodies", "common", {"Solver/RungeKutta4", "Solver/SemiImplicitEuler"}, false},
+    {"field of all free bodies", "gravity", {"Field/Gravity", "Field/Gravity"}, false},
+    {"manager of the pile", "manager", {"Manager/SequentialImpulse", "Manager/SoftStep"}, true},
+    {"response of the pile", "contact.response", {"Response/Rows", "Response/Rows"}, true},
+};
+
+void measure(const Case& c, int n, int swaps)
+{
+    const auto blueprint = blueprint::read_blueprint(scene(n, c.contact), "case.xml");
+    if (!blueprint) fail(blueprint.error().text());
+    plugins::PluginLibrary library({PLAB_BINARY_DIR "/lib/plab"});
+    const auto compiled = model::compile(*blueprint, library);
+    if (!compiled) fail(compiled.error().text());
+    simulation::Simulation simulation(library);
+    if (const auto loaded = simulation.load(*compiled); !loaded) fail(loaded.error().text());
+    for (int i = 0; i < kSettle; ++i) simulation.step();
+    std::vector<double> pauses;
+    int proven = 0;
+    for (int i = 0; i < swaps; ++i)
+    {
+        simulation::Request request;
+        request.trial.budget = simulation::TrialChoice::Budget::Automatic;
+        request.operations = {simulation::SwapOperation{c.id, c.types[i % 2], {}}};
+        const simulation::Reply reply = simulation.carry_out_now(request);
+        if (!reply.done) fail(reply.errors.front().text());
+        pauses.push_back(1e-6 * reply.pause_ns);
+        proven += reply.trial.outcome == simulation::TrialReport::Outcome::Made ? 1 : 0;
+        simulation.step();
+    }
+    std::sort(pauses.begin(), pauses.end());
+    std::printf("| %s | %d | %.3g | %.3g | %d of %d |\n", c.name, n, pauses[pauses.size() / 2], pauses.back(), proven, swaps);
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    std::vector<int> counts = {100, 1000, 10000};
+    int swaps = 11;
+    std::vector<std::string> names;
+    for (int i = 1; i < argc; ++i)
+        if (std::atoi(argv[i]) > 0)
+            counts = {std::atoi(argv[i])};
+        else if (std::strncmp(argv[i], "swaps=", 6) == 0)
+            swaps = std::max(1, std::atoi(argv[i] + 6));
+        else
+            names.emplace_back(argv[i]);
+    std::printf("| swap | bodies | pause, ms | longest, ms | with a proof |\n|---|---|---|---|---|\n");
+    for (const Case& c : kCases)
+        if (names.empty() || std::find(names.begin(), names.end(), c.name) != names.end())
+            for (const int n : counts) measure(c, n, swaps);
+    return 0;
+}
