@@ -168,7 +168,8 @@ void OdeScene::list_active(const StepContext& context, const RefList& between, c
     active_.clear();
     for (const RefList* list : {&between, &against})
         for (const Ref& r : context.among(*list))
-            if (const std::uint32_t m = member_of_body_[r.index]; m != kNoIndex && context.active_bodies[r.index] != 0) active_.push_back(m);
+            if (const std::uint32_t m = member_of_body_[r.index]; m != kNoIndex && context.active_bodies[r.index] != 0)
+                active_.push_back(m);
 }
 
 bool OdeScene::may_meet(const Member& a, const Member& b, const StepContext& context) const

@@ -167,7 +167,7 @@ void TreeSearch::find_of(std::span<const std::uint32_t> parts, std::vector<PartP
 {
     refresh_tree();
     pairs.clear();
-    if (parts.size() == bounded_.size() + half_spaces_.size()) return find_all(pairs);
+    if (parts.size() == bounded_.size() + half_spaces_.size()) return find_all(pairs, nullptr);
     for (const std::uint32_t i : parts) is_asked_[i] = 1;
     find_chosen(parts, is_asked_, pairs, nullptr);
     for (const std::uint32_t i : parts) is_asked_[i] = 0;

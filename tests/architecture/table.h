@@ -149,7 +149,7 @@ inline const std::vector<Layer>& layers()
         {"tests",
          {"server", "interactions", "clients", "idl", "scenes"},
          {"doctest/", "nlohmann/", "dds/", "Eigen/", "unsupported/Eigen/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h", "sys/",
-          "poll.h", "termios.h", "arpa/", "netinet/"}},
+          "malloc.h", "poll.h", "termios.h", "arpa/", "netinet/"}},
     };
     return table;
 }

@@ -1,5 +1,5 @@
-// For how long a swap stops the loop, against the number of bodies beside it or in it, free and in contact. Prints the Markdown table of
-// server/docs/swapping.md: medians and the longest of the pauses in ms. The names of cases may be given as arguments.
+// For how long a swap stops the loop, against the number of bodies beside it or in it, free and in contact. Prints a Markdown table:
+// medians and the longest of the pauses in ms. The names of cases may be given as arguments.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -45,7 +45,8 @@ std::string body(int i, const Vec3& at)
 std::string scene(int n, bool contact)
 {
     std::string out = "<plab version=\"1\"><scene dt=\"1/60\"/>\n" + kMechanism + component("common", "Solver/SemiImplicitEuler", "") +
-                      component("gravity", "Field/Gravity", "between=\"*\"") + component("s", "Shape/Box", "half_extents=\"0.25 0.25 0.25\"");
+                      component("gravity", "Field/Gravity", "between=\"*\"") +
+                      component("s", "Shape/Box", "half_extents=\"0.25 0.25 0.25\"");
     const int side = std::max(1, n / 100);
     for (int i = 0; i < n; ++i)
         out += body(i, contact ? Vec3{0.55 * (i / 10 % side), 0.55 * (i / 10 / side), 0.251 + 0.501 * (i % 10)}

@@ -47,11 +47,11 @@ private:
     PositionCorrection positions_;
     HeldIslands held_;
     ImpulseIslands impulses_;
-    DisjointSets islands_;             ///< of groups; single sets but for those in reached_
-    IndexSet reached_;                 ///< groups that hold together with those of the present advance
+    DisjointSets islands_;               ///< of groups; single sets but for those in reached_
+    IndexSet reached_;                   ///< groups that hold together with those of the present advance
     std::vector<std::uint32_t> places_;  ///< of the pairs between them
     std::vector<std::uint32_t> groups_;
-    std::vector<std::uint32_t> number_;  ///< by representative group: of its island in the present advance
+    std::vector<std::uint32_t> number_;                ///< by representative group: of its island in the present advance
     std::vector<std::vector<std::uint32_t>> members_;  ///< groups, by island; lists keep their memory
 };
 

@@ -113,8 +113,8 @@ void HeldIslands::collect_contacts(double from, double h, bool trial)
     std::size_t near = 0;
     const auto pair_of = [&](const FoundContact& f)
     { return contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world, near); };
-    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); }),
-               persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); });
+    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return !d.persists(); }),
+               persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return d.persists(); });
     const bool known = persists && from == 0 && is_current();
     if (!known || locates)
     {
