@@ -206,5 +206,5 @@ TEST_CASE("a heap whose islands change in each step does not gather memory")
     const std::size_t before = mallinfo2().uordblks;
     s.run(1.8);
     const double grown = static_cast<double>(mallinfo2().uordblks) - static_cast<double>(before);
-    CHECK(grown < 3e6);  // bytes; one system of 500 bodies takes 0.3e6
+    CHECK(grown < 4e6);  // bytes; without reuse of the systems, each of which takes 0.3e6, it is 4.8e6
 }

@@ -246,7 +246,7 @@ public:
     std::span<const PersistentPair> persistent() const override { return persistent_; }
     bool only_persistent() const override { return only_persistent_; }
     double margin() const override { return margin_; }
-    void add(const Contact& contact) override { out_->emplace_back(contact, detector_); }
+    void add(const Contact& contact) override { out_->push_back(FoundContact{contact, detector_}); }
     bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
     void took(double further_pairs) override { further_pairs_ += further_pairs; }
     double further_pairs() const { return further_pairs_; }

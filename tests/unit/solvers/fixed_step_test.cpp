@@ -305,7 +305,7 @@ TEST_CASE("the plugin declares the ladder")
         FAIL("no type Solver/" << name);
         return static_cast<const TypeInfo*>(nullptr);
     };
-    CHECK(registrar.types().size() == 10);
+    CHECK(registrar.types().size() == 11);
     for (const auto& [name, order] : {std::pair{"SemiImplicitEuler", 1},
                                       {"StoermerVerlet", 2},
                                       {"RungeKutta4", 4},

@@ -116,7 +116,7 @@ TEST_CASE("settings: types, parameters, entries of scripts; invalid ones are rep
     CHECK(has(refused(scene, "contakt.response=None"), "no component has the id 'contakt.response', did you mean 'contact.response'"));
     CHECK(has(refused(scene, "contact.response=Nobody"), "unknown type 'Response/Nobody', did you mean 'Response/None'"));
     CHECK(has(refused(scene, "solver=Nope"), "unknown type 'Solver/Nope'"));
-    CHECK(has(refused(scene, "solver=Nope"), "; it can be 'Solver/Automatic', 'Solver/DormandPrince54'"));
+    CHECK(has(refused(scene, "solver=Nope"), "; it can be 'Solver/Articulated', 'Solver/Automatic'"));
     CHECK(!has(refused(scene, "solver=Nope"), "Resolution/None"));
     CHECK(has(refused(scene, "solver=RungeKuta4"), "did you mean 'Solver/RungeKutta4'"));
     CHECK(has(refused(scene, "contact.response.restitutoin=1"), "did you mean 'restitution'"));
