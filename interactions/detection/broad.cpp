@@ -16,8 +16,8 @@ constexpr double kSlack = 0.1;
 constexpr double kSlackOfMargin = 2;
 /// A box that has become this many times as large as requested is replaced.
 constexpr double kMostSlack = 4;
-/// Members whose pairs are sorted in one job.
-constexpr std::size_t kMembersPerJob = 512;
+/// Members whose pairs one thread sorts at once.
+constexpr std::size_t kMembersPerPart = 512;
 /// m: no box extends further than this.
 constexpr double kLargest = 1e30;
 /// Half extents, along the axes of W, of a box with half extents h rotated by q.
@@ -146,13 +146,12 @@ void BroadPhase::sort_pairs(Workers* workers)
     for (const Pair& p : near_) sorted_[run_ends_[parts_[p.first].member]++] = p;  // a run's start becomes its end
     const auto before = [&](const Pair& x, const Pair& y)
     { return std::tuple(parts_[x.second].member, x.first, x.second) < std::tuple(parts_[y.second].member, y.first, y.second); };
-    const auto sort_runs = [&](std::size_t job)
+    const auto sort_runs = [&](std::size_t first, std::size_t end)
     {
-        const std::size_t first = job * kMembersPerJob, end = std::min(first + kMembersPerJob, members);
         for (std::size_t m = first, begin = m == 0 ? 0 : run_ends_[m - 1]; m < end; begin = run_ends_[m++])
             std::sort(sorted_.begin() + static_cast<std::ptrdiff_t>(begin), sorted_.begin() + run_ends_[m], before);
     };
-    run_jobs(workers, (members + kMembersPerJob - 1) / kMembersPerJob, sort_runs);
+    for_parts(workers, members, kMembersPerPart, sort_runs);
     near_.swap(sorted_);
     near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
 }

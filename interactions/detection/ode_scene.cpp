@@ -8,8 +8,8 @@ namespace plab::detection
 {
 namespace
 {
-/// Sizes of jobs. They do not depend on the number of threads. Contacts of kChunksAtOnce chunks wait to be delivered in order.
-constexpr std::size_t kMembersPerJob = 512, kPairsPerChunk = 128, kChunksAtOnce = 128;
+/// Sizes of parts. They do not depend on the number of threads. Contacts of kChunksAtOnce chunks wait to be delivered in order.
+constexpr std::size_t kMembersMoved = 512, kPairsPerChunk = 128, kChunksAtOnce = 128;
 
 /// Encodes the shapes of the two bodies and the feature within that pair of shapes. Numbers wrap around for bodies with more
 /// than 64 shapes; flush() keeps the features of one pair of bodies distinct even then.
@@ -153,13 +153,13 @@ void OdeScene::move_member(Member& m, const Bodies& bodies)
 void OdeScene::move_parts(const Bodies& bodies, bool all, Workers* workers)
 {
     // Poses are compared, since not only the solver moves bodies: requests and rewinds do so as well.
-    const auto move_some = [&](std::size_t job)
+    const auto move_some = [&](std::size_t begin, std::size_t end)
     {
-        for (std::size_t i = job * kMembersPerJob, end = std::min(i + kMembersPerJob, members_.size()); i < end; ++i)
+        for (std::size_t i = begin; i < end; ++i)
             if (Member& m = members_[i]; all || m.position != bodies.position[m.body] || m.orientation != bodies.orientation[m.body])
                 move_member(m, bodies);
     };
-    run_jobs(workers, (members_.size() + kMembersPerJob - 1) / kMembersPerJob, move_some);
+    for_parts(workers, members_.size(), kMembersMoved, move_some);
 }
 
 /// The host may name the active participants, so that an impact of two bodies costs no pass over all of them.
@@ -368,7 +368,7 @@ void OdeScene::query_near(const StepContext& context, const Bodies& bodies, Cont
     for (std::size_t first = 0; first < chunks; first += at_once)
     {
         const std::size_t count = std::min(at_once, chunks - first);
-        run_jobs(context.workers, count, [&](std::size_t k) { query_chunk(first + k, context, bodies, narrow_[k]); });
+        for_parts(context.workers, count, 1, [&](std::size_t k, std::size_t) { query_chunk(first + k, context, bodies, narrow_[k]); });
         for (std::size_t k = 0; k < count; ++k) deliver(narrow_[k], sink);
     }
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/box.h"
-#include "plab/workers.h"
+#include "plab/parts.h"
 
 namespace plab::detection
 {
@@ -26,14 +26,6 @@ struct Membership
 };
 
 inline bool may_meet(Membership a, Membership b) { return (a.between || b.between) && (a.dynamic || b.dynamic); }
-
-/// Runs job(0) .. job(count - 1), on the threads if there are any.
-template <class Job>
-void run_jobs(Workers* workers, std::size_t count, Job&& job)
-{
-    if (workers && workers->threads() > 1 && count > 1) return workers->run(count, job);
-    for (std::size_t i = 0; i < count; ++i) job(i);
-}
 
 class PairSearch
 {

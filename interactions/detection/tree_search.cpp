@@ -57,7 +57,7 @@ void TreeSearch::set_half_space(std::uint32_t part, const Vec3& normal, double o
 
 /// Runs job(i, searcher) for each i < count, and adds the pairs that they find in the order of jobs.
 template <class Job>
-void TreeSearch::run_jobs(std::size_t count, std::vector<PartPair>& pairs, Workers* workers, Job&& job)
+void TreeSearch::search_in_parts(std::size_t count, std::vector<PartPair>& pairs, Workers* workers, Job&& job)
 {
     const bool alone = !workers || workers->threads() < 2 || count < 2;
     if (searchers_.size() < (alone ? 1 : count)) searchers_.resize(alone ? 1 : count);
@@ -90,15 +90,15 @@ void TreeSearch::find_all(std::vector<PartPair>& pairs, Workers* workers)
 {
     pairs.clear();
     const auto tree_parts = tree_.divide_pairs(kTreeParts);
-    run_jobs(tree_parts.size(), pairs, workers,
-             [&](std::size_t k, Searcher& s)
-             {
-                 tree_.query_pairs(tree_parts[k], s.node_pairs,
-                                   [&](std::uint32_t i, std::uint32_t j)
-                                   {
-                                       if (may_meet(memberships_[i], memberships_[j])) s.pairs.push_back(std::minmax(i, j));
-                                   });
-             });
+    search_in_parts(tree_parts.size(), pairs, workers,
+                    [&](std::size_t k, Searcher& s)
+                    {
+                        tree_.query_pairs(tree_parts[k], s.node_pairs,
+                                          [&](std::uint32_t i, std::uint32_t j)
+                                          {
+                                              if (may_meet(memberships_[i], memberships_[j])) s.pairs.push_back(std::minmax(i, j));
+                                          });
+                    });
     add_of_half_spaces(bounded_, pairs);
 }
 
@@ -120,12 +120,12 @@ void TreeSearch::find_chosen(std::span<const std::uint32_t> parts, std::span<con
                         s.pairs.push_back(std::minmax(i, j));
                     });
     };
-    run_jobs((parts.size() + kBoxesPerJob - 1) / kBoxesPerJob, pairs, workers,
-             [&](std::size_t k, Searcher& s)
-             {
-                 const std::size_t first = k * kBoxesPerJob;
-                 for (const std::uint32_t i : parts.subspan(first, std::min(kBoxesPerJob, parts.size() - first))) search_for(i, s);
-             });
+    search_in_parts((parts.size() + kBoxesPerJob - 1) / kBoxesPerJob, pairs, workers,
+                    [&](std::size_t k, Searcher& s)
+                    {
+                        const std::size_t first = k * kBoxesPerJob;
+                        for (const std::uint32_t i : parts.subspan(first, std::min(kBoxesPerJob, parts.size() - first))) search_for(i, s);
+                    });
 }
 
 /// Enters the boxes that have changed into the tree; returns whether many have. Single boxes are reinserted, many are fitted where they

@@ -36,7 +36,7 @@ private:
         std::vector<geometry::BoxTree::NodePair> node_pairs;
     };
     template <class Job>
-    void run_jobs(std::size_t count, std::vector<PartPair>& pairs, Workers* workers, Job&& job);
+    void search_in_parts(std::size_t count, std::vector<PartPair>& pairs, Workers* workers, Job&& job);
     void note_moved(std::uint32_t part);
     bool refresh_tree();
     void find_all(std::vector<PartPair>& pairs, Workers* workers);
