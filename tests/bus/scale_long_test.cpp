@@ -10,8 +10,8 @@ using Clock = std::chrono::steady_clock;
 namespace
 {
 
-/// Share of real time. The goal is 1 %, which is not reached: 1.5 and 1.6 % were measured on a quiet machine.
-constexpr double kMostCost = 0.03;
+/// Share of real time. Not reached yet: 1.5 and 1.6 % were measured on a quiet machine.
+constexpr double kMostCost = 0.01;
 
 /// Processor time of the first thread of a process, s: of plabd the one that steps.
 double first_thread_seconds(int pid)
@@ -58,7 +58,7 @@ double frames_per_second(const link::Session& session, link::FrameReader& reader
 
 }  // namespace
 
-TEST_CASE("10,000 bodies at 60 Hz for 20 readers: the step thread pays below 3 % of real time, a stopped reader changes nothing")
+TEST_CASE("10,000 bodies at 60 Hz for 20 readers: the step thread pays below 1 % of real time, a stopped reader changes nothing")
 {
     Server server(field_of_bodies(), {"--rate", "real"});
     const int pid = server.process().pid();
