@@ -54,7 +54,7 @@ void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, 
         answer.context.dt = dt, answer.context.interruption = step_.frame.interruption;
         Impact impact;
         impact.mode = mode, impact.dt = dt, impact.contacts = impact_contacts_;
-        answer.call.impact = &impact;
+        answer.arguments.impact = &impact;
         const double before = book.work ? kinetic_energy(contacts) : 0.0;
         step_.meter.enter(step_.meter.of_component(response));
         step_.meter.ran(step_.world.component(response).table, Phase::Respond);

@@ -240,7 +240,7 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
     ComponentCall answer(step_, held.manager);
     answer.context.time = island.time, answer.context.dt = island.h, answer.context.interruption = island.interruption;
     if (trial) answer.context.events = nullptr;
-    answer.call.island = &island;
+    answer.arguments.island = &island;
     const double before = book.work ? held.motion.kinetic_energy() : 0.0;
     step_.meter.enter(step_.meter.of_component(held.manager));
     step_.meter.ran(world.component(held.manager).table, Phase::Solve);

@@ -58,7 +58,7 @@ void EventLocator::ask(const Candidate& candidate, Trial& trial)
 {
     const std::uint32_t resolution = contacts_.detectors()[candidate.detector].resolution;
     ComponentCall question(step_, resolution);
-    question.call.trial = &trial;
+    question.arguments.trial = &trial;
     const CostScope scope(step_.meter, step_.meter.of_component(resolution));
     question.run(Phase::Locate);
 }

@@ -61,8 +61,8 @@ struct StepState final : EventSink
         return out;
     }
 
-    /// A call with the host tables that most commands may see.
-    PhaseCall call() const
+    /// The host tables that most commands may see.
+    PhaseCall arguments() const
     {
         world::HostTables& host = world.host();
         PhaseCall out;

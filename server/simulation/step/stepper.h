@@ -14,6 +14,7 @@
 #include "simulation/events/event_locator.h"
 #include "simulation/shafts/coupling_watch.h"
 #include "simulation/step/sight.h"
+#include "world/command_call.h"
 
 namespace plab::simulation
 {
@@ -112,13 +113,12 @@ private:
     // stepper_build.cpp
     void connect_materials(Errors& errors);
     void connect_graph(Errors& errors);
-    Errors run_connect(const Block& block, PhaseCall call);
+    Errors run_connect(const Block& block, world::CommandCall& call);
     void rebuild_costs();
 
     // stepper.cpp
     void collect_cost();
-    void run_blocks(Phase phase, StepContext& context, PhaseCall& call);
-    void run_block(const Block& block, StepContext& context, PhaseCall& call);
+    void run_blocks(Phase phase, world::CommandCall& call);
 
     StepState step_;
     GroupMotion motion_{step_};

@@ -154,7 +154,6 @@ private:
         std::vector<Shortlist> shortlists;
     };
 
-    void run_force(const Selected& selected, PhaseCall& call, bool booked);
     void share_cost_of_rows();
 
     static Vec3 get(const std::vector<double>& v, std::size_t i) { return {v[i], v[i + 1], v[i + 2]}; }
