@@ -37,7 +37,7 @@ std::string check_rate(const std::string& text)
 double in_seconds(std::uint64_t time) { return static_cast<double>(time) * 1e-9; }
 
 /// False: the playback should end.
-bool obey(playback::Player& player, playback::Key key)
+bool handle_key(playback::Player& player, playback::Key key)
 {
     const Clock::time_point now = Clock::now();
     const playback::Pace& pace = player.pace();
@@ -86,7 +86,7 @@ Result<void> follow(const Context& c, playback::Player& player, playback::Termin
     {
         const Clock::time_point now = Clock::now();
         if (auto stepped = player.step(now); !stepped) return stepped;
-        for (const playback::Key key : keys.take(terminal.read())) goes_on = obey(player, key) && goes_on;
+        for (const playback::Key key : keys.take(terminal.read())) goes_on = handle_key(player, key) && goes_on;
         if (c.settings.duration && link::Seconds(now - begin).count() >= *c.settings.duration) goes_on = false;
         if (c.settings.count && player.sent() >= *c.settings.count) goes_on = false;
         show(line, player);

@@ -48,8 +48,8 @@ Json interaction_json(const simulation::Simulation& s, std::uint32_t i, const pu
                 {"cost_quartiles_ns", json_of(cost.last)},
                 {"cost_shared_by", cost.shared},
                 {"work", s.stepper().work()[i]},
-                {"made", s.stepper().contact_energy()[i].made},
-                {"lifted", s.stepper().contact_energy()[i].lifted},
+                {"created", s.stepper().contact_energy()[i].created},
+                {"created_by_correction", s.stepper().contact_energy()[i].by_correction},
                 {"error", error.value},
                 {"error_unit", error.unit},
                 {"error_meaning", error.meaning}};

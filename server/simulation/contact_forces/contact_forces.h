@@ -42,7 +42,7 @@ public:
     /// Whether any detector's contacts are forces.
     bool any() const { return any_; }
     /// Whether anything may touch by force in this step; after begin_step.
-    bool may_touch() const { return !near_.empty(); }
+    bool any_near() const { return !near_.empty(); }
     /// Finds the pairs that may meet within the step.
     void begin_step();
 

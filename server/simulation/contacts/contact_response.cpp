@@ -84,7 +84,7 @@ void ContactBook::book_impact(std::uint32_t response, const std::vector<FoundCon
     for (const FoundContact& f : contacts)
         if (bodies.motion[f.contact.a.index] == Motion::Kinematic || bodies.motion[f.contact.b.index] == Motion::Kinematic) return;
     (*book.work)[response] -= book.sign * work;
-    step_.contact_energy[response].made += book.sign * work;
+    step_.contact_energy[response].created += book.sign * work;
 }
 
 }  // namespace plab::simulation

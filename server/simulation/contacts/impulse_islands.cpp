@@ -98,7 +98,7 @@ void ImpulseIslands::book_rest(double work, WorkBook book)
     if (!(work > 0) || touching_.empty() || std::any_of(touching_.begin(), touching_.end(), driven)) return;
     const std::uint32_t response = contacts_.detectors()[touching_.front().detector].response;
     (*book.work)[response] -= book.sign * work;
-    step_.contact_energy[response].made += book.sign * work;
+    step_.contact_energy[response].created += book.sign * work;
 }
 
 void ImpulseIslands::keep_impulses(const std::vector<FoundContact>& contacts, double from, double h)

@@ -84,10 +84,10 @@ void Stepper::finish()
 
 void Stepper::draw()
 {
-    const Sight sight = sight_.view_of(step_.world);
+    const RenderScene render_scene = render_scene_.view_of(step_.world);
     world::CommandCall call(step_.context());
     call.context.time += step_.frame.step;
-    call.arguments.sight = &sight, call.arguments.images = images_;
+    call.arguments.render_scene = &render_scene, call.arguments.images = images_;
     run_blocks(Phase::Draw, call);
 }
 

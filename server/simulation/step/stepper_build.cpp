@@ -105,7 +105,7 @@ Result<void> Stepper::rebuild()
     locator_.reset();
     speed_system_.configure(step_.world, step_.schedule, step_.groups, step_.all_groups, step_.graph);
     rebuild_costs();
-    sight_.structure_changed();
+    render_scene_.structure_changed();
     return {};
 }
 

@@ -45,7 +45,7 @@ struct DivergenceMemory
     Tick gaining_since = -1;
     std::int64_t gaining_steps = 0;
     std::vector<double> start_work;          ///< J, by component
-    std::vector<double> start_made;          ///< J, by component; infinite once it was reported
+    std::vector<double> start_created;       ///< J, by component; infinite once it was reported
     std::vector<std::uint8_t> passive;       ///< by component: stores energy but supplies none
     std::vector<Growth> linear, spin, turn;  ///< by body, body, shaft
     std::vector<std::uint8_t> bodies_reported, shafts_reported;
