@@ -9,7 +9,7 @@
 namespace plab::test
 {
 
-/// A combination of algorithms that answers contacts: a resolution, and Manager/X or Response/Impulse.
+/// A combination of algorithms that answers contacts: a resolution, and a manager or Response/Impulse.
 struct Method
 {
     const char* resolution;

@@ -10,7 +10,7 @@
 ///   growth   the speed of a body or shaft has doubled kMostDoublings times in a row, each time within kQuickSteps steps, which no
 ///            resolved motion does.
 ///   contacts the event contact.gains_energy, once per manager or response: the energy that its contacts have created since counting
-///            began, although contacts can only dissipate, exceeds kMostMade S.
+///            began, although contacts can only dissipate, exceeds kMostCreated S.
 /// A kinetic energy that overflows is reported, too. Energies below E_f = sum 1/2 I (kSmallTurn/h)^2 are ignored: no body turns by a
 /// thousandth of a radian, or moves by a thousandth of its radius of gyration, in a step h. Non-finite motion is another event,
 /// state.not_finite.
