@@ -72,8 +72,13 @@ std::vector<std::string> parts_of(const std::string& name)
 
 std::string missing_identifier(const std::string& name, const Known& known)
 {
-    for (const std::string& part : parts_of(name))
-        if (!known.words.contains(part)) return "no code has the name " + part;
+    const std::vector<std::string> parts = parts_of(name);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+    {
+        if (!known.words.contains(parts[i])) return "no code has the name " + parts[i];
+        const auto type = i > 0 ? known.members.find(parts[i - 1]) : known.members.end();
+        if (type != known.members.end() && !type->second.contains(parts[i])) return parts[i - 1] + " has no " + parts[i];
+    }
     return {};
 }
 
@@ -103,6 +108,7 @@ void each(const std::string& text, const std::regex& pattern, Check check)
 
 Source read_source(const std::string& text, const std::string& file)
 {
+    static const std::regex declaration("\\b(struct|class) (?:alignas\\([^)]*\\) )?([A-Za-z_][A-Za-z0-9_]*)(?! *;)");
     static const std::regex include("^ *# *include *[<\"]([^>\"]+)[>\"]");
     Source out;
     std::istringstream in(text);
@@ -115,6 +121,7 @@ Source read_source(const std::string& text, const std::string& file)
         if (comment < line.size()) out.comments.push_back({line.substr(comment + 2), file, number});
         line.resize(comment);
         add_words(line, out.words);
+        for (std::sregex_iterator at(line.begin(), line.end(), declaration), end; at != end; ++at) out.types.insert((*at)[2]);
         if (std::smatch header; std::regex_search(line, header, include)) out.included_headers.insert(header[1]);
     }
     return out;
@@ -177,6 +184,7 @@ Known known_in(const std::string& root, std::vector<Comment>& comments)
         {
             Source source = read_source(text_of_file(root + "/" + path), path);
             comments.insert(comments.end(), source.comments.begin(), source.comments.end());
+            for (const std::string& type : source.types) out.members[type].insert(source.words.begin(), source.words.end());
             if (path != kExceptions) out.words.merge(source.words);
             out.included_headers.merge(source.included_headers);
         }

@@ -1,6 +1,7 @@
 /// What comments of the sources name, and the names that the code has.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct Source
     std::vector<Comment> comments;
     std::set<std::string> words;             ///< identifiers and keywords of the code, and the words of its string literals
     std::set<std::string> included_headers;  ///< as the source writes them
+    std::set<std::string> types;             ///< classes, structs and enumerations that it declares
 };
 
 Source read_source(const std::string& text, const std::string& file);
@@ -35,6 +37,7 @@ struct Known
     Declared declared;
     std::set<std::string> words;  ///< of all code, scenes, scripts and build files, and the names of files without their ending
     std::set<std::string> included_headers;
+    std::map<std::string, std::set<std::string>> members;  ///< of a type: the words of the files that declare it
 };
 
 /// The names in a comment that do not exist, each with the reason. Checked are:

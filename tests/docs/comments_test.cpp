@@ -50,6 +50,7 @@ Known made_up_names()
     out.declared.reference = "# Types\n\n## Response\n\n### Response/None\n\n- exchangeable within: `Response`\n";
     complete(out.declared);
     add_words("class ContactBook { void run_blocks(); };", out.words);
+    out.members = {{"ContactBook", {"run_blocks"}}}, out.words.insert("swaps");
     out.included_headers = {"expat.h"};
     return out;
 }
@@ -90,6 +91,7 @@ TEST_CASE("a comment that names what does not exist is found out")
     CHECK(only("/// calls runs()") == std::vector<std::string>{"1: no code has the name runs"});
     CHECK(only("/// a ContactBuk") == std::vector<std::string>{"1: no code has the name ContactBuk"});
     CHECK(only("/// ContactBook::walk") == std::vector<std::string>{"1: no code has the name walk"});
+    CHECK(only("/// ContactBook::swaps()") == std::vector<std::string>{"1: ContactBook has no swaps"});
 }
 
 TEST_CASE("files, types, stages, tests and identifiers that comments name exist")

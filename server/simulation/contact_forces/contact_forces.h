@@ -19,6 +19,9 @@
 ///
 /// Groups whose bodies may touch by force within the step advance together as an island. An island that contains persistent hard
 /// contacts as well is advanced by the time stepping of those, with the springs as forces (contact_force_advance.cpp).
+///
+/// Sources: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.6 (discontinuous right-hand sides: locate the switch and
+/// restart there); Cundall, Strack, Geotechnique 29 (1979) (contacts as springs and dampers with a tangential history).
 #pragma once
 
 #include <vector>

@@ -73,7 +73,7 @@ void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, 
 }
 
 /// Books the work of an impact. Without kinematic bodies an impact cannot create energy; any excess is an error of the response and goes to
-/// ContactEnergy::made instead.
+/// ContactEnergy::created instead.
 void ContactBook::book_impact(std::uint32_t response, const std::vector<FoundContact>& contacts, ImpactMode mode, double work,
                               WorkBook book)
 {

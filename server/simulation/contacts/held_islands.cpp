@@ -260,7 +260,7 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
 
 /// Books the work of the manager. Contacts dissipate energy, so on bodies that nothing else drives their work must not be positive, apart
 /// from what position correction lifts. Energy that the method creates beyond that is not booked as work, so it remains visible as the
-/// unexplained part of the ledger (ContactEnergy::made).
+/// unexplained part of the ledger (ContactEnergy::created).
 void HeldIslands::book_contacts(HeldIsland& island, double gained, WorkBook book)
 {
     const Bodies& bodies = step_.world.host().bodies;

@@ -88,7 +88,7 @@ void ImpulseIslands::update_touching(double h)
 }
 
 /// Corrects the booked work of resting contacts. Along the actual displacements it must not be positive if no kinematic body takes part.
-/// Any excess is energy that the method created: it is moved to ContactEnergy::made, so that it remains unexplained in the ledger.
+/// Any excess is energy that the method created: it is moved to ContactEnergy::created, so that it remains unexplained in the ledger.
 /// ContactBook::respond() has booked the impulses at their mean velocities.
 void ImpulseIslands::book_rest(double work, WorkBook book)
 {

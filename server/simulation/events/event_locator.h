@@ -19,6 +19,9 @@
 /// Only the candidate at the front of the queue is located more precisely. If its time becomes later, it goes back into the queue; if it
 /// is still the earliest, it is the next event. An answer changes the trajectories of the rewound groups, so it raises their version
 /// number: candidates made with an older version are stale and are dropped, and the pairs of the rewound bodies are detected again.
+///
+/// Sources: Mirtich, Impulse-based Dynamic Simulation, PhD thesis (1996), chapter 2 (queue of lower bounds, conservative advancement);
+/// Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH (2000) (rewinding only what an impact affects).
 #pragma once
 
 #include <optional>
