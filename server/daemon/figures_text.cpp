@@ -1,6 +1,6 @@
 #include "daemon/figures_text.h"
 
-#include "model/exact_text.h"
+#include "model/numbers.h"
 #include "publish/figures.h"
 
 namespace plab::daemon

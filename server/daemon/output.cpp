@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/figures_text.h"
-#include "model/exact_text.h"
+#include "model/numbers.h"
 #include "publish/error_probe.h"
 #include "publish/figures.h"
 #include "world/host_tables.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "model/exact_text.h"
+#include "model/numbers.h"
 #include "study/write.h"
 
 namespace plab::study
