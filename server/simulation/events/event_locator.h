@@ -88,7 +88,7 @@ private:
         DistanceSample at_end;   ///< at the end of the step; taken after a few advances
         Vec3 turn;               ///< rad/s: angular velocity of the normal between the last two samples
         double clear = 0;        ///< s: from the present sample on, certain not to meet for so long
-        double let_go = 0;       ///< fraction of the rest of the step that the next advance without a guarantee covers
+        double uncertified = 0;  ///< fraction of the rest of the step that the next advance without a guarantee covers
         bool touches = false;    ///< the gap is zero within rounding
         bool separates = false;  ///< the gap grows by more than rounding
         bool bracketed = false;  ///< the pair overlaps at the end of the step
@@ -183,7 +183,7 @@ private:
     void search(Candidate& candidate);
     bool meets(Candidate& candidate);
     std::optional<bool> decide_now(Candidate& candidate, Advancement& a);
-    void let_go(Advancement& a) const;
+    void extend_uncertified(Advancement& a) const;
     void fill_trial(const Candidate& candidate, Advancement& a);
     std::optional<bool> choose_time(Candidate& candidate, Advancement& a);
     bool answered_at(const Candidate& candidate, double time) const;

@@ -25,7 +25,7 @@ constexpr double kNothing = 1e-300;
 constexpr double kNoGapRate = 1e-14;
 /// If a pair touches and does not close, and no bound says for how long it stays so, it is advanced by this fraction of the rest of the
 /// piece without a guarantee; twice as far each time, so that the end of the piece is reached after about twenty queries.
-constexpr double kLetGo = 0x1p-20;
+constexpr double kUncertified = 0x1p-20;
 /// Times closer than this fraction of the step are not told apart.
 constexpr double kShortest = 0x1p-48;
 /// Number of advancement steps towards a contact before the end of the piece is sampled, to find a bracket.
@@ -290,15 +290,15 @@ std::optional<bool> EventLocator::decide_now(Candidate& candidate, Advancement& 
     if (!a.touches && a.clear < kShortest * step && sample.rate < 0) return true;
     // A pair that separates is advanced further; so is one that no force presses together, although no bound excludes that it sinks in.
     if (a.touches && !a.separates && presses(candidate, sample)) return true;
-    if (a.touches) let_go(a);
+    if (a.touches) extend_uncertified(a);
     return {};
 }
 
 /// Extends the time in which the pair is taken to be clear beyond what the bound guarantees.
-void EventLocator::let_go(Advancement& a) const
+void EventLocator::extend_uncertified(Advancement& a) const
 {
-    a.clear = std::max(a.clear, std::min(a.let_go, 1.0) * (step_.frame.step - a.sample.time));
-    a.let_go *= 2;
+    a.clear = std::max(a.clear, std::min(a.uncertified, 1.0) * (step_.frame.step - a.sample.time));
+    a.uncertified *= 2;
 }
 
 /// Fills the question to the resolution: the present sample as the clear end of a bracket, and an overlap at the end of the step, if there
@@ -325,7 +325,7 @@ std::optional<bool> EventLocator::choose_time(Candidate& candidate, Advancement&
     {
         // A pair that separates has no impact, however narrow its gap still is: go on.
         if (!contacts_.detectors()[candidate.detector].responds || sample.rate < 0) return true;
-        let_go(a);
+        extend_uncertified(a);
         a.trial.next = sample.time + a.clear;
     }
     if (a.trial.decision == Trial::Decision::GiveUp) return found_when_given_up(candidate, sample);
@@ -339,7 +339,7 @@ std::optional<bool> EventLocator::choose_time(Candidate& candidate, Advancement&
 bool EventLocator::meets(Candidate& candidate)
 {
     Advancement a;
-    a.let_go = kLetGo;
+    a.uncertified = kUncertified;
     a.trial.end = a.trial.step = step_.frame.step;
     a.sample = sample_at(candidate, candidate.time);
     if (settle_at_begin(candidate, a.sample)) return !candidate.nothing;
