@@ -144,6 +144,8 @@ std::vector<MissingName> missing_names(const Comment& comment, const Known& know
     static const std::regex quoted("`([^`]+)`"), identifier(name + "(::~?" + name + ")*(\\(\\))?");
     static const std::regex path(
         "(?:^|[^A-Za-z0-9_./*}-])([A-Za-z0-9_][A-Za-z0-9_./-]*\\.(?:h|cpp|md|xml|idl|cmake|lua|sh|py))(?![A-Za-z0-9_*{])");
+    static const std::regex folder(
+        before + "((?:server|interactions|clients|idl|scenes|tests|docker)/[a-z0-9_/]*[a-z0-9_])(?![A-Za-z0-9_*{.-]|/[A-Z])");
     static const std::regex type("(?:^|[^A-Za-z0-9_/.])((?:[A-Z][A-Za-z0-9]*/)+[A-Z][A-Za-z0-9]*)");
     static const std::regex call("(" + name + "(?:::~?" + name + ")*\\(\\)|" + name + "(?:::" + name + ")+)");
     static const std::string snake = "[a-z][a-z0-9]{2,}(?:_[a-z][a-z0-9]{2,})+_?", member = "[a-z][a-z0-9]{2,}_",
@@ -163,6 +165,7 @@ std::vector<MissingName> missing_names(const Comment& comment, const Known& know
          });
     const std::string rest = std::regex_replace(comment.text, quoted, "` `");
     each(rest, path, [&](const std::string& file) { add(file, missing_file(file, comment, known)); });
+    each(rest, folder, [&](const std::string& id) { add(id, missing({id, comment.file, comment.line}, known.declared)); });
     each(rest, type, [&](const std::string& id) { add(id, missing({id, comment.file, comment.line}, known.declared)); });
     each(rest, call, [&](const std::string& id) { add(id, missing_identifier(id, known)); });
     if (rest.find(" = ") == std::string::npos) each(rest, word, [&](const std::string& id) { add(id, missing_identifier(id, known)); });

@@ -42,7 +42,7 @@ struct Known
 
 /// The names in a comment that do not exist, each with the reason. Checked are:
 /// - in backticks: what documents are checked for (named_things.h), and identifiers of the code;
-/// - names of files with their ending, and component types: `Kind/Name`;
+/// - names of files with their ending, folders by their path from the root, and component types: `Kind/Name`;
 /// - identifiers that cannot be English: with "::" or "()" or two capitals (ContactBook, kNothing), or of words of three letters or more
 /// that
 ///   are joined or followed by underscores (run_blocks, swept_). Not in a line with an equation, where such names are symbols.

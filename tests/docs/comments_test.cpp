@@ -83,6 +83,7 @@ TEST_CASE("a comment that names what does not exist is found out")
     const auto only = [&](const char* text) { return complaints_about(text, known); };
     CHECK(only("\n// see bush.h\n") == std::vector<std::string>{"2: no file or folder is called bush.h"});
     CHECK(only("// (step/bush.h)") == std::vector<std::string>{"1: no file or folder is called step/bush.h"});
+    CHECK(only("// in tests/walk)") == std::vector<std::string>{"1: no file or folder is called tests/walk"});
     CHECK(only("// `server/walk`") == std::vector<std::string>{"1: no file or folder is called server/walk"});
     CHECK(only("// of Response/Some.") == std::vector<std::string>{"1: no type, family or command is called Response/Some"});
     CHECK(only("// `Stage/Stop`") == std::vector<std::string>{"1: no stage is called Stage/Stop"});
