@@ -33,7 +33,7 @@ void run_force_laws(world::World& world, std::uint32_t response, const StepConte
 {
     Impact impact;
     impact.dt = 1, impact.contacts = contacts;
-    world::CommandCall call(context);
+    world::CommandCall call{context, {}};
     call.arguments.bodies = &bodies, call.arguments.wrenches = &wrenches, call.arguments.impact = &impact;
     call.select(world.table_of(response));
     (void)call.run(Phase::Touch, Rows(&world.component(response).row, 1));  // laws report trouble as events

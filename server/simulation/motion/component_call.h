@@ -11,7 +11,7 @@ namespace plab::simulation
 class ComponentCall : public world::CommandCall
 {
 public:
-    ComponentCall(StepState& step, const world::Table& table, Row row) : CommandCall(step.context(), step.arguments()), row_(row)
+    ComponentCall(StepState& step, const world::Table& table, Row row) : CommandCall{step.context(), step.arguments()}, row_(row)
     {
         context.events = &step, context.workers = &step.workers;
         select(table);

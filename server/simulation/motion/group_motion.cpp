@@ -70,7 +70,7 @@ bool GroupMotion::run_solver(GroupSystem& system, std::uint32_t solver, double f
 
 bool GroupMotion::call_solver(GroupSystem& system, std::uint32_t solver, const CommandInfo& command)
 {
-    world::CommandCall call(system.context());
+    world::CommandCall call{system.context(), {}};
     call.arguments.system = &system;
     call.select(step_.world.table_of(solver));
     return static_cast<bool>(call.run(command, Rows(&step_.world.component(solver).row, 1)));

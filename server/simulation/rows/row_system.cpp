@@ -42,7 +42,7 @@ public:
     void constrain(const StepContext& given, RowSink& sink) override
     {
         world::HostTables& host = world_->host();
-        world::CommandCall call(given);
+        world::CommandCall call{given, {}};
         PhaseCall& to = call.arguments;
         to.bodies = &host.bodies, to.shafts = &host.shafts, to.shapes = &host.shapes, to.materials = &host.materials;
         to.quantities = &host.quantities, to.rows_out = &sink;

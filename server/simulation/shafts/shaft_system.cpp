@@ -62,7 +62,7 @@ void ShaftSystem::set_part(std::uint32_t shaft, std::uint32_t part)
 CouplingReport ShaftSystem::sweep(Part& part, const StepContext& outer)
 {
     if (part.couplings.empty()) return {};
-    world::CommandCall call(outer);
+    world::CommandCall call{outer, {}};
     call.arguments.shaft_motion = &part.coupling;
     const auto& blocks = schedule_->of(Phase::Couple);
     return part.coupling.solve(

@@ -43,7 +43,7 @@ void Stepper::save_start() { motion_.save_start(); }
 void Stepper::drive()
 {
     changes_.clear();
-    world::CommandCall call(step_.context(), step_.arguments());
+    world::CommandCall call{step_.context(), step_.arguments()};
     call.context.changes = &changes_, call.context.interruption = interruption_;
     run_blocks(Phase::Drive, call);
     if (!changes_.empty() && apply_changes_ && !step_.frame.give_up()) apply_changes_(changes_owner_, changes_);
@@ -76,7 +76,7 @@ void Stepper::finish_contacts()
 
 void Stepper::finish()
 {
-    world::CommandCall call(step_.context(), step_.arguments());
+    world::CommandCall call{step_.context(), step_.arguments()};
     call.context.time += step_.frame.step;
     call.arguments.reactions = &motion_.reactions(), call.arguments.row_reports = &motion_.row_reports();
     run_blocks(Phase::Finish, call);
@@ -85,7 +85,7 @@ void Stepper::finish()
 void Stepper::draw()
 {
     const RenderScene render_scene = render_scene_.view_of(step_.world);
-    world::CommandCall call(step_.context());
+    world::CommandCall call{step_.context(), {}};
     call.context.time += step_.frame.step;
     call.arguments.render_scene = &render_scene, call.arguments.images = images_;
     run_blocks(Phase::Draw, call);

@@ -84,28 +84,27 @@ void GroupSystem::run_forces(double weight)
     // is timed.
     constexpr std::uint32_t kOneOf = 8;
     const std::uint32_t weight_of_time = booked ? 1 : (scratch.evaluations % kOneOf == 0 ? kOneOf : 0);
-    world::CommandCall call(context_);
-    PhaseCall& to = call.arguments;
+    PhaseCall& to = call_.arguments;
     to.bodies = &host.bodies, to.shafts = &host.shafts, to.quantities = &host.quantities, to.shapes = &host.shapes;
     to.materials = &host.materials, to.wrenches = &wrenches;
     for (std::size_t k = 0; k < selected_count_; ++k)
     {
         const Selected& s = selected_[k];
-        call.select(*frame_.world->tables()[s.block->table]);
-        call.context.shortlists = s.shortlists;
-        run_measured(call, *s.block, s.rows, scratch.meter(), weight_of_time);
+        call_.select(*frame_.world->tables()[s.block->table]);
+        call_.context.shortlists = s.shortlists;
+        run_measured(call_, *s.block, s.rows, scratch.meter(), weight_of_time);
         if (!booked) continue;
-        const double share = book_.sign * weight * context_.dt;
+        const double share = book_.sign * weight * call_.context.dt;
         for (const Row row : s.rows)
         {
-            const std::uint32_t component = call.context.component_of_row[row];
+            const std::uint32_t component = call_.context.component_of_row[row];
             (*book_.work)[component] += share * scratch.power[component];
             scratch.power[component] = 0;
         }
     }
     if (!extra_) return;
-    extra_->add(context_, wrenches);
-    if (booked) extra_->book(context_, *book_.work, scratch.power, book_.sign * weight * context_.dt);
+    extra_->add(call_.context, wrenches);
+    if (booked) extra_->book(call_.context, *book_.work, scratch.power, book_.sign * weight * call_.context.dt);
 }
 
 }  // namespace plab::simulation
