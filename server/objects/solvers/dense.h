@@ -1,4 +1,4 @@
-/// Dense matrices: storage, products and factorisation. dense.cpp computes with Eigen, which this header does not show, because Eigen would
+/// Dense matrices: products and factorisation. dense.cpp computes with Eigen, which this header does not show, because Eigen would
 /// add two seconds to every source that includes it (dense_view.h). Sums have one order on every processor and with every compiler
 /// (server/docs/determinism.md).
 /// Source: G. Golub, C. Van Loan, Matrix computations, chapter 3 (blocked elimination; scaling of rows).
@@ -9,25 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "square_matrix.h"
+
 namespace plab::solvers
 {
-
-/// An n x n matrix, column-major. Keeps its memory when it is resized.
-template <class T>
-class SquareMatrix
-{
-public:
-    void resize(std::size_t n) { n_ = n, a_.resize(n * n); }
-    std::size_t size() const { return n_; }
-    T& operator()(std::size_t r, std::size_t c) { return a_[c * n_ + r]; }
-    const T& operator()(std::size_t r, std::size_t c) const { return a_[c * n_ + r]; }
-    std::span<T> all() { return a_; }
-    std::span<const T> all() const { return a_; }
-
-private:
-    std::size_t n_ = 0;
-    std::vector<T> a_;
-};
 
 using Complex = std::complex<double>;
 

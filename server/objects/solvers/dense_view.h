@@ -1,8 +1,8 @@
 /// Eigen views of square matrices. To be included by sources only, because it includes Eigen.
 #pragma once
 
-#include "dense.h"
 #include "plab/eigen.h"
+#include "square_matrix.h"
 
 namespace plab::solvers
 {
