@@ -1,9 +1,8 @@
 #include "plab/plugin.h"
 
 #include "airflow.h"
-#include "drag.h"
 #include "gravity.h"
-#include "load.h"
+#include "loads.h"
 
 PLAB_PLUGIN("fields", registrar)
 {

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "plab/number_text.h"
-#include "speculative.h"
 
 namespace plab::resolution
 {

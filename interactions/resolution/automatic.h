@@ -13,7 +13,7 @@
 /// names it and `reason` says why; resolution.chosen reports each change.
 #pragma once
 
-#include "root.h"
+#include "searches.h"
 
 namespace plab::resolution
 {

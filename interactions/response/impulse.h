@@ -1,4 +1,4 @@
-/// Response/None and Response/Impulse: what happens to bodies that touch.
+/// Response/None, Response/Impulse and Response/Automatic: impulses at the instant of an impact, and over a step where contacts persist.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 namespace plab::response
 {
 
-/// A sensor: contacts are detected and reported, and bodies pass through one another.
+/// Response/None, a sensor: contacts are detected and reported, and bodies pass through one another. The host reports them by itself.
 struct NoneRows
 {
     void describe(Schema&) {}
 };
-/// Phase::Respond. Contacts are marked as resting, without impulse, so that they are not located again.
 
+/// Response/Impulse: the impact law (impact_law.h) for contacts that close, friction cones (cone_solver.h) for those that persist.
 struct ImpulseRows
 {
     Column<double> friction, restitution;  // 1
@@ -48,5 +48,21 @@ struct ImpactSettings
 void respond_impact(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact);
 /// Persistent contacts over dt: see README, "Resting contacts".
 void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact);
+
+/// Response/Automatic: the impact law of Response/Impulse, and a manager for contacts that persist.
+///
+/// Impacts that a resolution locates are answered one pair after the other, in the order in which they happen (Newton's cradle passes its
+/// momentum on). Everything else is left to the manager: bodies that rest on one another, and all impacts of a step whose resolution does
+/// not locate them.
+struct AutomaticRows
+{
+    ImpulseRows impulse;
+    Column<Ref> manager;
+
+    void describe(Schema& schema);
+};
+
+/// Phase::Respond.
+void respond_automatically(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Impact& impact);
 
 }  // namespace plab::response

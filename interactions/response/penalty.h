@@ -7,6 +7,9 @@
 /// solver can integrate it with its own order, but only in steps much shorter than the half period of the spring, pi sqrt(m /
 /// k). The host therefore splits a step into substeps (steps_per_contact) while something touches. Equations: README, "Contacts
 /// as forces".
+/// Sources: P. Cundall, O. Strack, A discrete numerical model for granular assemblies, Geotechnique 29 (1979) 47 (both springs and the
+/// limit of the second); K. Hunt, F. Crossley, Coefficient of restitution interpreted as damping in vibroimpact, J. Appl. Mech. 42 (1975)
+/// 440.
 #pragma once
 
 #include <cstdint>

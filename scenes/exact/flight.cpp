@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "exact/closed_form.h"
-#include "exact/elliptic.h"
+#include "exact/motions.h"
 #include "model/values.h"
 #include "plab/rotation.h"
 #include "world/principal_axes.h"

@@ -1,8 +1,8 @@
 // One object on one linear spring: written in a script, declared between two points, along a slider or about an axle.
 #include <cmath>
 
-#include "exact/damped.h"
 #include "exact/facts.h"
+#include "exact/motions.h"
 #include "model/numbers.h"
 
 namespace plab::exact

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "exact/facts.h"
-#include "exact/pendulum_motion.h"
+#include "exact/motions.h"
 #include "model/numbers.h"
 #include "plab/rotation.h"
 

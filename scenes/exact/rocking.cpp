@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "exact/facts.h"
-#include "exact/housner.h"
-#include "exact/pendulum_motion.h"
+#include "exact/motions.h"
 #include "model/numbers.h"
 #include "plab/rotation.h"
 

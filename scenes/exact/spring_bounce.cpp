@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "exact/damped.h"
 #include "exact/facts.h"
+#include "exact/motions.h"
 #include "model/numbers.h"
 
 namespace plab::exact

@@ -10,6 +10,7 @@
 #include "link/caller.h"
 #include "link/catalogue.h"
 #include "support/process.h"
+#include "support/text.h"
 
 namespace plab::test
 {
@@ -106,8 +107,6 @@ inline Outcome control(const Server& server, std::vector<std::string> arguments)
     command.insert(command.end(), arguments.begin(), arguments.end());
     return run(command);
 }
-
-inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 inline std::string reasons(const link::Reply& reply)
 {

@@ -46,7 +46,7 @@ std::string read(const std::string& file)
     return text.str();
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using plab::test::has;
 
 const std::string kScene = quoted(std::string(PLAB_SOURCE_DIR) + "/scenes/fan_and_balloons.xml");
 

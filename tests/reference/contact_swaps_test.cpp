@@ -1,16 +1,16 @@
 // Responses of different kinds exchanged under resting and flying bodies: H1 to H4 of the catalogue of reference problems.
+#include "support/gravity.h"
 #include "support/scene.h"
 
 using namespace plab;
 using namespace plab::simulation;
 using plab::test::first_error;
+using plab::test::kG;
 using plab::test::near;
 using plab::test::Scene;
 
 namespace
 {
-
-constexpr double kG = 9.81;
 
 /// A box of 1 kg over a floor, friction 0.5.
 std::string box(const std::string& response, const std::string& more = "position=\"0 0 0.1\"")

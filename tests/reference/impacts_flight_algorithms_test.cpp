@@ -3,13 +3,14 @@
 
 #include "impacts.h"
 #include "motion.h"
+#include "support/gravity.h"
 
 using namespace plab;
 using namespace plab::test;
 
 namespace
 {
-constexpr double kG = 9.81, kLinear = 1e7, kHertz = 1e9;
+constexpr double kLinear = 1e7, kHertz = 1e9;
 
 /// s: duration of the contact of 10 kg that have fallen 5 m. Linear: z'' = -g - k z / m, z' = -v at z = 0. Hertz: by quadrature,
 /// 30 digits.

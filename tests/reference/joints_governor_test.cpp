@@ -51,17 +51,17 @@ double height(const SolverAlgorithm& algorithm, int steps, double until)
     return s.vec("sleeve", "position").z;
 }
 
-struct Run
+struct GovernorRun
 {
     double height = 0, spin = 0, turned = 0;  ///< errors after 10 s: m, rad/s, rad
     std::uint64_t evaluations = 0;
     double cost = 0;  ///< s of processor time
 };
-Run ten_seconds(const SolverAlgorithm& algorithm, int steps)
+GovernorRun ten_seconds(const SolverAlgorithm& algorithm, int steps)
 {
     Scene s(governor(algorithm), dt(steps));
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    Run run;
+    GovernorRun run;
     const std::clock_t begin = std::clock();
     for (int i = 0; i < 10 * steps; ++i)
     {
@@ -84,8 +84,8 @@ const std::string kLoose = "relative_tolerance='1e-6' absolute_tolerance='1e-8'"
 
 TEST_CASE("B6: a stiff governor with error control, 10 s: a millionth of a metre, by the stiff solver with the fewest evaluations")
 {
-    const Run radau = ten_seconds({"Radau5", kLoose}, 2),
-              pair = ten_seconds({"DormandPrince54", "relative_tolerance='1e-4' absolute_tolerance='1e-6'"}, 20);
+    const GovernorRun radau = ten_seconds({"Radau5", kLoose}, 2),
+                      pair = ten_seconds({"DormandPrince54", "relative_tolerance='1e-4' absolute_tolerance='1e-6'"}, 20);
     CHECK(radau.height < 8e-7);
     CHECK(radau.spin < 2e-6);
     CHECK(radau.turned < 5e-8);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "support/gravity.h"
 #include "support/joints.h"
 
 using namespace plab;
@@ -9,8 +10,6 @@ using namespace plab::test;
 
 namespace
 {
-
-constexpr double kG = 9.81;
 
 std::string manager(const std::string& type = "Direct") { return "<component id='manager' type='Manager/" + type + "'/>"; }
 std::string shape(const std::string& id, const std::string& type, const std::string& more)
@@ -28,7 +27,7 @@ std::string contacts(const std::string& between, const std::string& law, const s
            "<component id='contact' type='CDetection/ODE' between='" + between + "' against='" + against +
            "' resolution='Resolution/LocalRoot' response='response'/>";
 }
-std::string shaft(const std::string& id, double inertia, const std::string& more = "")
+std::string held_shaft(const std::string& id, double inertia, const std::string& more = "")
 {
     return "<component id='" + id + "' type='State/Shaft' inertia='" + text(inertia) + "' " + more + "/>";
 }
@@ -160,7 +159,7 @@ TEST_CASE("a rope is a limit of distance: it is slack up to its length, then it 
 TEST_CASE("a motor with a largest effort exerts that until it has reached its speed, and yields to a larger load")
 {
     // 4 N m on 2 kg m^2: 2 rad/s^2, up to 3 rad/s.
-    Scene s(solver_is("RungeKutta4") + shaft("rotor", 2) + manager() +
+    Scene s(solver_is("RungeKutta4") + held_shaft("rotor", 2) + manager() +
                 "<component id='motor' type='Constraint/Motor' b='rotor' speed='3' max_effort='4' manager='manager'/>",
             dt(100));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -172,7 +171,7 @@ TEST_CASE("a motor with a largest effort exerts that until it has reached its sp
     CHECK(near(s.spin("rotor"), 3, 1e-12));
     CHECK(std::fabs(s.vec("motor", "torque").x) < 1e-12);
 
-    Scene weak(solver_is("RungeKutta4") + shaft("rotor", 2) + load("rotor", -10) + manager() +
+    Scene weak(solver_is("RungeKutta4") + held_shaft("rotor", 2) + load("rotor", -10) + manager() +
                    "<component id='motor' type='Constraint/Motor' b='rotor' speed='3' max_effort='4' manager='manager'/>",
                dt(100));
     REQUIRE_MESSAGE(weak.loaded(), weak.error());
@@ -203,9 +202,9 @@ TEST_CASE("a body that rests on the only limit of its slider, at 0, does not mov
 
 TEST_CASE("limits and weak motors without a manager are refused, and the message says what would be accepted")
 {
-    const Scene weak(shaft("rotor", 2) + "<component id='motor' type='Constraint/Motor' b='rotor' max_effort='4'/>");
+    const Scene weak(held_shaft("rotor", 2) + "<component id='motor' type='Constraint/Motor' b='rotor' max_effort='4'/>");
     CHECK(weak.error().find("a finite max_effort needs a manager") != std::string::npos);
-    const Scene loose(shaft("rotor", 2) + "<component id='stop' type='Constraint/Limit' b='rotor' upper='4'/>");
+    const Scene loose(held_shaft("rotor", 2) + "<component id='stop' type='Constraint/Limit' b='rotor' upper='4'/>");
     CHECK(loose.error().find("manager") != std::string::npos);
 }
 

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "reference/pendulums.h"
+#include "support/gravity.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -9,17 +10,15 @@ using namespace plab::test;
 namespace
 {
 
-constexpr double kG = 9.81;
-
-struct Run
+struct PendulumRun
 {
     double error = 0, drift = 0;
 };
-Run swing(const std::string& joint, const std::string& solver, int per_second)
+PendulumRun swing(const std::string& joint, const std::string& solver, int per_second)
 {
     Scene s(pendulum(solver_is(solver), joint), dt(per_second));
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    Run run;
+    PendulumRun run;
     for (int i = 0; i < 10 * per_second; ++i)
     {
         s.step();
@@ -36,7 +35,7 @@ TEST_CASE("E1: a pendulum satisfies its joint to rounding, and the solver keeps 
     for (const std::string joint : {"Distance", "Ball", "Hinge"})
     {
         CAPTURE(joint);
-        const Run coarse = swing(joint, "RungeKutta4", 400), fine = swing(joint, "RungeKutta4", 800);
+        const PendulumRun coarse = swing(joint, "RungeKutta4", 400), fine = swing(joint, "RungeKutta4", 800);
         CAPTURE(coarse.error);
         CAPTURE(fine.error);
         CHECK(coarse.drift < 1e-14);

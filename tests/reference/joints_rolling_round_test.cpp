@@ -7,7 +7,8 @@
 //                                                        the radius where z = 0
 #include <numbers>
 
-#include "exact/pendulum_motion.h"
+#include "exact/motions.h"
+#include "support/gravity.h"
 #include "support/joints.h"
 
 using namespace plab;
@@ -15,7 +16,6 @@ using namespace plab::test;
 
 namespace
 {
-constexpr double kG = 9.81;
 
 std::string rolling(const std::string& more) { return "<component id='rolls' type='Constraint/Rolling' b='ball' " + more + "/>"; }
 std::string ball(const Vec3& p, double radius, const Vec3& v = {}, const Vec3& w = {}, double share = 0.4)
@@ -25,7 +25,7 @@ std::string ball(const Vec3& p, double radius, const Vec3& v = {}, const Vec3& w
 }
 
 /// theta'' = factor sin theta from rest: classical Runge-Kutta with a mantissa of 64 bits and steps of 1e-4 s.
-double swing(double theta, double factor, double until)
+double angle_after(double theta, double factor, double until)
 {
     long double x = theta, u = 0;
     const int n = static_cast<int>(std::lround(until * 1e4));
@@ -56,7 +56,7 @@ TEST_CASE("a ball rolls down a ball with 5/7 g sin theta / (R + r)")
     for (const double t : {0.3, 0.8})
     {
         s.run(t);
-        const double theta = swing(start, 5. / 7 * kG / (R + r), s.simulation().time());
+        const double theta = angle_after(start, 5. / 7 * kG / (R + r), s.simulation().time());
         CHECK(distance(s.vec("ball", "position"), (R + r) * Vec3{std::sin(theta), 0, std::cos(theta)}) < 1e-11);
         // m (g cos theta - v^2 / (R + r))
         const double v2 = length_squared(s.vec("ball", "linear_velocity"));

@@ -2,6 +2,7 @@
 // unknown vectors, normal and spin: Gragg-Bulirsch-Stoer of order 20, steps of 10/3000 and 10/6000 s agree to 11 digits or better.
 #include <numbers>
 
+#include "support/gravity.h"
 #include "support/joints.h"
 
 using namespace plab;
@@ -9,8 +10,6 @@ using namespace plab::test;
 
 namespace
 {
-
-constexpr double kG = 9.81;
 
 std::string rolling(const std::string& id, const std::string& b, const std::string& semi_axes, const std::string& more = "")
 {

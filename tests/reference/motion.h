@@ -39,4 +39,14 @@ inline std::string spring_scene(const SolverAlgorithm& algorithm, double k, doub
            text(k) + "\" damping=\"" + text(c) + "\"/>";
 }
 
+/// n bodies that a medium slows down to nothing.
+inline std::string braked(int n)
+{
+    std::string out;
+    for (int i = 0; i < n; ++i)
+        out += "<component id=\"b" + std::to_string(i) +
+               "\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" linear_velocity=\"1 2 3\" angular_velocity=\"0.1 0.2 0.3\"/>";
+    return out + "<component id=\"drag\" type=\"Field/Drag\" between=\"*\" linear=\"5\" rotational=\"5\"/>";
+}
+
 }  // namespace plab::test

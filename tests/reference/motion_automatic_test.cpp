@@ -7,6 +7,7 @@
 // spring on a slider, stiff drag       Exponential         the event, its reason; closed form
 // all of these in one scene            each its own        the bits of each alone
 #include "reference/motion.h"
+#include "support/gravity.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -20,7 +21,6 @@ std::string free_body(int i)
     return "<component id=\"free" + n + "\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 2 2.5\" position=\"0 0 " + n +
            "\" linear_velocity=\"0 " + n + " 1\" angular_velocity=\"0.3 " + n + " 0.1\"/>";
 }
-const std::string kGravity = "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>";
 const std::string kBraked =
     R"(<component id="braked" type="State/RigidBody" mass="1" inertia="1 2 2.5" linear_velocity="3 0 0" angular_velocity="1 2 0"/>
     <component id="drag" type="Field/Drag" between="braked" linear="0.5" quadratic="0.1" rotational="0.1"/>)";

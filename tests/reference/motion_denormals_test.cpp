@@ -10,21 +10,13 @@
 #include <limits>
 
 #include "reference/algorithms.h"
+#include "reference/motion.h"
 
 using namespace plab;
 using namespace plab::test;
 
 namespace
 {
-
-std::string braked(int n)
-{
-    std::string out;
-    for (int i = 0; i < n; ++i)
-        out += "<component id=\"b" + std::to_string(i) +
-               "\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" linear_velocity=\"1 2 3\" angular_velocity=\"0.1 0.2 0.3\"/>";
-    return out + "<component id=\"drag\" type=\"Field/Drag\" between=\"*\" linear=\"5\" rotational=\"5\"/>";
-}
 
 /// The flag for denormal operands, where the processor has one.
 void forget_denormals()

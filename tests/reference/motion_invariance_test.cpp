@@ -55,16 +55,6 @@ Relative pair(const SolverAlgorithm& algorithm, const Frame& f)
     return {rotate(back, s.vec("b", "position") - s.vec("a", "position")), back * s.quat("b", "orientation")};
 }
 
-std::string braked(int n)
-{
-    std::string out;
-    for (int i = 0; i < n; ++i)
-        out += "<component id=\"b" + std::to_string(i) +
-               "\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" linear_velocity=\"1 2 3\""
-               " angular_velocity=\"0.1 0.2 0.3\"/>";
-    return out + "<component id=\"drag\" type=\"Field/Drag\" between=\"*\" linear=\"5\" rotational=\"5\"/>";
-}
-
 }  // namespace
 
 TEST_CASE("A11: the same relative motion at any place, at any speed and in any orientation")

@@ -17,19 +17,19 @@ using namespace plab::test;
 namespace
 {
 
-constexpr double kStep = 0.01;
+constexpr double kLongStep = 0.01;
 
-struct Swing
+struct LongSwing
 {
     double worst = 0, kept = 0, last = 0;  ///< relative: of the energy, of x^2 + a x v + b v^2; energy at the end
 };
 
 /// a, b: the method conserves x^2 + a x v + b v^2, which is 1 at the start.
-Swing swing(const SolverAlgorithm& algorithm, std::int64_t steps, double a = 0, double b = 1)
+LongSwing swing(const SolverAlgorithm& algorithm, std::int64_t steps, double a = 0, double b = 1)
 {
     Scene s(spring_scene(algorithm, 1, 0), "dt=\"0.01\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    Swing out;
+    LongSwing out;
     for (std::int64_t i = 0; i < steps; i += 997)
     {
         s.step(std::min<std::int64_t>(997, steps - i));
@@ -46,14 +46,14 @@ Swing swing(const SolverAlgorithm& algorithm, std::int64_t steps, double a = 0, 
 
 TEST_CASE("A7: energy over 1e7 steps: bounded for symplectic methods, otherwise lost by the method's law")
 {
-    const double h2 = kStep * kStep;
+    const double h2 = kLongStep * kLongStep;
     struct Row
     {
         SolverAlgorithm algorithm;
         std::int64_t steps;
         double a, b, worst;
     };
-    const Row table[] = {{{"SemiImplicitEuler"}, 10'000'000, -kStep, 1, kStep / 2},
+    const Row table[] = {{{"SemiImplicitEuler"}, 10'000'000, -kLongStep, 1, kLongStep / 2},
                          {{"StoermerVerlet"}, 10'000'000, 0, 1 / (1 - h2 / 4), h2 / 4},
                          {{"RotationSplitting", "order=\"2\""}, 10'000'000, 0, 1 - h2 / 4, h2 / 4},
                          {{"ImplicitMidpoint", "relative_tolerance=\"1e-15\""}, 1'000'000, 0, 1, 0}};
@@ -61,14 +61,14 @@ TEST_CASE("A7: energy over 1e7 steps: bounded for symplectic methods, otherwise 
     {
         const std::string name = name_of(row.algorithm);
         CAPTURE(name);
-        const Swing found = swing(row.algorithm, row.steps, row.a, row.b);
+        const LongSwing found = swing(row.algorithm, row.steps, row.a, row.b);
         const double rounding = 1e-12 * std::sqrt(static_cast<double>(row.steps) / 1e6);
         CHECK(found.kept < rounding);
         CHECK(found.worst < 1.01 * row.worst + rounding);
         CHECK(found.worst >= 0.99 * row.worst);
     }
     // With the default setting, its iteration ends at 1e-12 of a step's change: a slope below 1e-12 h/2 per step.
-    CHECK(swing({"ImplicitMidpoint"}, 1'000'000).worst < 1e6 * 1e-12 * kStep / 2);
+    CHECK(swing({"ImplicitMidpoint"}, 1'000'000).worst < 1e6 * 1e-12 * kLongStep / 2);
     CHECK(swing({"RotationSplitting"}, 1'000'000).worst < 6e-12);
     // The ratio is compared, as doctest::Approx allows an absolute epsilon near 0.
     CHECK(swing({"RungeKutta4"}, 1'000'000).last / (-1e6 * 1e-12 / 72) == doctest::Approx(1).epsilon(0.005));

@@ -1,16 +1,16 @@
 // Free motion: integrators against closed forms, and their observed orders. Ids A1.. are those of the catalogue of
 // reference problems; digits were computed in 113-bit arithmetic or from 30-digit closed forms.
-#include "support/scene.h"
+#include "reference/motion.h"
 
 using namespace plab;
 using plab::test::attitude_error;
 using plab::test::distance;
+using plab::test::observed_order;
 using plab::test::Scene;
+using plab::test::solver;
 
 namespace
 {
-
-std::string solver(const std::string& type) { return "<component id=\"solver\" type=\"Solver/" + type + "\"/>"; }
 
 std::string dt(int per_second) { return "dt=\"1/" + std::to_string(per_second) + "\""; }
 
@@ -18,7 +18,7 @@ std::string dt(int per_second) { return "dt=\"1/" + std::to_string(per_second) +
 double projectile_error(const std::string& type, int per_second)
 {
     Scene s(
-        solver(type) +
+        solver({type}) +
             "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"0 10 0\" linear_velocity=\"5 10 0\"/>"
             "<component id=\"g\" type=\"Field/Gravity\" between=\"*\" acceleration=\"0 -9.81 0\"/>",
         dt(per_second));
@@ -34,7 +34,7 @@ struct BoxRun
 };
 BoxRun free_box(const std::string& type, int per_second)
 {
-    Scene s(solver(type) +
+    Scene s(solver({type}) +
                 "<component id=\"shape\" type=\"Shape/Box\" half_extents=\"0.1 0.2 0.3\"/>"
                 "<component id=\"box\" type=\"State/RigidBody\" mass=\"1\" shape=\"shape\" angular_velocity=\"1 2 3\"/>",
             dt(per_second));
@@ -47,8 +47,6 @@ BoxRun free_box(const std::string& type, int per_second)
     return {attitude_error(expected, s.quat("box", "orientation")), std::fabs(t.kinetic / e0 - 1),
             distance(t.angular_momentum, l0) / length(l0)};
 }
-
-double observed_order(double coarse, double fine) { return std::log2(coarse / fine); }
 
 }  // namespace
 

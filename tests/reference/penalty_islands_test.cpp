@@ -1,6 +1,7 @@
 // Spring contacts combined with other things: joints, kinematic bodies, hard contacts, rewinding, several threads.
 #include <numbers>
 
+#include "support/gravity.h"
 #include "support/ground.h"
 #include "support/scene.h"
 
@@ -12,10 +13,7 @@ using plab::test::Scene;
 namespace
 {
 
-const char* const kGravity = "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>";
-constexpr double kG = 9.81;
-
-std::string ball(const std::string& id, const std::string& attributes)
+std::string unit_ball(const std::string& id, const std::string& attributes)
 {
     return "<component id=\"" + id + ".shape\" type=\"Shape/Sphere\" radius=\"0.1\"/><component id=\"" + id +
            "\" type=\"State/RigidBody\" shape=\"" + id + ".shape\" mass=\"1\" " + attributes + "/>";
@@ -27,7 +25,7 @@ std::string box(const std::string& id, const std::string& attributes)
            "\" type=\"State/RigidBody\" shape=\"" + id + ".shape\" " + attributes + "/>";
 }
 
-std::string contact(const std::string& id, const std::string& between, const std::string& rest)
+std::string contact_of(const std::string& id, const std::string& between, const std::string& rest)
 {
     return "<component id=\"" + id + "\" type=\"CDetection/ODE\" between=\"" + between + "\" " + rest + "/>";
 }
@@ -47,7 +45,7 @@ TEST_CASE("a floor with a prescribed upward velocity gives a ball at rest twice 
     Scene s(
         "<component id=\"floor\" type=\"Shape/Box\" half_extents=\"1 1 0.1\"/>"
         "<component id=\"lift\" type=\"State/Kinematic\" shape=\"floor\" position=\"0 0 -0.3\" linear_velocity=\"0 0 0.5\"/>" +
-            ball("a", "position=\"0 0 0.1\"") + contact("c", "a lift", spring("1e6")),
+            unit_ball("a", "position=\"0 0 0.1\"") + contact_of("c", "a lift", spring("1e6")),
         "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = true;
@@ -64,10 +62,10 @@ TEST_CASE("a pendulum on a joint hits a stiff wall and returns to its initial he
     char where[200];
     std::snprintf(where, sizeof where, "position=\"%.17g 0 %.17g\" orientation=\"%.17g 0 %.17g 0\"", -std::sin(a0), -h, std::cos(a0 / 2),
                   std::sin(a0 / 2));
-    Scene s(ball("a", where) + "<component id=\"joint\" type=\"Constraint/Ball\" b=\"a\" anchor=\"0 0 0\"/>" +
+    Scene s(unit_ball("a", where) + "<component id=\"joint\" type=\"Constraint/Ball\" b=\"a\" anchor=\"0 0 0\"/>" +
                 "<component id=\"wall.shape\" type=\"Shape/Plane\"/><component id=\"wall\" type=\"State/Static\" shape=\"wall.shape\" "
                 "position=\"0.1 0 0\" orientation=\"0.7071067811865476 0 -0.7071067811865476 0\"/>" +
-                contact("c", "a wall", spring("1e7")) + kGravity,
+                contact_of("c", "a wall", spring("1e7")) + kGravity,
             "dt=\"1/240\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = true;
@@ -88,8 +86,9 @@ TEST_CASE("a pendulum on a joint hits a stiff wall and returns to its initial he
 
 TEST_CASE("a ball on springs lies m g / k deep on a box with a hard contact: nothing creeps, the ledger closes")
 {
-    Scene s(kGround + box("b", "mass=\"4\" position=\"0 0 0.1\"") + ball("a", "position=\"0.05 0 0.3\"") +
-                contact("hard", "b ground", kHard) + contact("soft", "a b", spring("1e4", "response.damping_ratio=\"0.3\"")) + kGravity,
+    Scene s(kGround + box("b", "mass=\"4\" position=\"0 0 0.1\"") + unit_ball("a", "position=\"0.05 0 0.3\"") +
+                contact_of("hard", "b ground", kHard) + contact_of("soft", "a b", spring("1e4", "response.damping_ratio=\"0.3\"")) +
+                kGravity,
             "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     for (int i = 0; i < 180; ++i)
@@ -107,8 +106,9 @@ TEST_CASE("a ball on springs lies m g / k deep on a box with a hard contact: not
 
 TEST_CASE("an undamped spring in a mixed island neither gains nor loses energy over a long time")
 {
-    Scene s(kGround + box("b", "mass=\"4\" position=\"0 0 0.1\"") + ball("a", "position=\"0 0 0.2999\" linear_velocity=\"0 0 -0.02\"") +
-                contact("hard", "b ground", kHard) + contact("soft", "a b", spring("1e4", "response.steps_per_contact=\"40\"")) + kGravity,
+    Scene s(kGround + box("b", "mass=\"4\" position=\"0 0 0.1\"") +
+                unit_ball("a", "position=\"0 0 0.2999\" linear_velocity=\"0 0 -0.02\"") + contact_of("hard", "b ground", kHard) +
+                contact_of("soft", "a b", spring("1e4", "response.steps_per_contact=\"40\"")) + kGravity,
             "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     double highest = -1, lowest = 1;
@@ -133,14 +133,14 @@ TEST_CASE("rewinding the whole world divides a spring's contact into pieces and 
     // first.
     const auto fall = [](bool second)
     {
-        Scene s(
-            kGround + ball("a", "position=\"0 0 0.3\"") +
-                contact("soft", "a ground", spring("1e3", "response.friction=\"0.3\" response.restitution=\"0.8\"")) + kGravity +
-                (second ? ball("b", "position=\"3 0 0.101\"") + contact("hard", "b ground",
-                                                                        "resolution=\"Resolution/Bisection\" response=\"Response/Impulse\" "
-                                                                        "response.restitution=\"1\"")
-                        : ""),
-            "dt=\"1/60\"");
+        Scene s(kGround + unit_ball("a", "position=\"0 0 0.3\"") +
+                    contact_of("soft", "a ground", spring("1e3", "response.friction=\"0.3\" response.restitution=\"0.8\"")) + kGravity +
+                    (second ? unit_ball("b", "position=\"3 0 0.101\"") +
+                                  contact_of("hard", "b ground",
+                                             "resolution=\"Resolution/Bisection\" response=\"Response/Impulse\" "
+                                             "response.restitution=\"1\"")
+                            : ""),
+                "dt=\"1/60\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.keep_events = true;
         s.run(1);
@@ -159,12 +159,12 @@ TEST_CASE("rewinding the whole world divides a spring's contact into pieces and 
 
 TEST_CASE("a ball with a hard contact hits one that rests on a spring")
 {
-    Scene s(
-        kGround + ball("a", "position=\"0 0 0.099019\"") + ball("b", "position=\"0 0 0.5\"") +
-            contact("soft", "a ground", spring("1e4", "response.damping_ratio=\"0.2\"")) +
-            contact("hard", "a b", "resolution=\"Resolution/LocalBisection\" response=\"Response/Impulse\" response.restitution=\"0.5\"") +
-            kGravity,
-        "dt=\"1/60\"");
+    Scene s(kGround + unit_ball("a", "position=\"0 0 0.099019\"") + unit_ball("b", "position=\"0 0 0.5\"") +
+                contact_of("soft", "a ground", spring("1e4", "response.damping_ratio=\"0.2\"")) +
+                contact_of("hard", "a b",
+                           "resolution=\"Resolution/LocalBisection\" response=\"Response/Impulse\" response.restitution=\"0.5\"") +
+                kGravity,
+            "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(4);
     // In the end both are at rest, one on the other.
@@ -176,9 +176,9 @@ TEST_CASE("a ball with a hard contact hits one that rests on a spring")
 
 TEST_CASE("a spring does not affect distant bodies: bit for bit, and with any number of threads")
 {
-    const std::string far = ball("z", "position=\"0 0 50\" linear_velocity=\"1 2 3\" angular_velocity=\"3 2 1\"") + kGravity;
-    const std::string near_by = kGround + ball("a", "position=\"0 0 0.3\"") + ball("b", "position=\"0.05 0 0.7\"") +
-                                contact("c", "a b ground", spring("1e5", "response.friction=\"0.3\""));
+    const std::string far = unit_ball("z", "position=\"0 0 50\" linear_velocity=\"1 2 3\" angular_velocity=\"3 2 1\"") + kGravity;
+    const std::string near_by = kGround + unit_ball("a", "position=\"0 0 0.3\"") + unit_ball("b", "position=\"0.05 0 0.7\"") +
+                                contact_of("c", "a b ground", spring("1e5", "response.friction=\"0.3\""));
     Scene one(near_by + far, "dt=\"1/60\""), four(near_by + far, "dt=\"1/60\"", 4), alone(far, "dt=\"1/60\"");
     REQUIRE_MESSAGE(one.loaded(), one.error());
     one.run(1), four.run(1), alone.run(1);
@@ -196,8 +196,8 @@ TEST_CASE("a ball bounces with solvers of all kinds")
         if (!type) continue;
         CAPTURE(solver);
         Scene s("<component id=\"solver\" type=\"Solver/" + solver + "\"/>" + kGround +
-                    ball("a", "position=\"0 0 0.15\" linear_velocity=\"0 0 -1\" solver=\"solver\"") +
-                    contact("c", "a ground", spring("1e6")),
+                    unit_ball("a", "position=\"0 0 0.15\" linear_velocity=\"0 0 -1\" solver=\"solver\"") +
+                    contact_of("c", "a ground", spring("1e6")),
                 "dt=\"1/60\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = true;

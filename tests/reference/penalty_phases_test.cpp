@@ -2,6 +2,7 @@
 // stiction that does not creep.
 #include <numbers>
 
+#include "support/gravity.h"
 #include "swaps.h"
 
 using namespace plab;
@@ -9,8 +10,6 @@ using namespace plab::test;
 
 namespace
 {
-
-constexpr double kG = 9.81;
 
 /// A ball of 1 kg, `away` above a floor that it hits with `v`.
 std::string falling(double away, double v, const std::string& response)

@@ -1,6 +1,7 @@
 // Contacts that are springs, against closed forms. B2, C14 as in the catalogue of reference problems.
 #include <numbers>
 
+#include "support/gravity.h"
 #include "support/ground.h"
 #include "support/scene.h"
 #include "support/text.h"
@@ -13,9 +14,6 @@ using plab::test::text;
 
 namespace
 {
-
-const char* const kGravity = "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>";
-constexpr double kG = 9.81;
 
 std::string contact(const std::string& between, const std::string& response)
 {

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "exact/housner.h"
+#include "exact/motions.h"
 #include "impacts.h"
 
 namespace plab::test

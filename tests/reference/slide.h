@@ -2,11 +2,10 @@
 #pragma once
 
 #include "impacts.h"
+#include "support/gravity.h"
 
 namespace plab::test
 {
-
-inline constexpr double kG = 9.81;  // m/s^2
 
 inline std::string step_of(double h) { return "dt=\"" + text(h) + "\""; }
 /// A ramp modelled by a level plane with gravity inclined towards x.

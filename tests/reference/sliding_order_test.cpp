@@ -3,7 +3,8 @@
 #include <numbers>
 #include <vector>
 
-#include "exact/pendulum_motion.h"
+#include "exact/motions.h"
+#include "support/gravity.h"
 #include "support/scene.h"
 #include "support/text.h"
 
@@ -13,7 +14,7 @@ using namespace plab::test;
 namespace
 {
 
-constexpr double kG = 9.81, kRadius = 0.1;
+constexpr double kRadius = 0.1;
 
 /// The angle of a ball whose centre goes round a circle, and how fast it turns.
 struct Swing

@@ -4,8 +4,9 @@
 // algorithm                  steps of                position rel. to 0.01 m    ledger, relative to the spring's energy
 // Exponential                1/2 .. 1/1000 s         1e-11                       1e-9
 // Automatic                  1/2 .. 1/240 s          1e-9                        1e-8
-#include "exact/damped.h"
+#include "exact/motions.h"
 #include "reference/motion.h"
+#include "support/gravity.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -13,13 +14,13 @@ using namespace plab::test;
 namespace
 {
 
-constexpr double kStiffness = 1e6, kDamping = 20, kGravity = 9.81, kStretch = 0.01;
+constexpr double kStiffness = 1e6, kDamping = 20, kStretch = 0.01;
 
 /// m, displacement below the start.
 double exact_position(double t)
 {
     // The mass swings about its place of rest, which lies below the start.
-    const double rest = kStretch + kGravity / kStiffness;
+    const double rest = kStretch + kG / kStiffness;
     double above = 0, speed = 0;
     exact::Damped{kStiffness, 0.5 * kDamping}.at(t, rest, 0, above, speed);
     return rest - above;

@@ -12,7 +12,7 @@
 // B3, quadratic drag 0.01 kg/m: v(5), y(5), and the final speed; B4, c / m = 1e6 1/s, wind of 10 m/s from t = 0
 #include <vector>
 
-#include "exact/damped.h"
+#include "exact/motions.h"
 #include "reference/motion.h"
 
 using namespace plab;

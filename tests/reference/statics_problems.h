@@ -4,11 +4,10 @@
 
 #include "reference/contact_algorithms.h"
 #include "statics_scene.h"
+#include "support/gravity.h"
 
 namespace plab::test
 {
-
-inline constexpr double kG = 9.81;  // m/s^2
 
 /// Algorithms with rigid contacts. Springs sink by m g / k: penalty_test.cpp; for stacks and mass ratios on springs see
 /// tests/stability.

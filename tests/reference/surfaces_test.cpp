@@ -1,15 +1,15 @@
 // Surfaces to collide with: bowls, bores, height fields, meshes (interactions/detection/README.md).
 #include <numbers>
 
-#include "exact/pendulum_motion.h"
+#include "exact/motions.h"
 #include "impacts.h"
+#include "support/gravity.h"
 
 using namespace plab;
 using namespace plab::test;
 
 namespace
 {
-constexpr double kG = 9.81;
 
 std::string still(const std::string& id, const std::string& type, const std::string& attributes)
 {

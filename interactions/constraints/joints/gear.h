@@ -2,7 +2,13 @@
 ///
 ///   Gear        C = angle_b - f angle_a - offset = 0                      J = [ -f | 1 ] on spins; a carrier takes the rest
 ///   Planetary   C = N_s angle_s + N_r angle_r - (N_s + N_r) angle_c - offset = 0, divided by N_s + N_r
-///               (R. Willis, Principles of mechanism, 1841: (w_s - w_c)/(w_r - w_c) = -N_r/N_s)
+///
+/// A planetary train has a sun s in the middle, a ring r with inner teeth around it, and planets between them, whose axles a carrier c
+/// moves in a circle. Seen from the carrier, all axles stand still, and the train is an ordinary one: the planets are idle wheels, and the
+/// inner teeth of the ring reverse the sense of rotation once, so (w_s - w_c) / (w_r - w_c) = -N_r / N_s (R. Willis, Principles of
+/// mechanism, 1841). Multiplied out, this is one row over three spins. Two of them remain free: hold the ring, and it is a reduction by 1 +
+/// N_r / N_s; hold none, and it is a differential that divides the torque in the ratio N_s : N_r : -(N_s + N_r). Planets have no inertia
+/// here.
 ///
 /// Angles include whole turns, so C holds over any number of them. For shafts alone, Constraint/AngularVelocity/Graph is cheaper
 /// and free of drift.

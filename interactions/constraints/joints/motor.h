@@ -1,5 +1,8 @@
 /// Motor: turns b against a, or slides it along a, at a given speed; or moves it to a target and holds it there.
 ///
+/// Both are conditions on a speed; neither has a position error that a projection could remove. The servo's own bias makes its law hold for
+/// accelerations too, d/dt of the line below, so that a solver of high order sees a smooth equation.
+///
 ///   rate      J v = speed
 ///   servo     J v = gain (target - x), within +-speed: x approaches its target as exp(-gain t)      bias = -gain J v
 ///

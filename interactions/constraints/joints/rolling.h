@@ -25,7 +25,7 @@
 /// (On the plane, s turns with b: s' there is w_b x s + R_F s'.) With `parallel`, b is a cylinder that touches along a line, and
 /// the ball is its cross-section: two further rows keep its axis parallel to u (sides.h, turn).
 ///
-/// Source: M. Kane, D. Levinson, "Realistic mathematical modeling of the rattleback", Int. J. Non-Linear Mech. 17 (1982);
+/// Sources: T. R. Kane, D. A. Levinson, "Realistic mathematical modeling of the rattleback", Int. J. Non-Linear Mech. 17 (1982) 175;
 /// J. Neimark, N. Fufaev, Dynamics of nonholonomic systems (1972), on the ball in a sphere and in a cylinder.
 #pragma once
 

@@ -7,7 +7,15 @@
 ///   travel    phi = t . d - x      t turns with a: the lever of a reaches p_b, and bias gains -(w_a x (w_a x t)) . d - 2 (w_a x t) . d'
 ///   turn      phi = e . s          J = [ -e | e ] on spins, s the rotation vector from a to b; bias = -(e' . w_ba), e' = w_a x e
 ///
+/// How a row is used: phi is what must be zero, and J, with one block for each body, its derivative: phi' = J v. Differentiated once more,
+/// phi'' = J v' + J' v, so the accelerations v' that keep phi at zero satisfy J v' = bias with bias = -J' v: what the points' accelerations
+/// would be at constant speeds, with opposite sign. For `point` that is the centripetal acceleration w x (w x r) of each side. The host
+/// adds forces J^T lambda that make J v' = bias true at every stage of a solver (index 1; E. Hairer, G. Wanner, Solving ordinary
+/// differential equations II, section VII.2), and projects phi and J v to zero after the step, because twice integrated rounding drifts.
+/// A direction e that is fixed in a body turns with it, e' = w x e, which adds the terms with e' above.
+///
 /// s is valid up to half a turn and has no second zero there; J is its derivative on the constraint, where s = 0.
+/// Source of the rows: E. J. Haug, Computer aided kinematics and dynamics of mechanical systems, volume I (1989), chapter 9.
 #pragma once
 
 #include <cmath>

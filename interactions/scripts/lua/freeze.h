@@ -1,4 +1,13 @@
 /// Ordered traversal of tables, and freezing of everything that was created while loading.
+///
+/// What a function of the script can see again in a later call is: globals, the locals outside it that it uses (Lua's upvalues), and
+/// whatever these refer to. Starting from the globals, freeze_reachable() walks this graph once, after loading. Each table on the way
+/// becomes an empty table with a metatable, whose __index is a copy of the content, and whose __newindex refuses. The table itself stays
+/// where it is, so that all references to it remain valid. Upvalues cannot be made constant in Lua; they are compared with their value at
+/// load after each call, bit by bit, by the address of what they refer to. Those values are pinned in the registry, as otherwise a new
+/// value could take the address of one that was collected. The copies are filled in the order of their keys, because the layout of a Lua
+/// table, and with it the length of one with holes, depends on the order of insertion, and that of strings on a seed that differs from run
+/// to run.
 #pragma once
 
 #include "lua/session.h"

@@ -1,4 +1,15 @@
 /// A sandboxed Lua state: the code of one script, without any state that would have to be saved.
+///
+/// The host rewinds, saves and restores columns, and knows nothing of Lua. If a call could leave a value behind inside Lua, a rewound step
+/// would not give the same bits again. So the sandbox makes that impossible: after loading, globals are behind a proxy that refuses
+/// assignments, tables are frozen and shared locals watched (freeze.h), and all else that a script can hold is immutable. A machine is then
+/// a function of its code and its parameters, and can be built again from the columns at any time.
+///
+/// A call must also end, in bounded time and memory. A hook counts the instructions of Lua's virtual machine against a budget, built-in
+/// functions charge for loops of their own, and strings are short, so that no instruction takes long (meter.h); memory comes from a block
+/// of fixed size (arena.h). Once a budget is exceeded, pcall cannot catch that: every further instruction fails until the call returns.
+/// What a failed call did is undone, and its forces, which are kept in a list until it has succeeded, are dropped.
+/// Source: R. Ierusalimschy, Lua 5.4 reference manual, sections 4.4 (errors), 4.6 (lua_newstate) and 4.7 (hooks).
 #pragma once
 
 #include <memory>
@@ -7,7 +18,7 @@
 #include <string>
 
 #include "lua/call.h"
-#include "lua/limits.h"
+#include "lua/meter.h"
 #include "plab/result.h"
 
 namespace plab::scripts

@@ -1,11 +1,19 @@
-/// The limits of one call, and why it was ended.
+/// The limits of a script, the meter of one call, and why a call was ended.
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 namespace plab::scripts
 {
+
+/// The resource limits of one script.
+struct Limits
+{
+    std::int64_t instructions = 0;  ///< per call
+    std::size_t memory = 0;         ///< bytes
+};
 
 /// Counts instructions exactly against a budget, in strides of growing length, and the bytes that a call requests against a
 /// limit far above what normal code reaches. Once a call has exceeded a limit, it stays in error until the next one starts.

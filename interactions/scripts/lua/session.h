@@ -8,7 +8,6 @@
 
 #include "lua/arena.h"
 #include "lua/call.h"
-#include "lua/limits.h"
 #include "lua/meter.h"
 
 namespace plab::scripts

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "check_positive.h"
 #include "plab/symmetric.h"
 
 namespace plab::bodies

@@ -1,13 +1,26 @@
-/// Inertia matrices: conditions that a real mass distribution satisfies, and the sum of parts.
+/// Masses and inertias: conditions that a real mass distribution satisfies, and the sum of parts.
 #pragma once
 
 #include <array>
+#include <string>
 
+#include "plab/limits.h"
+#include "plab/number_text.h"
 #include "plab/result.h"
 #include "plab/tables.h"
 
 namespace plab::bodies
 {
+
+/// Refuses values that are not positive, or too small or large to compute with: the step divides by masses and inertias.
+inline Result<void> check_positive(const std::string& name, double value)
+{
+    if (!(value > 0)) return reason(name + " must be positive, not " + number_text(value));
+    if (!(value >= kLeastGiven && value <= kLargestGiven))
+        return reason(name + " must lie between " + number_text(kLeastGiven) + " and " + number_text(kLargestGiven) + ", not " +
+                      number_text(value));
+    return {};
+}
 
 /// The eigenvalues of a symmetric matrix, ascending.
 std::array<double, 3> principal_moments(const Mat3& inertia);

@@ -1,11 +1,7 @@
 #include "plab/plugin.h"
 
-#include "kinematic.h"
 #include "material_pair.h"
-#include "quantities.h"
-#include "rigid_body.h"
-#include "shaft.h"
-#include "static.h"
+#include "states.h"
 
 namespace
 {

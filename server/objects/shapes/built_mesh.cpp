@@ -1,23 +1,14 @@
 #include "built_mesh.h"
 
+#include <cmath>
 #include <numbers>
 #include <utility>
 
 namespace plab::shapes
 {
+
 namespace
 {
-
-std::vector<Vec3> circle(double radius, double z, std::uint32_t sides)
-{
-    std::vector<Vec3> out;
-    for (std::uint32_t i = 0; i < sides; ++i)
-    {
-        const double angle = 2 * std::numbers::pi * i / sides;
-        out.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
-    }
-    return out;
-}
 
 std::vector<Vec3> lifted(std::span<const Vec3> outline, double z)
 {
@@ -87,6 +78,17 @@ Geometry BuiltMesh::geometry(const Pose& pose, bool hull_collides) &&
     return out;
 }
 
+std::vector<Vec3> circle(double radius, double z, std::uint32_t sides)
+{
+    std::vector<Vec3> out;
+    for (std::uint32_t i = 0; i < sides; ++i)
+    {
+        const double angle = 2 * std::numbers::pi * i / sides;
+        out.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+    }
+    return out;
+}
+
 BuiltMesh turned_profile(std::span<const ProfilePoint> profile, std::uint32_t sides)
 {
     BuiltMesh out;
@@ -121,6 +123,71 @@ BuiltMesh bored_prism(std::span<const Vec3> outline, double bore, double half)
     out.add_band(top, hole_top, count);
     out.add_band(hole_top, hole_bottom, count);
     out.add_band(hole_bottom, bottom, count);
+    return out;
+}
+
+namespace
+{
+constexpr std::uint32_t kSides = 64;
+constexpr int kQuarter = 12;  ///< rings from the equator of a ball to its pole
+
+/// A ball of `radius` that is stretched by a straight part of length 2 `half` along z.
+BuiltMesh long_ball(double radius, double half)
+{
+    std::vector<ProfilePoint> profile{{0, -half - radius}};
+    const auto add = [&](int i, double z)
+    {
+        const double angle = 0.5 * std::numbers::pi * i / kQuarter;
+        profile.push_back({radius * std::cos(angle), z + std::copysign(radius, z) * std::sin(angle)});
+    };
+    for (int i = kQuarter - 1; i > 0; --i) add(i, -half);
+    profile.push_back({radius, -half});
+    if (half > 0) profile.push_back({radius, half});
+    for (int i = 1; i < kQuarter; ++i) add(i, half);
+    profile.push_back({0, half + radius});
+    return turned_profile(profile, kSides);
+}
+
+BuiltMesh block(const Vec3& h)
+{
+    BuiltMesh out;
+    const Vec3 bottom[] = {{-h.x, -h.y, -h.z}, {h.x, -h.y, -h.z}, {h.x, h.y, -h.z}, {-h.x, h.y, -h.z}};
+    const Vec3 top[] = {{-h.x, -h.y, h.z}, {h.x, -h.y, h.z}, {h.x, h.y, h.z}, {-h.x, h.y, h.z}};
+    const std::uint32_t low = out.add_ring(bottom), high = out.add_ring(top);
+    out.add_band(low, high, 4);
+    out.add_triangle(low, low + 2, low + 1), out.add_triangle(low, low + 3, low + 2);
+    out.add_triangle(high, high + 1, high + 2), out.add_triangle(high, high + 2, high + 3);
+    return out;
+}
+
+BuiltMesh upright(const Geometry& g)
+{
+    const ProfilePoint barrel[] = {{0, -g.size.z}, {g.size.x, -g.size.z}, {g.size.x, g.size.z}, {0, g.size.z}};
+    switch (g.kind)
+    {
+        case GeometryKind::Sphere:
+            return long_ball(g.size.x, 0);
+        case GeometryKind::Capsule:
+            return long_ball(g.size.x, g.size.z);
+        case GeometryKind::Box:
+            return block(g.size);
+        case GeometryKind::Cylinder:
+            return turned_profile(barrel, kSides);
+        case GeometryKind::Mesh:
+            return {g.vertices, g.triangles};
+        case GeometryKind::None:
+        case GeometryKind::Plane:
+        case GeometryKind::Compound:
+            break;
+    }
+    return {};
+}
+}  // namespace
+
+BuiltMesh picture_of(const Geometry& geometry)
+{
+    BuiltMesh out = upright(geometry);
+    for (Vec3& v : out.vertices) v = geometry.pose * v;
     return out;
 }
 

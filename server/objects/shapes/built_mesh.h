@@ -1,4 +1,5 @@
-/// Closed meshes of machine parts, built from outlines. All are counter-clockwise seen from outside.
+/// Closed meshes, counter-clockwise seen from outside: of machine parts, built from outlines, and pictures of shapes that have no mesh
+/// of their own.
 #pragma once
 
 #include <cstdint>
@@ -35,11 +36,17 @@ struct ProfilePoint
     double r, z;
 };
 
+/// `sides` points of a circle about z at height z, the first of them in the direction of x.
+std::vector<Vec3> circle(double radius, double z, std::uint32_t sides);
+
 /// The solid of revolution of the profile about z; the profile runs from bottom to top, with its ends on the axis (r = 0).
 BuiltMesh turned_profile(std::span<const ProfilePoint> profile, std::uint32_t sides);
 
 /// The prism of an outline (counter-clockwise seen from z, around the origin) from -half to +half along z. It has a round hole whose
 /// vertices are in the directions of the outline's vertices; if bore is 0, a vertex in the middle instead.
 BuiltMesh bored_prism(std::span<const Vec3> outline, double bore, double half);
+
+/// What is drawn of a shape, in the frame in which geometry.pose is given. Round parts have 64 sides. Empty for planes and compounds.
+BuiltMesh picture_of(const Geometry& geometry);
 
 }  // namespace plab::shapes

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "exact.h"
-#include "facts.h"
+#include "fixed_step.h"
 #include "plab/number_text.h"
 #include "rotation_splitting.h"
-#include "runge_kutta4.h"
+#include "stiffness.h"
 
 namespace plab::solvers
 {

@@ -7,7 +7,7 @@
 ///   fast spin, no joints                 RotationSplitting 4
 ///   else                                 RungeKutta4          (the same bits as Solver/RungeKutta4)
 ///
-/// Stiff: |h lambda| > 0.5 and > 4 |w| h for some member, as measured from the slopes of a step of RungeKutta4 (facts.h). If the step
+/// Stiff: |h lambda| > 0.5 and > 4 |w| h for some member, as measured from the slopes of a step of RungeKutta4 (stiffness.h). If the step
 /// turns out stiff, it is undone and repeated with another method. So nothing diverges before stiffness is noticed, and groups that are
 /// not stiff pay nothing. Fast: h |w| > 0.05.
 /// The choice depends only on the state at the start of the advance and on its length. Rewinds, trials and replays therefore choose the
@@ -21,7 +21,7 @@
 #include "dormand_prince54.h"
 #include "exponential.h"
 #include "radau5.h"
-#include "resolved.h"
+#include "reports.h"
 
 namespace plab::solvers
 {

@@ -1,6 +1,7 @@
-/// Products and factorisation of dense matrices. dense.cpp computes with Eigen, which this header does not show, because Eigen would add
-/// two seconds to every source that includes it. Sums have one order on every processor and with every compiler
+/// Dense matrices: products and factorisation. dense.cpp computes with Eigen, which this header does not show, because Eigen would
+/// add two seconds to every source that includes it (dense_view.h). Sums have one order on every processor and with every compiler
 /// (server/docs/determinism.md).
+/// Source: G. Golub, C. Van Loan, Matrix computations, chapter 3 (blocked elimination; scaling of rows).
 #pragma once
 
 #include <complex>

@@ -1,3 +1,14 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "flat_system.h"
+#include "reports.h"
+
+namespace plab::solvers
+{
+
 /// Solver/DormandPrince54: an explicit Runge-Kutta method of order 5 with an embedded method of order 4. It chooses its own internal
 /// steps within the step of the scene, so that the error of each stays below the tolerance.
 ///
@@ -12,17 +23,6 @@
 /// - If max_substeps internal steps do not reach the end, the group stays where the last one ended, with the event solver.gave_up.
 /// Sources: Dormand, Prince, J. Comput. Appl. Math. 6 (1980) 19; Hairer, Norsett, Wanner, Solving ordinary differential
 /// equations I, sections II.4 and II.5 (coefficients, table 5.2); Gustafsson's controller, part II, section IV.2.
-#pragma once
-
-#include <array>
-#include <vector>
-
-#include "error_control.h"
-#include "flat_system.h"
-
-namespace plab::solvers
-{
-
 /// Vectors of one advance; memory is kept between steps.
 struct DormandPrinceMemory
 {
@@ -49,5 +49,20 @@ void report_dormand_prince_gave_up(const StepContext& start, Row row, const Dorm
 
 /// One step over context.dt, from coordinates 0.
 void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince54Rows& rows, DynamicSystem& system);
+
+/// Solver/Articulated: DormandPrince54 on the coordinates of the joints.
+///
+/// Where joints form trees of hinges, sliders, ball joints and welds, the host describes the bodies by the joints' coordinates
+/// (sdk/plab/minimal_coordinates.h) and computes accelerations by the articulated body algorithm, in a time proportional to the number of
+/// bodies. Joints hold to rounding without multipliers, and the error control sees only motions that the joints allow. Elsewhere (loops,
+/// limits, motors, gears) it is DormandPrince54, and an event says why.
+/// Source: R. Featherstone, Rigid Body Dynamics Algorithms, Springer 2008, section 7.3.
+struct ArticulatedRows : DormandPrince54Rows, ResolvedColumns
+{
+    void describe(Schema& schema);
+};
+
+/// One step over context.dt, from coordinates 0.
+void advance_articulated(const StepContext& context, Row row, ArticulatedRows& rows, DynamicSystem& system);
 
 }  // namespace plab::solvers

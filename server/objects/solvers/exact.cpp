@@ -3,10 +3,10 @@
 #include <cmath>
 #include <span>
 
+#include "fixed_step.h"
 #include "plab/free_rotation.h"
 #include "plab/rotation.h"
 #include "rotation_splitting.h"
-#include "runge_kutta4.h"
 
 namespace plab::solvers
 {

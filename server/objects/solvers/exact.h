@@ -4,7 +4,7 @@
 /// depend on time, position or velocity.
 #pragma once
 
-#include "resolved.h"
+#include "reports.h"
 
 namespace plab::solvers
 {

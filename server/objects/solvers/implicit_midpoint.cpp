@@ -5,7 +5,7 @@
 #include <string>
 
 #include "plab/number_text.h"
-#include "resolved.h"
+#include "reports.h"
 
 namespace plab::solvers
 {

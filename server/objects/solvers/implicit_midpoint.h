@@ -6,7 +6,7 @@
 /// Source: Hairer, Lubich, Wanner, Geometric numerical integration, eq. (II.1.5) and section VIII.6.
 #pragma once
 
-#include "jacobian.h"
+#include "flat_system.h"
 #include "plab/registrar.h"
 
 namespace plab::solvers

@@ -1,16 +1,13 @@
 #include "plab/plugin.h"
 
-#include "articulated.h"
 #include "automatic.h"
 #include "dormand_prince54.h"
 #include "exact.h"
 #include "exponential.h"
+#include "fixed_step.h"
 #include "implicit_midpoint.h"
 #include "radau5.h"
 #include "rotation_splitting.h"
-#include "runge_kutta4.h"
-#include "semi_implicit_euler.h"
-#include "stoermer_verlet.h"
 
 namespace
 {
@@ -23,7 +20,7 @@ using plab::Phase;
 constexpr const char* kAdvance = "Solver/Advance";
 constexpr const char* kAdvanceDoc = "advances its group over the step";
 
-void declare_fixed_steps(plab::Registrar& registrar)
+void declare_explicit(plab::Registrar& registrar)
 {
     registrar.component<SemiImplicitEulerRows>("Solver/SemiImplicitEuler", "one force evaluation per step; order 1")
         .family("Solver")
@@ -56,6 +53,10 @@ void declare_fixed_steps(plab::Registrar& registrar)
         .cost("2 force evaluations per step")
         .limits("stiff forces: h below 2/w; drag is of order 2 but not dissipated exactly; the energy of free rotation drifts")
         .source("Hairer, Lubich, Wanner, Acta Numerica 12 (2003) 399, eq. (1.18)");
+}
+
+void declare_structure_preserving(plab::Registrar& registrar)
+{
     registrar
         .component<RotationSplittingRows>(
             "Solver/RotationSplitting",
@@ -80,10 +81,6 @@ void declare_fixed_steps(plab::Registrar& registrar)
             "oscillations that the step does not resolve stay, slowed down; cost grows with n^3; jumps of forces: parts of 1/64 step, then "
             "it fails")
         .source("Hairer, Lubich, Wanner, Geometric numerical integration, eq. (II.1.5) and section VIII.6");
-}
-
-void declare_adaptive(plab::Registrar& registrar)
-{
     registrar.component<ExactRows>("Solver/Exact", "closed forms for free flight in a uniform field: machine precision at any step")
         .family("Solver")
         .command<advance_exact>(Phase::Advance, kAdvance, kAdvanceDoc)
@@ -95,6 +92,10 @@ void declare_adaptive(plab::Registrar& registrar)
             "other forces: RotationSplitting of order 4 is used, joints: RungeKutta4, and an event reports it; a spin about an unstable "
             "axis amplifies rounding errors as the motion itself does")
         .source("Jacobi, Crelle 39 (1849); Celledoni, Fasso, Saefstroem, Zanna, SIAM J. Sci. Comput. 30 (2008) 2084");
+}
+
+void declare_error_controlled(plab::Registrar& registrar)
+{
     registrar.component<DormandPrince54Rows>("Solver/DormandPrince54", "explicit with error control: chooses internal steps; order 5")
         .family("Solver")
         .command<advance_dormand_prince54>(Phase::Advance, kAdvance, kAdvanceDoc)
@@ -121,6 +122,10 @@ void declare_adaptive(plab::Registrar& registrar)
         .cost("about 2 n + 15 force evaluations per step for n coordinates, two dense LU of size 2 n; more with internal steps")
         .limits("cost grows with n^3; oscillations are resolved to the tolerance or damped away")
         .source("Hairer, Wanner, Solving ordinary differential equations II, section IV.8; program RADAU5");
+}
+
+void declare_exponential(plab::Registrar& registrar)
+{
     registrar
         .component<ExponentialRows>("Solver/Exponential", "exponential Rosenbrock method: exact for linear forces at any step; order 4")
         .family("Solver")
@@ -134,7 +139,11 @@ void declare_adaptive(plab::Registrar& registrar)
             "cost grows with n^3: above max_size, and where stiff forces change their direction (springs not guided along a line), Radau5 "
             "is used; where "
             "forces are nonlinear the energy ledger is sampled at most 128 times per step")
-        .source("Luan, Appl. Math. Lett. 65 (2017) 132; Hochbruck, Ostermann, Acta Numerica 19 (2010) 209");
+        .source("Luan, Appl. Numer. Math. 112 (2017) 91; Hochbruck, Ostermann, Acta Numerica 19 (2010) 209");
+}
+
+void declare_automatic(plab::Registrar& registrar)
+{
     registrar
         .component<AutomaticRows>("Solver/Automatic",
                                   "picks a method for each group by measured spin and stiffness, and reports which and why")
@@ -156,6 +165,9 @@ void declare_adaptive(plab::Registrar& registrar)
 
 PLAB_PLUGIN("solvers", registrar)
 {
-    declare_fixed_steps(registrar);
-    declare_adaptive(registrar);
+    declare_explicit(registrar);
+    declare_structure_preserving(registrar);
+    declare_error_controlled(registrar);
+    declare_exponential(registrar);
+    declare_automatic(registrar);
 }

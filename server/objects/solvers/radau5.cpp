@@ -5,7 +5,7 @@
 #include <string>
 
 #include "radau5_stages.h"
-#include "resolved.h"
+#include "reports.h"
 
 namespace plab::solvers
 {

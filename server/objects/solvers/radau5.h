@@ -16,8 +16,8 @@
 /// Source: Hairer, Wanner, Solving ordinary differential equations II, section IV.8; the program RADAU5.
 #pragma once
 
-#include "error_control.h"
 #include "radau5_stages.h"
+#include "reports.h"
 
 namespace plab::solvers
 {

@@ -1,7 +1,25 @@
 /// The stages of one internal step of Radau5: simplified Newton iteration, prediction and error estimate.
+///
+/// The method demands that the rates at three points of the step, integrated with the method's matrix A, lead to these points themselves.
+/// With Z = (z1, z2, z3), the stages minus y, that is Z = h (A x I) F(Z): 3 n nonlinear equations. Newton's method with the Jacobian J of
+/// the start in place of the present one (simplified) solves in each iteration
+///
+///   (A^-1/h x I - I x J) dZ = (right-hand side)            one matrix of size 3 n
+///
+/// A^-1 has one real eigenvalue gamma and a pair alpha +- i beta. In the coordinates W = (T^-1 x I) Z of its eigenvectors the matrix falls
+/// apart into gamma/h I - J and (alpha + i beta)/h I - J: a real and a complex system of size n, whose factorisations cost a fifth of that
+/// of the whole. They are kept as long as h stays, and J for as long as the iteration contracts fast. The iteration starts from the
+/// collocation polynomial of the step before, continued beyond its end. Its contraction theta tells how far W still is from the solution,
+/// theta/(1 - theta) |dW|, so it stops when that is well below the error that the step may make, or gives up when the remaining iterations
+/// would not suffice.
+///
+/// Error: an embedded formula of order 3 over the same stages would not be bounded for stiff components; multiplied by (gamma/h I - J)^-1,
+/// which is at hand, it is. In the first step and after a rejection this filter is applied a second time, as the first estimate may be far
+/// too large for components that the step damps away anyway. Source: E. Hairer, G. Wanner, Solving ordinary differential equations II,
+/// section IV.8, eq. (8.4) to (8.20); the program RADAU5.
 #pragma once
 
-#include "jacobian.h"
+#include "flat_system.h"
 
 namespace plab::solvers
 {

@@ -10,7 +10,7 @@ using EntryValue = std::variant<bool, double, std::string>;
 namespace
 {
 
-std::string refusal(std::string_view text)
+std::string entry_refusal(std::string_view text)
 {
     const auto value = parse_entry(text);
     return value.ok() ? "accepted" : value.error().reason;
@@ -34,16 +34,16 @@ TEST_CASE("truth values, numbers, words and quoted texts")
 
 TEST_CASE("text that looks like a number but is not one is refused as text")
 {
-    CHECK(refusal("") == "needs a value; \"\" is the empty text");
-    CHECK(refusal("1,5") ==
+    CHECK(entry_refusal("") == "needs a value; \"\" is the empty text");
+    CHECK(entry_refusal("1,5") ==
           "'1,5': use a point, not a comma, in numbers, and spaces between them; write it in double quotes if it is a "
           "text");
-    CHECK(refusal("3 apples") == "'3 apples' is not a number; write it in double quotes if it is a text");
-    CHECK(refusal("inf") == "'inf' is not finite; write it in double quotes if it is a text");
-    CHECK(refusal("1e999") == "'1e999' is out of range; write it in double quotes if it is a text");
-    CHECK(refusal("nan").starts_with("'nan' is not a finite number"));
-    CHECK(refusal("\"open") == "the quote of the text '\"open' is not closed");
-    CHECK(refusal("\"") == "the quote of the text '\"' is not closed");
+    CHECK(entry_refusal("3 apples") == "'3 apples' is not a number; write it in double quotes if it is a text");
+    CHECK(entry_refusal("inf") == "'inf' is not finite; write it in double quotes if it is a text");
+    CHECK(entry_refusal("1e999") == "'1e999' is out of range; write it in double quotes if it is a text");
+    CHECK(entry_refusal("nan").starts_with("'nan' is not a finite number"));
+    CHECK(entry_refusal("\"open") == "the quote of the text '\"open' is not closed");
+    CHECK(entry_refusal("\"") == "the quote of the text '\"' is not closed");
 }
 
 TEST_CASE("written values read back the same")

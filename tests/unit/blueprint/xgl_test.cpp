@@ -13,7 +13,7 @@ Result<model::Blueprint> mesh(const std::string& content)
     return blueprint::read_blueprint("<component id='m'>\n<MESH>\n" + content + "</MESH></component>", "m.xml");
 }
 
-std::string refusal(const std::string& content)
+std::string mesh_refusal(const std::string& content)
 {
     const auto result = mesh(content);
     return result.ok() ? "accepted" : result.error().text();
@@ -57,19 +57,19 @@ TEST_CASE("order of elements, names of points and appearance do not matter")
 
 TEST_CASE("bad meshes")
 {
-    CHECK(refusal("") == "m.xml:2:1: <MESH>: a mesh needs at least one face <F>");
-    CHECK(refusal(kPoints + face("1", "2", "9")) == "m.xml:4:59: <PREF>: no point <P> has the ID '9'");
-    CHECK(refusal(kPoints + "<P ID='2'>0,0,0</P>" + face("1", "2", "3")) == "m.xml:4:1: <P>: ID '2' is already defined");
-    CHECK(refusal("<P>0,0,0</P>" + kTetrahedron) == "m.xml:3:1: <P>: needs an attribute 'ID'");
-    CHECK(refusal(kPoints + "<F><FV1><PREF>1</PREF></FV1><FV2><PREF>2</PREF></FV2></F>") ==
+    CHECK(mesh_refusal("") == "m.xml:2:1: <MESH>: a mesh needs at least one face <F>");
+    CHECK(mesh_refusal(kPoints + face("1", "2", "9")) == "m.xml:4:59: <PREF>: no point <P> has the ID '9'");
+    CHECK(mesh_refusal(kPoints + "<P ID='2'>0,0,0</P>" + face("1", "2", "3")) == "m.xml:4:1: <P>: ID '2' is already defined");
+    CHECK(mesh_refusal("<P>0,0,0</P>" + kTetrahedron) == "m.xml:3:1: <P>: needs an attribute 'ID'");
+    CHECK(mesh_refusal(kPoints + "<F><FV1><PREF>1</PREF></FV1><FV2><PREF>2</PREF></FV2></F>") ==
           "m.xml:4:1: <F>: a face needs three corners, <FV1> to <FV3>");
-    CHECK(refusal(kPoints + "<F><FV1><PREF>1</PREF></FV1><FV4/></F>") ==
+    CHECK(mesh_refusal(kPoints + "<F><FV1><PREF>1</PREF></FV1><FV4/></F>") ==
           "m.xml:4:29: <FV4>: a face has three corners, <FV1> to <FV3>; split it into triangles");
-    CHECK(refusal(kPoints + "<F><FV1/><FV1/></F>") == "m.xml:4:10: <FV1>: the face already has this corner");
-    CHECK(refusal(kPoints + "<F><FV1/><FV2/><FV3/></F>") == "m.xml:4:4: <FV1>: a corner needs a <PREF>");
-    CHECK(refusal(kPoints + face("1", "2", "1")) == "m.xml:4:1: <F>: a face needs three different points");
-    CHECK(refusal(kPoints + "<FACE/>") == "m.xml:4:1: <FACE>: unknown element in <MESH>");
-    CHECK(refusal(kTetrahedron + "words") == "m.xml:8:1: <MESH>: unexpected text");
+    CHECK(mesh_refusal(kPoints + "<F><FV1/><FV1/></F>") == "m.xml:4:10: <FV1>: the face already has this corner");
+    CHECK(mesh_refusal(kPoints + "<F><FV1/><FV2/><FV3/></F>") == "m.xml:4:4: <FV1>: a corner needs a <PREF>");
+    CHECK(mesh_refusal(kPoints + face("1", "2", "1")) == "m.xml:4:1: <F>: a face needs three different points");
+    CHECK(mesh_refusal(kPoints + "<FACE/>") == "m.xml:4:1: <FACE>: unknown element in <MESH>");
+    CHECK(mesh_refusal(kTetrahedron + "words") == "m.xml:8:1: <MESH>: unexpected text");
 }
 
 TEST_CASE("bad coordinates")
@@ -78,7 +78,7 @@ TEST_CASE("bad coordinates")
          {"", "1", "1,2", "1,2,3,4", "1 2 3", "1,2,x", "1,2,", "nan,0,0", "0,inf,0", "1e999,0,0", "1;2;3", "0x1,0,0"})
     {
         CAPTURE(text);
-        CHECK(refusal("<P ID='1'>" + text + "</P>" + face("1", "1", "1")) ==
+        CHECK(mesh_refusal("<P ID='1'>" + text + "</P>" + face("1", "1", "1")) ==
               "m.xml:3:1: <P>: '" + text + "' is not a point: give three numbers separated by commas");
     }
 }

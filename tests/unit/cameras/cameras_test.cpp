@@ -5,11 +5,13 @@
 
 #include "objects/cameras/osmesa_camera.h"
 #include "plab/plugin.h"
+#include "support/events.h"
 #include "support/scene.h"
 #include "unit/objects/table.h"
 
 using namespace plab;
 using namespace plab::cameras;
+using plab::test::Events;
 using plab::test::TableFixture;
 
 extern "C" void plab_plugin_register(plab::Registrar& registrar);
@@ -36,12 +38,6 @@ struct Viewer final : ImageSink
         const std::uint8_t* p = pictures.back().data() + 4 * (height / 2 * width + width / 2);
         return Vec3{double(p[0]), double(p[1]), double(p[2])};
     }
-};
-
-struct Events final : EventSink
-{
-    std::vector<Event> all;
-    void emit(Event event) override { all.push_back(std::move(event)); }
 };
 
 /// One small camera that looks along y at a red ball.

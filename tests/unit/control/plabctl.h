@@ -69,6 +69,4 @@ inline Outcome plabctl(const std::string& arguments, const std::string& before =
 /// For the server "lab": it is found at once, whereas without a name plabctl waits for other servers.
 inline Outcome lab(const std::string& arguments, const std::string& before = "") { return plabctl("--server lab " + arguments, before); }
 
-inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 }  // namespace plab::test

@@ -2,27 +2,20 @@
 // formula given with each; never from this code.
 #include <numbers>
 
-#include "exact/closed_form.h"
-#include "support/scene.h"
+#include "scenes.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::exact;
 using plab::test::distance;
+using plab::test::exact_at;
+using plab::test::has;
 using plab::test::near;
+using plab::test::refusal;
 using plab::test::Scene;
 
 namespace
 {
-
-State exact_at(const Scene& scene, const std::string& name, const std::string& id, double t)
-{
-    REQUIRE_MESSAGE(scene.loaded(), scene.error());
-    const auto solution = make_solution(name, scene.simulation(), 10);
-    REQUIRE_MESSAGE(solution.ok(), (solution ? "" : solution.error().text()));
-    State out;
-    REQUIRE((*solution)->state(id, t, out));
-    return out;
-}
 
 std::vector<double> contact_times(const Scene& scene, const std::string& name, double until)
 {
@@ -32,15 +25,6 @@ std::vector<double> contact_times(const Scene& scene, const std::string& name, d
     for (const ContactStart& c : (*solution)->contacts(until)) out.push_back(c.time);
     return out;
 }
-
-std::string refusal(const Scene& scene, const std::string& name)
-{
-    REQUIRE_MESSAGE(scene.loaded(), scene.error());
-    const auto solution = make_solution(name, scene.simulation(), 1);
-    return solution ? "none" : solution.error().text();
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// w/J = g/1 m: half a metre to the centre of mass, 0.25 kg m^2 about it.
 Scene hung(const std::string& joint, const std::string& more = "")

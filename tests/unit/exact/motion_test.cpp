@@ -1,40 +1,24 @@
 // Closed forms against independently computed digits (113-bit arithmetic, or 30-digit formulas).
 #include <numbers>
 
-#include "exact/closed_form.h"
-#include "exact/elliptic.h"
-#include "support/scene.h"
+#include "exact/motions.h"
+#include "scenes.h"
+#include "support/text.h"
 #include "world/principal_axes.h"
 
 using namespace plab;
 using namespace plab::exact;
 using plab::test::attitude_error;
 using plab::test::distance;
+using plab::test::exact_at;
+using plab::test::has;
 using plab::test::near;
+using plab::test::refusal;
 using plab::test::Scene;
 using plab::world::principal_axes, plab::world::PrincipalAxes;
 
 namespace
 {
-
-State exact_at(const Scene& scene, const std::string& name, const std::string& id, double t)
-{
-    REQUIRE_MESSAGE(scene.loaded(), scene.error());
-    const auto solution = make_solution(name, scene.simulation(), t);
-    REQUIRE_MESSAGE(solution.ok(), (solution ? "" : solution.error().text()));
-    State out;
-    REQUIRE((*solution)->state(id, t, out));
-    return out;
-}
-
-std::string refusal(const Scene& scene, const std::string& name)
-{
-    REQUIRE_MESSAGE(scene.loaded(), scene.error());
-    const auto solution = make_solution(name, scene.simulation(), 1);
-    return solution ? "none" : solution.error().text();
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::string lua(const std::string& roles, const std::string& parameters, const std::string& force)
 {

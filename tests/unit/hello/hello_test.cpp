@@ -5,14 +5,13 @@
 
 #include "played_server.h"
 #include "support/process.h"
+#include "support/text.h"
 
 using namespace plab::test;
 using namespace std::chrono_literals;
 
 namespace
 {
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// The commands between ```sh and ``` of a README, block by block.
 std::vector<std::string> shell_blocks(const std::string& file)

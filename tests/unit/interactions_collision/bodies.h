@@ -51,6 +51,17 @@ inline std::uint32_t add_shape(Shapes& s, GeometryKind kind, const Vec3& size = 
     s.geometry.push_back(std::move(g));
     return static_cast<std::uint32_t>(s.geometry.size() - 1);
 }
+inline Geometry solid(GeometryKind kind, const Vec3& size = {})
+{
+    Geometry g;
+    g.kind = kind, g.size = size;
+    return g;
+}
+inline detection::Collider collider(GeometryKind kind, const Vec3& size = {})
+{
+    detection::start_ode();
+    return detection::Collider(solid(kind, size));
+}
 inline Geometry mesh_of(std::vector<Vec3> vertices)
 {
     Geometry g;

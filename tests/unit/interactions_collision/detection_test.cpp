@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "bodies.h"
+#include "support/events.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -83,11 +84,6 @@ struct BallOnPlane
     const std::vector<Contact>& detect(const StepContext& context = {}) { return d.detect(bodies, shapes, context); }
 };
 
-struct Events final : EventSink
-{
-    std::vector<Event> all;
-    void emit(Event event) override { all.push_back(std::move(event)); }
-};
 }  // namespace
 
 TEST_CASE("no order of creation or of moves, and no kind of space, affects the contacts")

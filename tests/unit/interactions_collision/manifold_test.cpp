@@ -12,18 +12,12 @@ using namespace plab::test;
 
 namespace
 {
-Collider solid(GeometryKind kind, const Vec3& size)
-{
-    Geometry g;
-    g.kind = kind, g.size = size;
-    return Collider(g);
-}
 const Collider& plane()
 {
-    static const Collider instance = solid(GeometryKind::Plane, {});
+    static const Collider instance = collider(GeometryKind::Plane, {});
     return instance;
 }
-std::vector<ContactPoint> contact_points(const Collider& a, const Pose& X, const Collider& b, const Pose& Y, double margin = 0)
+std::vector<ContactPoint> points_by_feature(const Collider& a, const Pose& X, const Collider& b, const Pose& Y, double margin = 0)
 {
     ContactPoints out(margin);
     collide(a, X, b, Y, out);
@@ -47,10 +41,10 @@ const Quat kLying = about({0, 1, 0}, std::numbers::pi / 2);
 
 TEST_CASE("stacked boxes: four points at their corners, to the last bit, for a gap as for a depth")
 {
-    const Collider cube = solid(GeometryKind::Box, {0.5, 0.5, 0.5});
+    const Collider cube = collider(GeometryKind::Box, {0.5, 0.5, 0.5});
     for (const double depth : {1e-3, 1e-9, 1e-15, -1e-9, -1e-4})
     {
-        const auto t = contact_points(cube, {}, cube, {{0, 0, 1 - depth}, {}}, 1e-3);
+        const auto t = points_by_feature(cube, {}, cube, {{0, 0, 1 - depth}, {}}, 1e-3);
         REQUIRE(t.size() == 4);
         for (const ContactPoint& k : t)
         {
@@ -61,16 +55,16 @@ TEST_CASE("stacked boxes: four points at their corners, to the last bit, for a g
             CHECK(std::fabs(k.point.z - 0.5) < 1e-3);
         }
     }
-    CHECK(contact_points(cube, {}, cube, {{0, 0, 1 + 1e-9}, {}}).empty());
-    CHECK(contact_points(cube, {}, cube, {{0, 0, 1 + 2e-3}, {}}, 1e-3).empty());
+    CHECK(points_by_feature(cube, {}, cube, {{0, 0, 1 + 1e-9}, {}}).empty());
+    CHECK(points_by_feature(cube, {}, cube, {{0, 0, 1 + 2e-3}, {}}, 1e-3).empty());
 }
 
 TEST_CASE("an overhanging block ends exactly at the edge below it")
 {
-    const Collider block = solid(GeometryKind::Box, {0.5, 0.25, 0.05});
+    const Collider block = collider(GeometryKind::Box, {0.5, 0.25, 0.05});
     for (const double overhang : {0.1, 0.5 - 1e-6, 0.5 + 1e-6, 0.9})
     {
-        const auto t = contact_points(block, {}, block, {{overhang, 0, 0.1 - 1e-9}, {}});
+        const auto t = points_by_feature(block, {}, block, {{overhang, 0, 0.1 - 1e-9}, {}});
         REQUIRE(t.size() == 4);
         double from = 1, to = -1;
         for (const ContactPoint& k : t) from = std::min(from, k.point.x), to = std::max(to, k.point.x);
@@ -81,27 +75,27 @@ TEST_CASE("an overhanging block ends exactly at the edge below it")
 
 TEST_CASE("features stay the same while boxes slide, turn and rock a little")
 {
-    const Collider slab = solid(GeometryKind::Box, {2, 2, 0.1}), cube = solid(GeometryKind::Box, {0.3, 0.3, 0.3});
-    const auto first = features(contact_points(slab, {}, cube, {{0, 0, 0.4}, {}}, 1e-3));
+    const Collider slab = collider(GeometryKind::Box, {2, 2, 0.1}), cube = collider(GeometryKind::Box, {0.3, 0.3, 0.3});
+    const auto first = features(points_by_feature(slab, {}, cube, {{0, 0, 0.4}, {}}, 1e-3));
     CHECK(first.size() == 4);
     std::uint64_t seed = 5;
     for (int i = 0; i < 300; ++i)
     {
         const Pose X{{uniform(seed, -1, 1), uniform(seed, -1, 1), 0.4 + uniform(seed, -1e-4, 1e-4)},
                      about({0, 0, 1}, uniform(seed, -3, 3)) * about({1, uniform(seed, -1, 1), 0}, uniform(seed, -1e-4, 1e-4))};
-        CHECK(features(contact_points(slab, {}, cube, X, 1e-3)) == first);
+        CHECK(features(points_by_feature(slab, {}, cube, X, 1e-3)) == first);
     }
 }
 
 TEST_CASE("crossing edges: one point, with a normal perpendicular to both; no face is preferred")
 {
-    const Collider beam = solid(GeometryKind::Box, {1, 0.1, 0.1});
+    const Collider beam = collider(GeometryKind::Box, {1, 0.1, 0.1});
     const Quat on_edge = about({1, 0, 0}, std::numbers::pi / 4);
     const Quat across = about({0, 0, 1}, 1.1) * on_edge;
     const double height = 0.2 * std::sqrt(2.0);
     for (const double depth : {1e-3, 1e-8, -1e-8})
     {
-        const auto t = contact_points(beam, {{}, on_edge}, beam, {{0.1, 0.05, height - depth}, across}, 1e-6);
+        const auto t = points_by_feature(beam, {{}, on_edge}, beam, {{0.1, 0.05, height - depth}, across}, 1e-6);
         REQUIRE(t.size() == 1);
         CHECK(length(t[0].normal - Vec3{0, 0, 1}) < 1e-14);
         CHECK(std::fabs(t[0].depth - depth) < 1e-15);
@@ -111,8 +105,8 @@ TEST_CASE("crossing edges: one point, with a normal perpendicular to both; no fa
 TEST_CASE("(b, a) is the mirror of (a, b) to the last bit, with features exchanged")
 {
     std::uint64_t seed = 9;
-    const std::vector<Collider> solids{solid(GeometryKind::Box, {0.4, 0.3, 0.2}), solid(GeometryKind::Capsule, {0.2, 0, 0.4}),
-                                       solid(GeometryKind::Cylinder, {0.3, 0, 0.3}), Collider(mesh_of(box_corners({0.2, 0.4, 0.3})))};
+    const std::vector<Collider> solids{collider(GeometryKind::Box, {0.4, 0.3, 0.2}), collider(GeometryKind::Capsule, {0.2, 0, 0.4}),
+                                       collider(GeometryKind::Cylinder, {0.3, 0, 0.3}), Collider(mesh_of(box_corners({0.2, 0.4, 0.3})))};
     int met = 0;
     for (int i = 0; i < 2000; ++i)
     {
@@ -137,14 +131,14 @@ TEST_CASE("(b, a) is the mirror of (a, b) to the last bit, with features exchang
 TEST_CASE("the deepest point is as deep as the solids are, and no point is deeper")
 {
     std::uint64_t seed = 21;
-    const std::vector<Collider> solids{solid(GeometryKind::Box, {0.4, 0.3, 0.2}), solid(GeometryKind::Capsule, {0.2, 0, 0.4}),
-                                       solid(GeometryKind::Cylinder, {0.3, 0, 0.3}), Collider(mesh_of(box_corners({0.2, 0.4, 0.3})))};
+    const std::vector<Collider> solids{collider(GeometryKind::Box, {0.4, 0.3, 0.2}), collider(GeometryKind::Capsule, {0.2, 0, 0.4}),
+                                       collider(GeometryKind::Cylinder, {0.3, 0, 0.3}), Collider(mesh_of(box_corners({0.2, 0.4, 0.3})))};
     for (int i = 0; i < 1000; ++i)
     {
         const Collider &a = solids[static_cast<std::size_t>(i) % 4], &b = solids[static_cast<std::size_t>(i / 4) % 4];
         const Pose X{{}, random_rotation(seed)}, Y{random_vector(seed, 0.7), random_rotation(seed)};
         const Separation s = separation(a, X, b, Y);
-        const auto t = contact_points(a, X, b, Y);
+        const auto t = points_by_feature(a, X, b, Y);
         CHECK(t.empty() == (s.gap >= 0));
         double deepest = -1;
         for (const ContactPoint& k : t) deepest = std::max(deepest, k.depth);
@@ -155,36 +149,36 @@ TEST_CASE("the deepest point is as deep as the solids are, and no point is deepe
 
 TEST_CASE("a capsule lies on two points, and stands on one")
 {
-    const Collider pill = solid(GeometryKind::Capsule, {0.1, 0, 0.4}), slab = solid(GeometryKind::Box, {1, 1, 0.1});
+    const Collider pill = collider(GeometryKind::Capsule, {0.1, 0, 0.4}), slab = collider(GeometryKind::Box, {1, 1, 0.1});
     for (const bool on_plane : {true, false})
     {
         const Collider& ground = on_plane ? plane() : slab;
         const double level = on_plane ? 0 : 0.1;
-        const auto lying = contact_points(pill, {{0, 0, level + 0.1 - 1e-9}, kLying}, ground, {});
+        const auto lying = points_by_feature(pill, {{0, 0, level + 0.1 - 1e-9}, kLying}, ground, {});
         REQUIRE(lying.size() == 2);
         CHECK(std::fabs(lying[0].point.x - lying[1].point.x) == doctest::Approx(0.8).epsilon(1e-12));
         for (const ContactPoint& k : lying) CHECK(std::fabs(k.depth - 1e-9) < 1e-15);
-        CHECK(contact_points(pill, {{0, 0, level + 0.5 - 1e-9}, {}}, ground, {}).size() == 1);
+        CHECK(points_by_feature(pill, {{0, 0, level + 0.5 - 1e-9}, {}}, ground, {}).size() == 1);
     }
-    const auto side = contact_points(pill, {}, pill, {{0.2 - 1e-9, 0, 0.3}, {}});
+    const auto side = points_by_feature(pill, {}, pill, {{0.2 - 1e-9, 0, 0.3}, {}});
     REQUIRE(side.size() == 2);
     CHECK(std::fabs(side[0].point.z - side[1].point.z) == doctest::Approx(0.5).epsilon(1e-12));
 }
 
 TEST_CASE("a cylinder stands on four points, leans on the exact edge, and rolls on two")
 {
-    const Collider can = solid(GeometryKind::Cylinder, {0.2, 0, 0.3}), slab = solid(GeometryKind::Box, {1, 1, 0.1});
+    const Collider can = collider(GeometryKind::Cylinder, {0.2, 0, 0.3}), slab = collider(GeometryKind::Box, {1, 1, 0.1});
     for (const bool on_plane : {true, false})
     {
         const Collider& ground = on_plane ? plane() : slab;
         const double level = on_plane ? 0 : 0.1;
-        CHECK(contact_points(can, {{0.1, 0, level + 0.3 - 1e-9}, {}}, ground, {}).size() == 4);
-        const auto rolling = contact_points(can, {{0, 0, level + 0.2 - 1e-9}, about({0, 0, 1}, 0.3) * kLying}, ground, {});
+        CHECK(points_by_feature(can, {{0.1, 0, level + 0.3 - 1e-9}, {}}, ground, {}).size() == 4);
+        const auto rolling = points_by_feature(can, {{0, 0, level + 0.2 - 1e-9}, about({0, 0, 1}, 0.3) * kLying}, ground, {});
         REQUIRE(rolling.size() == 2);
         CHECK(length(rolling[0].point - rolling[1].point) == doctest::Approx(0.6).epsilon(1e-12));
         // Tilted by a in a direction between the four: the lowest point of the rim carries it.
         const double a = 0.2, low = 0.3 * std::cos(a) + 0.2 * std::sin(a);
-        const auto leaning = contact_points(can, {{0, 0, level + low - 1e-6}, about({1, 0.4, 0}, a)}, ground, {});
+        const auto leaning = points_by_feature(can, {{0, 0, level + low - 1e-6}, about({1, 0.4, 0}, a)}, ground, {});
         REQUIRE(leaning.size() == 1);
         CHECK(std::fabs(leaning[0].depth - 1e-6) < 1e-12);
     }
@@ -192,8 +186,8 @@ TEST_CASE("a cylinder stands on four points, leans on the exact edge, and rolls 
 
 TEST_CASE("a can on the edge of a table: its points are inside both, on the rim, on the edge and at their intersections")
 {
-    const Collider can = solid(GeometryKind::Cylinder, {0.2, 0, 0.3}), slab = solid(GeometryKind::Box, {1, 1, 0.1});
-    const auto t = contact_points(can, {{1.1, 0, 0.4 - 1e-9}, {}}, slab, {});
+    const Collider can = collider(GeometryKind::Cylinder, {0.2, 0, 0.3}), slab = collider(GeometryKind::Box, {1, 1, 0.1});
+    const auto t = points_by_feature(can, {{1.1, 0, 0.4 - 1e-9}, {}}, slab, {});
     REQUIRE(t.size() >= 3);
     double furthest = 0, widest = 0;
     for (const ContactPoint& k : t)

@@ -30,14 +30,14 @@ struct MarginSink final : ContactSink
     bool precedes(Ref a, Ref b) const override { return a.index < b.index; }
 };
 
-struct Crowd
+struct MovingCrowd
 {
     Bodies bodies;
     Shapes shapes;
     std::uint64_t seed = 5;
 
     /// `n` balls and boxes in a cube of side `size`, and the ground.
-    Crowd(int n, double size)
+    MovingCrowd(int n, double size)
     {
         const std::uint32_t plane = add_shape(shapes, GeometryKind::Plane), ball = add_shape(shapes, GeometryKind::Sphere, {0.1, 0, 0}),
                             block = add_shape(shapes, GeometryKind::Box, {0.1, 0.05, 0.2});
@@ -54,7 +54,7 @@ struct Crowd
 
 TEST_CASE("all kinds of search give the same contacts, also the quadtree while bodies leave the bounds for which it was made")
 {
-    Crowd crowd(300, 1.2);
+    MovingCrowd crowd(300, 1.2);
     std::deque<Detection> spaces;
     for (const char* space : {"simple", "tree", "sweep_and_prune", "quadtree"}) spaces.emplace_back(space);
     for (Detection& d : spaces) d.between_all(crowd.bodies);
@@ -85,7 +85,7 @@ TEST_CASE("the pairs that may meet are all those whose bounds, expanded by their
     for (const char* space : {"simple", "tree", "sweep_and_prune", "quadtree"})
     {
         CAPTURE(space);
-        Crowd crowd(120, 3);
+        MovingCrowd crowd(120, 3);
         Detection d(space);
         d.between_all(crowd.bodies);
         NearSink sink;

@@ -2,7 +2,8 @@
 #include <doctest/doctest.h>
 
 #include "bodies.h"
-#include "resolution/bisection.h"
+#include "resolution/searches.h"
+#include "support/events.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -63,11 +64,7 @@ TEST_CASE("when it has used all trials, it gives up and reports that")
 {
     OneRow<resolution::BisectionRows> row;
     row.rows.max_iterations[0] = 5;
-    struct Events final : EventSink
-    {
-        std::vector<Event> all;
-        void emit(Event event) override { all.push_back(std::move(event)); }
-    } events;
+    Events events;
     StepContext context;
     context.events = &events;
     Trial t;

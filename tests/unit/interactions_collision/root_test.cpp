@@ -2,10 +2,9 @@
 #include <doctest/doctest.h>
 
 #include "bodies.h"
-#include "resolution/advancement.h"
 #include "resolution/bracket.h"
-#include "resolution/root.h"
-#include "resolution/speculative.h"
+#include "resolution/searches.h"
+#include "support/events.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -105,11 +104,7 @@ TEST_CASE("conservative advancement steps by gap over closing speed, and accepts
 
 TEST_CASE("bodies that graze for too long are reported")
 {
-    struct Events final : EventSink
-    {
-        std::vector<Event> all;
-        void emit(Event event) override { all.push_back(std::move(event)); }
-    } events;
+    Events events;
     StepContext context;
     context.events = &events;
     OneRow<resolution::AdvancementRows> steps;

@@ -9,13 +9,6 @@ using namespace plab::test;
 
 namespace
 {
-Collider collider(GeometryKind kind, const Vec3& size = {})
-{
-    Geometry g;
-    g.kind = kind, g.size = size;
-    start_ode();
-    return Collider(g);
-}
 Collider hull_of(std::vector<Vec3> vertices) { return Collider(mesh_of(std::move(vertices))); }
 
 std::vector<ContactPoint> contact_points(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b)
@@ -96,7 +89,7 @@ TEST_CASE("sphere and plane, in either order")
         REQUIRE(back.size() == t.size());
         if (t.empty()) continue;
         CHECK(std::fabs(t[0].depth - (0.25 - height)) < 2e-15);
-        CHECK(length(t[0].normal + rotate(X.q, {0, 0, 1})) < 1e-15);
+        CHECK(length(t[0].normal + rotate(X.q, Vec3{0, 0, 1})) < 1e-15);
         CHECK(back[0].depth == t[0].depth);
         CHECK(back[0].normal == -t[0].normal);
     }

@@ -13,12 +13,6 @@ using namespace plab::test;
 
 namespace
 {
-Geometry solid(GeometryKind kind, const Vec3& size)
-{
-    Geometry g;
-    g.kind = kind, g.size = size;
-    return g;
-}
 Geometry round_surface(Surface kind, double radius, double reach)
 {
     Geometry g;

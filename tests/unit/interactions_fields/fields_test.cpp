@@ -5,9 +5,8 @@
 #include <numbers>
 
 #include "interactions/fields/airflow.h"
-#include "interactions/fields/drag.h"
 #include "interactions/fields/gravity.h"
-#include "interactions/fields/load.h"
+#include "interactions/fields/loads.h"
 #include "plab/plugin.h"
 #include "unit/objects/table.h"
 

@@ -5,16 +5,18 @@
 #include "islands.h"
 #include "managers/newton.h"
 #include "plab/random.h"
+#include "support/gravity.h"
 
 using namespace plab;
 using namespace plab::managers;
 using plab::test::IslandWorld;
+using plab::test::kG;
 using plab::test::problem_of;
 
 namespace
 {
 
-constexpr double kStep = 1.0 / 60, kGravity = 9.81;
+constexpr double kStep = 1.0 / 60;
 
 double normal_sum(const Problem& p, std::size_t first, std::size_t count)
 {
@@ -32,13 +34,13 @@ TEST_CASE("a stack of n boxes carries its weight, from a cold start, in a few it
         CAPTURE(n);
         IslandWorld w;
         w.add_stack(std::vector<double>(n, 1.0), 0.8);
-        w.kick({0, 0, -kGravity * kStep});
+        w.kick({0, 0, -kG * kStep});
         Problem p = problem_of(w);
         const Solved s = NewtonSolver().solve(p, {});
         CHECK(s.converged);
         CHECK_FALSE(s.fell_back);
         CHECK(s.steps <= 12);
-        const double weight = kGravity * kStep;
+        const double weight = kG * kStep;
         for (std::size_t k = 0; k < n; ++k)
             CHECK(normal_sum(p, 4 * k, 4) == doctest::Approx(weight * static_cast<double>(n - k)).epsilon(1e-10));
     }
@@ -51,12 +53,12 @@ TEST_CASE("D1: a heavy box on a light one, mass ratios to 1e8: both loads to 1e-
         CAPTURE(r);
         IslandWorld w;
         w.add_stack({1, r}, 0.8);
-        w.kick({0, 0, -kGravity * kStep});
+        w.kick({0, 0, -kG * kStep});
         Problem p = problem_of(w);
         const Solved s = NewtonSolver().solve(p, {});
         CHECK(s.converged);
-        CHECK(normal_sum(p, 0, 4) == doctest::Approx((1 + r) * kGravity * kStep).epsilon(1e-10));
-        CHECK(normal_sum(p, 4, 4) == doctest::Approx(r * kGravity * kStep).epsilon(1e-10));
+        CHECK(normal_sum(p, 0, 4) == doctest::Approx((1 + r) * kG * kStep).epsilon(1e-10));
+        CHECK(normal_sum(p, 4, 4) == doctest::Approx(r * kG * kStep).epsilon(1e-10));
     }
 }
 
@@ -64,7 +66,7 @@ TEST_CASE("a solution is a fixed point: no iteration is made from it")
 {
     IslandWorld w;
     w.add_stack(std::vector<double>(20, 1.0), 0.8);
-    w.kick({0, 0, -kGravity * kStep});
+    w.kick({0, 0, -kG * kStep});
     Problem p = problem_of(w);
     NewtonSolver solver;
     (void)solver.solve(p, {});
@@ -80,12 +82,12 @@ TEST_CASE("friction is a cone: a sliding box is braked by mu m g against its sli
         IslandWorld w;
         w.add_stack({2}, mu);
         const Vec3 along{std::cos(angle), std::sin(angle), 0};
-        w.kick(along * 3.0 + Vec3{0, 0, -kGravity * kStep});
+        w.kick(along * 3.0 + Vec3{0, 0, -kG * kStep});
         Problem p = problem_of(w);
         const Solved s = NewtonSolver().solve(p, {});
         CHECK(s.converged);
         // Its corners slip equally only if it does not tip over: mu h < half its width.
-        CHECK(length(p.movers[0].v - along * (3 - mu * kGravity * kStep)) < 1e-12);
+        CHECK(length(p.movers[0].v - along * (3 - mu * kG * kStep)) < 1e-12);
         for (const Point& q : p.points) CHECK(std::hypot(q.impulse.x, q.impulse.y) == doctest::Approx(mu * q.impulse.z).epsilon(1e-9));
     }
 }
@@ -95,10 +97,10 @@ TEST_CASE("D6: a table with four legs: the load is distributed evenly, as nothin
     IslandWorld w;
     const auto ground = w.add_box(0, {5, 5, 1}, {0, 0, -1}), table = w.add_box(8, {1, 0.6, 0.4}, {0, 0, 0.4});
     w.add_face(ground, table, {0, 0, 0}, 1, 0.6, 0.5);
-    w.kick({0, 0, -kGravity * kStep});
+    w.kick({0, 0, -kG * kStep});
     Problem p = problem_of(w);
     CHECK(NewtonSolver().solve(p, {}).converged);
-    for (const Point& q : p.points) CHECK(q.impulse.z == doctest::Approx(2 * kGravity * kStep).epsilon(1e-9));
+    for (const Point& q : p.points) CHECK(q.impulse.z == doctest::Approx(2 * kG * kStep).epsilon(1e-9));
 }
 
 TEST_CASE("wherever Newton's method says that it converged, the law holds at every contact")
@@ -145,13 +147,13 @@ TEST_CASE("a one-sided row and an equality row share an island with contacts")
     pull.blocks[0] = {{Facet::Body, w.members[0]}, {1, 0, 0}, {}};
     pull.lower = -2, pull.upper = 2;
     w.rows.push_back(pull);
-    w.kick({0, 0, -kGravity * kStep});
+    w.kick({0, 0, -kG * kStep});
     Problem p = problem_of(w);
     p.lines[0].target = 1, p.lines[0].least = -2 * kStep, p.lines[0].most = 2 * kStep;
     const Solved s = NewtonSolver().solve(p, {});
     CHECK(s.converged);
     CHECK(p.lines[0].impulse == doctest::Approx(2 * kStep).epsilon(1e-12));
-    CHECK(p.movers[0].v.x == doctest::Approx((2 - 0.1 * kGravity) * kStep).epsilon(1e-9));
+    CHECK(p.movers[0].v.x == doctest::Approx((2 - 0.1 * kG) * kStep).epsilon(1e-9));
 }
 
 TEST_CASE("D2: the work of one factorisation of a stack is proportional to its height; for a wall it is less than that of a band matrix")

@@ -3,18 +3,18 @@
 
 #include "islands.h"
 #include "managers/manager_rows.h"
+#include "support/gravity.h"
 #include "support/one_row.h"
 
 using namespace plab;
 using namespace plab::managers;
 using plab::test::GravityMotion;
 using plab::test::IslandWorld;
+using plab::test::kG;
 using plab::test::OneRow;
 
 namespace
 {
-
-constexpr double kGravity = 9.81;
 
 /// Steps with new contacts at the present points of b; contact points go with their bodies.
 template <class Table, class Solve>
@@ -22,7 +22,7 @@ void run(IslandWorld& w, OneRow<Table>& manager, Solve solve, double h, int step
 {
     for (int i = 0; i < steps; ++i)
     {
-        GravityMotion motion(w, kGravity);
+        GravityMotion motion(w, kG);
         Island island = w.island(h);
         island.motion = &motion;
         const std::vector<Vec3> start = w.bodies.position;
@@ -36,7 +36,7 @@ void run(IslandWorld& w, OneRow<Table>& manager, Solve solve, double h, int step
 
 TEST_CASE("C14: a sliding box stops at the position of the closed form, whatever the step: 1e-12 with Direct, 1e-8 with sweeps")
 {
-    const double v = 3, mu = 0.4, method = v * v / (2 * mu * kGravity);
+    const double v = 3, mu = 0.4, method = v * v / (2 * mu * kG);
     for (const double h : {1.0 / 60, 1.0 / 30, 0.1})
     {
         CAPTURE(h);
@@ -70,8 +70,8 @@ TEST_CASE("an elastic impact returns the approach speed, then gravity acts: ener
     const double h = 1.0 / 60;
     run(w, exact, solve_direct, h, 1);
     const double v = w.bodies.velocity[box].z, rise = w.bodies.position[box].z - 0.5;
-    CHECK(v == doctest::Approx(2 - kGravity * h).epsilon(1e-13));
-    CHECK(std::fabs(0.5 * v * v + kGravity * rise - 2) < 1e-13);
+    CHECK(v == doctest::Approx(2 - kG * h).epsilon(1e-13));
+    CHECK(std::fabs(0.5 * v * v + kG * rise - 2) < 1e-13);
 }
 
 TEST_CASE("overlap is corrected without adding speed")
@@ -96,7 +96,7 @@ TEST_CASE("sweeps from a bad initial guess add no energy")
     run(w, swept, solve_sequential, 1.0 / 60, 1);
     double energy = 0;
     for (const std::uint32_t b : w.members) energy += w.bodies.kinetic_energy(b);
-    CHECK(energy <= 8 * 0.5 * std::pow(kGravity / 60, 2));
+    CHECK(energy <= 8 * 0.5 * std::pow(kG / 60, 2));
 }
 
 TEST_CASE("SoftStep: a box sinks by the amount of its stiffness and rests; so does a row of ten")

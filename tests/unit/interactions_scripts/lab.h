@@ -6,15 +6,12 @@
 #include <vector>
 
 #include "script.h"
+#include "support/events.h"
 
 namespace plab::scripts::test
 {
 
-struct Events final : EventSink
-{
-    std::vector<Event> all;
-    void emit(Event event) override { all.push_back(std::move(event)); }
-};
+using plab::test::Events;
 
 /// driver: shaft 0 (name it so in comments), driven: body 0 or shaft 1, between: bodies 0 and 1.
 struct Lab

@@ -17,9 +17,9 @@ namespace
 {
 
 /// A scene of bodies and one shaft, whose frames count from 1.
-struct Scene
+struct SentScene
 {
-    explicit Scene(std::size_t bodies) : bodies_(bodies)
+    explicit SentScene(std::size_t bodies) : bodies_(bodies)
     {
         frame.run = 3, frame.revision = 5;
         for (std::size_t i = 0; i < bodies; ++i)
@@ -101,7 +101,7 @@ bool same(const plab_v2_Frame& a, const plab_v2_Frame& b)
 
 TEST_CASE("what rests is not sent again, and the assembled frame has every bit")
 {
-    Scene scene(100);
+    SentScene scene(100);
     wire::FrameUpdates updates;
     link::FrameAssembler assembler;
     const Clock::time_point now{};
@@ -136,7 +136,7 @@ TEST_CASE("what rests is not sent again, and the assembled frame has every bit")
 TEST_CASE("any delta completes its key frame, whichever were lost; without the key frame nothing is passed on until the next one")
 {
     std::mt19937 random(1);
-    Scene scene(50);
+    SentScene scene(50);
     wire::FrameUpdates updates;
     link::FrameAssembler assembler, late;
     Clock::time_point now{};
@@ -175,7 +175,7 @@ TEST_CASE("any delta completes its key frame, whichever were lost; without the k
 
 TEST_CASE("a key frame comes within a second, with a new reader, run, revision or object")
 {
-    Scene scene(10);
+    SentScene scene(10);
     wire::FrameUpdates updates;
     Clock::time_point now{};
     const auto is_key = [&] { return updates.next(scene.next(), now).kind == wire::kKeyFrame; };
@@ -201,7 +201,7 @@ TEST_CASE("a key frame comes within a second, with a new reader, run, revision o
 
 TEST_CASE("a delta is never larger than a key frame; if everything moves, every frame is a key frame")
 {
-    Scene scene(64);
+    SentScene scene(64);
     wire::FrameUpdates updates;
     const Clock::time_point now{};
     const std::size_t whole = bytes(updates.next(scene.next(), now));
@@ -228,7 +228,7 @@ TEST_CASE("a delta is never larger than a key frame; if everything moves, every 
 
 TEST_CASE("updates that are not valid are dropped and counted")
 {
-    Scene scene(4);
+    SentScene scene(4);
     wire::FrameUpdates updates;
     link::FrameAssembler assembler;
     const Clock::time_point now{};

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "cdr.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -23,8 +24,6 @@ std::string json_of_exactly(const DynamicTypePtr& type, std::span<const std::byt
 }
 
 bool is_error(const std::string& text) { return text.starts_with("error: "); }
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 }  // namespace
 
 TEST_CASE("a sample that is truncated anywhere is refused, and the message says where")

@@ -34,8 +34,6 @@ std::vector<Json> lines(const std::string& text)
     return out;
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 std::size_t lines_with(const std::string& text, const std::string& part)
 {
     std::size_t count = 0;

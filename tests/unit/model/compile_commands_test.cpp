@@ -11,8 +11,6 @@ using model::ComponentNode;
 namespace
 {
 
-ComponentNode shaft(const std::string& id) { return component(id, "State/Shaft"); }
-
 ComponentNode with_commands(ComponentNode node, std::vector<CommandNode> commands)
 {
     node.commands = std::move(commands);

@@ -10,12 +10,6 @@ using model::ComponentNode;
 namespace
 {
 
-ComponentNode body(const std::string& id, Texts more = {})
-{
-    more.emplace_back("mass", "1");
-    return component(id, "State/RigidBody", more, 5);
-}
-
 /// Two bodies and a detection between them.
 std::vector<ComponentNode> collision(const Texts& attributes, std::vector<ComponentNode> more = {})
 {

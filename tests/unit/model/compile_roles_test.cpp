@@ -10,8 +10,6 @@ using model::ComponentNode;
 namespace
 {
 
-ComponentNode body(const std::string& id) { return component(id, "State/RigidBody", {{"mass", "1"}}); }
-ComponentNode shaft(const std::string& id) { return component(id, "State/Shaft"); }
 ComponentNode gear(const Texts& attributes, std::uint32_t line = 9)
 {
     return component("g", "Constraint/AngularVelocity/Graph", attributes, line);

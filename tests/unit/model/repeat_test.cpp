@@ -13,12 +13,6 @@ using model::ComponentNode;
 namespace
 {
 
-ComponentNode body(const std::string& id, Texts more = {})
-{
-    more.emplace_back("mass", "1");
-    return component(id, "State/RigidBody", more, 5);
-}
-
 model::Blueprint repeated(const Texts& attributes, std::vector<ComponentNode> components, std::vector<ComponentNode> others = {})
 {
     model::Blueprint b = scene(std::move(others));

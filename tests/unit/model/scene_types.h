@@ -40,6 +40,9 @@ model::CommandNode command(std::string subject, std::string type, std::uint32_t 
 model::CommandNode composite(std::string id, std::string name, std::vector<model::CommandNode> children, std::uint32_t line = 0);
 model::CommandNode see_command(std::string id, std::uint32_t line = 0);
 model::RepeatNode repeat(const Texts& attributes, std::vector<model::ComponentNode> components, std::uint32_t line = 0);
+/// A rigid body of 1 kg in line 5, and a shaft.
+model::ComponentNode body(const std::string& id, Texts more = {});
+model::ComponentNode shaft(const std::string& id);
 model::Blueprint scene(std::vector<model::ComponentNode> components);
 
 /// The compiled scene; a failure is a failed test that shows the errors.

@@ -41,6 +41,14 @@ model::ComponentNode component(std::string id, std::string type, const Texts& at
     return node;
 }
 
+model::ComponentNode body(const std::string& id, Texts more)
+{
+    more.emplace_back("mass", "1");
+    return component(id, "State/RigidBody", more, 5);
+}
+
+model::ComponentNode shaft(const std::string& id) { return component(id, "State/Shaft"); }
+
 model::ComponentNode group(std::string id, std::vector<model::ComponentNode> children, std::uint32_t line)
 {
     model::ComponentNode node = component(std::move(id), "", {}, line);

@@ -4,11 +4,8 @@
 #include <numbers>
 
 #include "objects/bodies/inertia.h"
-#include "objects/bodies/kinematic.h"
 #include "objects/bodies/material_pair.h"
-#include "objects/bodies/rigid_body.h"
-#include "objects/bodies/shaft.h"
-#include "objects/bodies/static.h"
+#include "objects/bodies/states.h"
 #include "plab/plugin.h"
 #include "plab/rotation.h"
 #include "table.h"

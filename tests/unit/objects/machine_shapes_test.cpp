@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "objects/shapes/cylinder.h"
-#include "objects/shapes/gear.h"
-#include "objects/shapes/mesh_topology.h"
-#include "objects/shapes/rotor.h"
+#include "objects/shapes/machine_parts.h"
+#include "objects/shapes/primitives.h"
 #include "objects/shapes/volume_integration.h"
 #include "plab/rotation.h"
 #include "table.h"

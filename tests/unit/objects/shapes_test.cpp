@@ -4,11 +4,9 @@
 #include <numbers>
 
 #include "meshes.h"
-#include "objects/shapes/box.h"
-#include "objects/shapes/mesh.h"
-#include "objects/shapes/placed.h"
-#include "objects/shapes/plane.h"
-#include "objects/shapes/sphere.h"
+#include "objects/shapes/composed.h"
+#include "objects/shapes/meshes.h"
+#include "objects/shapes/primitives.h"
 #include "objects/shapes/volume_integration.h"
 #include "plab/plugin.h"
 #include "plab/rotation.h"

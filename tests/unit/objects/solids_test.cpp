@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "meshes.h"
-#include "objects/shapes/capsule.h"
-#include "objects/shapes/compound.h"
-#include "objects/shapes/convex_hull.h"
-#include "objects/shapes/picture.h"
+#include "objects/shapes/built_mesh.h"
+#include "objects/shapes/composed.h"
+#include "objects/shapes/meshes.h"
+#include "objects/shapes/primitives.h"
 #include "objects/shapes/volume_integration.h"
 #include "plab/convex_hull.h"
 #include "plab/random.h"

@@ -12,7 +12,7 @@ using recorder::PendingDisposals;
 namespace
 {
 
-const PendingDisposals::Clock::time_point kStart{std::chrono::hours(1)};
+const PendingDisposals::Clock::time_point kFirstDisposal{std::chrono::hours(1)};
 
 std::string keys(const std::vector<Disposal>& disposals)
 {
@@ -28,24 +28,24 @@ Disposal disposal(const std::string& key) { return {"plab/objects", key, 1, 0, 0
 TEST_CASE("a disposal is accepted when its waiting time is over")
 {
     PendingDisposals disposals;
-    disposals.add(disposal("a"), kStart);
-    disposals.add(disposal("b"), kStart + std::chrono::milliseconds(10));
-    CHECK(disposals.take(kStart + PendingDisposals::kDoubt - std::chrono::milliseconds(1)).empty());
-    CHECK(keys(disposals.take(kStart + PendingDisposals::kDoubt)) == "a ");
-    CHECK(keys(disposals.take(kStart + std::chrono::hours(1))) == "b ");
-    CHECK(disposals.take(kStart + std::chrono::hours(1)).empty());
+    disposals.add(disposal("a"), kFirstDisposal);
+    disposals.add(disposal("b"), kFirstDisposal + std::chrono::milliseconds(10));
+    CHECK(disposals.take(kFirstDisposal + PendingDisposals::kDoubt - std::chrono::milliseconds(1)).empty());
+    CHECK(keys(disposals.take(kFirstDisposal + PendingDisposals::kDoubt)) == "a ");
+    CHECK(keys(disposals.take(kFirstDisposal + std::chrono::hours(1))) == "b ");
+    CHECK(disposals.take(kFirstDisposal + std::chrono::hours(1)).empty());
 }
 
 TEST_CASE(
     "an instance that comes back had been disposed of; earlier disposals stay in order, and the end of the server cancels pending ones")
 {
     PendingDisposals disposals;
-    for (const char* key : {"a", "b", "c"}) disposals.add(disposal(key), kStart);
+    for (const char* key : {"a", "b", "c"}) disposals.add(disposal(key), kFirstDisposal);
     CHECK(disposals.take_before_return("plab/shapes", "b").empty());
     CHECK(keys(disposals.take_before_return("plab/objects", "b")) == "a b ");
     CHECK(disposals.take_before_return("plab/objects", "b").empty());
     disposals.forget();
-    CHECK(disposals.take(kStart + std::chrono::hours(1)).empty());
+    CHECK(disposals.take(kFirstDisposal + std::chrono::hours(1)).empty());
 }
 
 TEST_CASE("the key of a disposed instance is read as text in either byte order; invalid bytes give nothing")

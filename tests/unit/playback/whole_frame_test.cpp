@@ -32,21 +32,21 @@ std::vector<std::pair<std::uint32_t, double>> rows(const plab_v2_Frame& frame)
     return out;
 }
 
-using Rows = std::vector<std::pair<std::uint32_t, double>>;
+using FrameRows = std::vector<std::pair<std::uint32_t, double>>;
 
 }  // namespace
 
 TEST_CASE("an object that a frame does not name keeps its last state, until a new run or revision")
 {
     WholeFrame whole;
-    CHECK(rows(whole.with(Made(1, 1, {{7, 1}, {3, 2}, {5, 3}}).frame)) == Rows{{7, 1}, {3, 2}, {5, 3}});
-    CHECK(rows(whole.with(Made(1, 1, {{3, 20}}).frame)) == Rows{{7, 1}, {3, 20}, {5, 3}});
-    CHECK(rows(whole.with(Made(1, 1, {}).frame)) == Rows{{7, 1}, {3, 20}, {5, 3}});
-    CHECK(rows(whole.with(Made(1, 1, {{5, 30}, {7, 10}}).frame)) == Rows{{7, 10}, {3, 20}, {5, 30}});
-    CHECK(rows(whole.with(Made(1, 2, {{7, 0}, {9, 1}}).frame)) == Rows{{7, 0}, {9, 1}});
-    CHECK(rows(whole.with(Made(2, 2, {{3, 4}}).frame)) == Rows{{3, 4}});
+    CHECK(rows(whole.with(Made(1, 1, {{7, 1}, {3, 2}, {5, 3}}).frame)) == FrameRows{{7, 1}, {3, 2}, {5, 3}});
+    CHECK(rows(whole.with(Made(1, 1, {{3, 20}}).frame)) == FrameRows{{7, 1}, {3, 20}, {5, 3}});
+    CHECK(rows(whole.with(Made(1, 1, {}).frame)) == FrameRows{{7, 1}, {3, 20}, {5, 3}});
+    CHECK(rows(whole.with(Made(1, 1, {{5, 30}, {7, 10}}).frame)) == FrameRows{{7, 10}, {3, 20}, {5, 30}});
+    CHECK(rows(whole.with(Made(1, 2, {{7, 0}, {9, 1}}).frame)) == FrameRows{{7, 0}, {9, 1}});
+    CHECK(rows(whole.with(Made(2, 2, {{3, 4}}).frame)) == FrameRows{{3, 4}});
     whole.forget();
-    CHECK(rows(whole.with(Made(2, 2, {{9, 5}}).frame)) == Rows{{9, 5}});
+    CHECK(rows(whole.with(Made(2, 2, {{9, 5}}).frame)) == FrameRows{{9, 5}});
 }
 
 TEST_CASE("the time line continues when a run begins again, at zero or at any time")

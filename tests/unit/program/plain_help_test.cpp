@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "program/plain_help.h"
+#include "support/text.h"
 
 using namespace plab::program;
+using plab::test::has;
 
 namespace
 {
@@ -25,8 +27,6 @@ std::string answer(std::vector<const char*> words)
     words.insert(words.begin(), "plab-weigh");
     return answer_about(outline(), "1.2.3", static_cast<int>(words.size()), words.data()).value_or("(none)");
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

@@ -14,8 +14,6 @@ using plab::Result;
 namespace
 {
 
-constexpr Compression kAll[] = {Compression::None, Compression::Lz4, Compression::Zstd};
-
 struct Recovered
 {
     Result<RecoveryReport> report;
@@ -81,7 +79,7 @@ std::size_t check_recovery(ByteView bytes, const SampleFile& file)
 
 TEST_CASE("a whole file is whole")
 {
-    for (const Compression compression : kAll)
+    for (const Compression compression : kCompressions)
     {
         const SampleFile file(compression, 5);
         const Recovered out = recover_bytes(file.bytes);
@@ -98,7 +96,7 @@ TEST_CASE("a whole file is whole")
 
 TEST_CASE("cut at every byte of the last chunk: all chunks before it are recovered and read")
 {
-    for (const Compression compression : kAll)
+    for (const Compression compression : kCompressions)
     {
         CAPTURE(static_cast<int>(compression));
         const SampleFile file(compression, 4, false);
@@ -142,7 +140,7 @@ TEST_CASE("cut at every byte of a closed file")
 
 TEST_CASE("every byte of a closed file changed, one at a time")
 {
-    for (const Compression compression : kAll)
+    for (const Compression compression : kCompressions)
     {
         const SampleFile file(compression, 3);
         Bytes altered = file.bytes;

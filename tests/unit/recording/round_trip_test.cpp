@@ -11,13 +11,11 @@ using namespace plab::recording::test;
 namespace
 {
 
-constexpr Compression kAll[] = {Compression::None, Compression::Lz4, Compression::Zstd};
-
 }  // namespace
 
 TEST_CASE("a closed file is read by its index, message for message")
 {
-    for (const Compression compression : kAll)
+    for (const Compression compression : kCompressions)
     {
         CAPTURE(static_cast<int>(compression));
         const SampleFile file(compression, 5);
@@ -35,7 +33,7 @@ TEST_CASE("a closed file is read by its index, message for message")
 
 TEST_CASE("a file that was not closed is read by a scan, with the same content")
 {
-    for (const Compression compression : kAll)
+    for (const Compression compression : kCompressions)
     {
         CAPTURE(static_cast<int>(compression));
         const SampleFile file(compression, 5, false);

@@ -13,6 +13,8 @@
 namespace plab::recording::test
 {
 
+inline constexpr Compression kCompressions[] = {Compression::None, Compression::Lz4, Compression::Zstd};
+
 /// A file in memory that can be read while it grows.
 class MemorySink final : public Sink
 {

@@ -8,6 +8,7 @@
 
 #include "made_recording.h"
 #include "support/process.h"
+#include "support/text.h"
 
 using namespace plab::test;
 using Json = nlohmann::ordered_json;
@@ -21,17 +22,7 @@ Outcome plabctl(std::vector<std::string> arguments)
     return run(std::move(arguments));
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 std::size_t lines_in(const std::string& text) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')); }
-
-std::string text_of(const std::string& file)
-{
-    std::ifstream in(file);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 /// A recording whose last third is missing.
 std::string cut_recording(const std::string& name)
@@ -114,9 +105,9 @@ TEST_CASE("exit codes of recover: 0 whole, 5 something lost, 1 nothing usable")
     CHECK(summary["not_recovered"].size() >= 1);
     const std::string page = fresh_path("cli_recovered.html");
     CHECK(plabctl({"report", out, "-o", page}).code == 0);
-    CHECK(!has(text_of(page), "is complete"));
-    CHECK(has(text_of(page), "recovered from a recording that had lost some data"));
-    CHECK(has(text_of(page), "lost, and not recovered: "));
+    CHECK(!has(content_of(page), "is complete"));
+    CHECK(has(content_of(page), "recovered from a recording that had lost some data"));
+    CHECK(has(content_of(page), "lost, and not recovered: "));
     // It is not overwritten.
     CHECK(plabctl({"recover", make_recording("cli_whole.mcap"), "-o", out}).code == 1);
     const std::string none = fresh_path("cli_none.mcap");
@@ -132,9 +123,9 @@ TEST_CASE("a file that is being written gets its name when it is complete")
     const std::string file = make_recording("cli_named_late.mcap"), out = fresh_path("cli_states.csv");
     std::ofstream(out) << "what was there before";
     CHECK(plabctl({"export", file, "--csv", "--topic", "none", "-o", out}).code == 1);
-    CHECK(text_of(out) == "what was there before");
+    CHECK(content_of(out) == "what was there before");
     CHECK(plabctl({"export", file, "--csv", "-o", out}).code == 0);
-    CHECK(lines_in(text_of(out)) == 1 + 201 * 3);
+    CHECK(lines_in(content_of(out)) == 1 + 201 * 3);
     CHECK(!std::filesystem::exists(out + ".part"));
     CHECK(plabctl({"export", file, "--csv", "-o", "/dev/null"}).code == 0);
     CHECK(std::filesystem::is_character_file("/dev/null"));
@@ -142,7 +133,7 @@ TEST_CASE("a file that is being written gets its name when it is complete")
     std::filesystem::create_symlink(out, link);
     CHECK(plabctl({"export", file, "--csv", "--topic", "hashes", "-o", link}).code == 0);
     CHECK(std::filesystem::is_symlink(link));
-    CHECK(text_of(out).starts_with("run,step"));
+    CHECK(content_of(out).starts_with("run,step"));
 }
 
 TEST_CASE("recover names its file after the original")

@@ -40,7 +40,7 @@ double value_at(const figures::Curve& curve, double time)
     return std::nan("");
 }
 
-std::string refused(const Log& log, const std::string& quantity)
+std::string refused_curve(const Log& log, const std::string& quantity)
 {
     const auto parsed = parse_quantity(quantity, log.things());
     REQUIRE(!parsed.ok());
@@ -151,17 +151,17 @@ TEST_CASE("without a catalogue objects have numbers, and interactions the names 
     CHECK(value_at(curves(log, "contact.response.cost")[0], 1.5) == 100);
 }
 
-TEST_CASE("unknown quantities are refused with a list of the known ones")
+TEST_CASE("unknown quantities are refused_curve with a list of the known ones")
 {
     const Log log = opened(make_recording("curves_refused.mcap"));
-    CHECK(refused(log, "rde.position").find("did you mean 'red'") != std::string::npos);
-    CHECK(refused(log, "red.height").find("a body has position") != std::string::npos);
-    CHECK(refused(log, "red.position.q").find("a body has position") != std::string::npos);
-    CHECK(refused(log, "red").find("no quantity 'red'") != std::string::npos);
+    CHECK(refused_curve(log, "rde.position").find("did you mean 'red'") != std::string::npos);
+    CHECK(refused_curve(log, "red.height").find("a body has position") != std::string::npos);
+    CHECK(refused_curve(log, "red.position.q").find("a body has position") != std::string::npos);
+    CHECK(refused_curve(log, "red").find("no quantity 'red'") != std::string::npos);
     CHECK(curves(log, "contact.response.nothing")[0].points.empty());
-    CHECK(refused(log, "axle.position.x").find("a shaft has angle, speed") != std::string::npos);
-    CHECK(refused(log, "axle.position.x").find("a body has") == std::string::npos);
-    CHECK(refused(log, "red.angle").find("a shaft has") == std::string::npos);
+    CHECK(refused_curve(log, "axle.position.x").find("a shaft has angle, speed") != std::string::npos);
+    CHECK(refused_curve(log, "axle.position.x").find("a body has") == std::string::npos);
+    CHECK(refused_curve(log, "red.angle").find("a shaft has") == std::string::npos);
 }
 
 TEST_CASE("swaps, runs and events are marked where they were")

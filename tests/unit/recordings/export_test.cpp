@@ -10,6 +10,7 @@
 #include "control/recordings/export.h"
 #include "control/recordings/tables.h"
 #include "made_recording.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::recordings;
@@ -18,14 +19,6 @@ using Json = nlohmann::ordered_json;
 
 namespace
 {
-
-std::string text_of(const std::string& path)
-{
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream out;
-    out << in.rdbuf();
-    return out.str();
-}
 
 std::vector<std::string> lines_of(const std::string& text)
 {
@@ -51,10 +44,10 @@ std::string exported(const std::string& file, ExportOptions options, bool csv = 
     const auto done = csv ? export_csv(*log, options) : export_json(*log, options);
     REQUIRE_MESSAGE(done.ok(), done.error().text());
     CHECK(done->troubles.count == 0);
-    return text_of(options.out);
+    return content_of(options.out);
 }
 
-std::string refused(const std::string& file, const ExportOptions& options)
+std::string refused_export(const std::string& file, const ExportOptions& options)
 {
     auto log = Log::open(file);
     REQUIRE(log.ok());
@@ -115,7 +108,7 @@ TEST_CASE("every table row has as many cells as the header")
     CHECK(done->files.size() == 9);  // of ten topics all but the scene
     for (const std::string& name : done->files)
     {
-        const std::vector<std::string> lines = lines_of(text_of(name));
+        const std::vector<std::string> lines = lines_of(content_of(name));
         REQUIRE_MESSAGE(lines.size() > 1, name);
         if (name.ends_with("events.csv")) continue;  // its texts have commas
         for (const std::string& line : lines) CHECK_MESSAGE(cells_of(line).size() == cells_of(lines[0]).size(), name << ": " << line);
@@ -169,11 +162,11 @@ TEST_CASE("without a selection JSON has all topics except snapshots, in the orde
     CHECK(!topics.contains("plab/snapshots"));
 }
 
-TEST_CASE("topics that cannot be exported are refused with a list of those that can")
+TEST_CASE("topics that cannot be exported are refused_export with a list of those that can")
 {
     const std::string file = make_recording("export_refused.mcap");
-    CHECK(refused(file, {.topics = {"state"}}).find("did you mean 'plab/states'") != std::string::npos);
-    CHECK(refused(file, {.topics = {"scene"}}).find("those that have one: plab/states") != std::string::npos);
-    CHECK(refused(file, {.topics = {"states", "events"}}).find("several tables need a folder") != std::string::npos);
-    CHECK(refused(file, {.out = fresh_path("no/such/folder/x.csv")}).find("cannot write") != std::string::npos);
+    CHECK(refused_export(file, {.topics = {"state"}}).find("did you mean 'plab/states'") != std::string::npos);
+    CHECK(refused_export(file, {.topics = {"scene"}}).find("those that have one: plab/states") != std::string::npos);
+    CHECK(refused_export(file, {.topics = {"states", "events"}}).find("several tables need a folder") != std::string::npos);
+    CHECK(refused_export(file, {.out = fresh_path("no/such/folder/x.csv")}).find("cannot write") != std::string::npos);
 }

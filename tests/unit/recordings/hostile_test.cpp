@@ -11,6 +11,7 @@
 #include "control/recordings/report.h"
 #include "idl/recording/topic_schema.h"
 #include "made_recording.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::recordings;
@@ -18,14 +19,6 @@ using namespace plab::test;
 
 namespace
 {
-
-std::string bytes_of(const std::string& path)
-{
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream out;
-    out << in.rdbuf();
-    return out.str();
-}
 
 void write(const std::string& path, const std::string& bytes)
 {
@@ -86,7 +79,7 @@ std::vector<recording::Bytes> altered(const T& sample)
 
 TEST_CASE("a file with a changed byte is read as far as possible, or refused")
 {
-    const std::string whole = bytes_of(make_recording("flip.mcap", {.steps = 12, .compression = recording::Compression::None}));
+    const std::string whole = content_of(make_recording("flip.mcap", {.steps = 12, .compression = recording::Compression::None}));
     const std::string path = fresh_path("flipped.mcap");
     std::size_t opened = 0, tried = 0;
     for (std::size_t i = 0; i < whole.size(); i += 61, ++tried)
@@ -101,7 +94,7 @@ TEST_CASE("a file with a changed byte is read as far as possible, or refused")
 
 TEST_CASE("a file that is truncated anywhere is read as far as possible, or refused")
 {
-    const std::string whole = bytes_of(make_recording("cuts.mcap", {.steps = 12, .compression = recording::Compression::None}));
+    const std::string whole = content_of(make_recording("cuts.mcap", {.steps = 12, .compression = recording::Compression::None}));
     const std::string path = fresh_path("cut.mcap");
     std::uint64_t last = 0;
     for (std::size_t n = 0; n < whole.size(); n += 97)
@@ -191,7 +184,7 @@ TEST_CASE("foreign topics are counted, and not taken for pLab's")
     const std::string out = fresh_path("others.jsonl");
     const auto exported = export_json(*log, {.topics = {"states"}, .out = out});
     REQUIRE(exported.ok());
-    CHECK(bytes_of(out).empty());
+    CHECK(content_of(out).empty());
     REQUIRE(exported->troubles.count == 1);
     CHECK(exported->troubles.texts[0] == "plab/states: its messages are not of a type of this version of the wire (plab::v2)");
     CHECK(export_json(*log, {.topics = {"notes"}, .out = out})->troubles.count == 1);

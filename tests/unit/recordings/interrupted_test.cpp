@@ -11,6 +11,7 @@
 #include "idl/recording/recovery.h"
 #include "made_recording.h"
 #include "support/process.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::recordings;
@@ -45,8 +46,6 @@ int reads_of(const std::string& file)
     CHECK(!log->is_interrupted());
     return reads;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

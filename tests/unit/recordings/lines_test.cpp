@@ -8,6 +8,7 @@
 #include "control/recordings/report.h"
 #include "control/recordings/segments.h"
 #include "made_recording.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::recordings;
@@ -31,8 +32,6 @@ std::vector<std::string> lines(const std::string& file, const LineOptions& optio
     for (std::string line; std::getline(in, line);) all.push_back(line);
     return all;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

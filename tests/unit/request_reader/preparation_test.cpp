@@ -51,7 +51,7 @@ public:
         REQUIRE(std::get<AddBlueprintOperation>(out.operations.front()).prepared);
         return out;
     }
-    Reply ask(Operation operation)
+    Reply ask(simulation::Operation operation)
     {
         Request request;
         request.operations.push_back(std::move(operation));

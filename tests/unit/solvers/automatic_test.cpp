@@ -1,6 +1,6 @@
 /// Solver/Automatic: its rule, and the bits of the solver that it picks.
 #include "objects/solvers/automatic.h"
-#include "objects/solvers/facts.h"
+#include "objects/solvers/stiffness.h"
 #include "unit/solvers/problems.h"
 
 using namespace plab;

@@ -1,6 +1,6 @@
 /// Solver/Exponential: exact for linear forces at any step and stiffness, of order 4 for others.
 #include "objects/solvers/exponential.h"
-#include "objects/solvers/jacobian.h"
+#include "objects/solvers/flat_system.h"
 #include "objects/solvers/matrix_exponential.h"
 #include "unit/solvers/problems.h"
 

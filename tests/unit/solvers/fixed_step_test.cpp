@@ -1,8 +1,6 @@
 /// Fixed-step solvers on systems with known solutions: observed orders, invariants, free rotation through the exponential map.
+#include "objects/solvers/fixed_step.h"
 #include "objects/solvers/rotation_splitting.h"
-#include "objects/solvers/runge_kutta4.h"
-#include "objects/solvers/semi_implicit_euler.h"
-#include "objects/solvers/stoermer_verlet.h"
 #include "plab/plugin.h"
 #include "unit/solvers/problems.h"
 

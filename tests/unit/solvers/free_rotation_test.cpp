@@ -1,7 +1,7 @@
 /// Free rotation in closed form, and Solver/Exact with it: machine precision at any step, for every kind of top.
 #include "plab/free_rotation.h"
 #include "objects/solvers/exact.h"
-#include "objects/solvers/runge_kutta4.h"
+#include "objects/solvers/fixed_step.h"
 #include "plab/elliptic.h"
 #include "unit/solvers/problems.h"
 

@@ -8,11 +8,13 @@
 #include "figures/axes.h"
 #include "study/plot.h"
 #include "study/write.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::study;
 using namespace plab::figures;
 using namespace plab::study::plot;
+using plab::test::has;
 
 namespace
 {
@@ -40,8 +42,6 @@ StudyResult sample()
     r.points.back().record.outcome = Outcome::NotFinite, r.points.back().record.why = "the state of <ball> was not finite";
     return r;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// Every element that opens closes; attributes are quoted.
 bool well_formed(const std::string& xml)

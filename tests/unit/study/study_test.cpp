@@ -5,11 +5,15 @@
 #include "program/text_out.h"
 #include "study/write.h"
 #include "support/scene.h"
+#include "support/text.h"
+#include "unit/study/run_study.h"
 
 using namespace plab;
 using namespace plab::study;
+using plab::test::has;
 using plab::test::library;
 using plab::test::near;
+using plab::test::study_of;
 
 namespace
 {
@@ -34,8 +38,6 @@ std::string refused(const model::SceneSpec& scene, const std::string& setting)
     return done ? "none" : done.error().text();
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 Plan plan(const std::string& file, const std::vector<std::string>& vary, const std::string& reference,
           const std::vector<std::string>& quantities, double until)
 {
@@ -46,13 +48,6 @@ Plan plan(const std::string& file, const std::vector<std::string>& vary, const s
     out.combinations = combine({}, all), out.reference = parse_reference(reference);
     out.run.quantities = quantities, out.run.until = until, out.repeat = 1;
     return out;
-}
-
-StudyResult study_of(const Plan& p)
-{
-    auto result = run_study(library(), p);
-    REQUIRE_MESSAGE(result.ok(), (result ? "" : result.error().text()));
-    return result.take();
 }
 
 std::vector<RecordedContact> impacts(std::initializer_list<double> times)

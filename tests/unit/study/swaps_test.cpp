@@ -5,16 +5,18 @@
 #include "study/study.h"
 #include "study/write.h"
 #include "support/scene.h"
+#include "support/text.h"
+#include "unit/study/run_study.h"
 
 using namespace plab;
 using namespace plab::study;
+using plab::test::has;
 using plab::test::library;
 using plab::test::near;
+using plab::test::study_of;
 
 namespace
 {
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::vector<model::StepLength> lengths(std::initializer_list<const char*> texts)
 {
@@ -33,8 +35,8 @@ std::string settled(const std::string& text, const std::vector<model::StepLength
     return done ? "none " + std::to_string(std::lround(1e3 * all[0].time)) : done.error().text();
 }
 
-Plan plan(const std::string& file, const std::vector<std::string>& vary, const std::vector<std::string>& swaps,
-          const std::string& reference)
+Plan swap_plan(const std::string& file, const std::vector<std::string>& vary, const std::vector<std::string>& swaps,
+               const std::string& reference)
 {
     Plan out;
     auto scene = test::compile_file("scenes/studies/" + file);
@@ -54,13 +56,6 @@ std::string wrong(const Plan& p)
     const auto done = run_study(library(), p);
     CHECK_MESSAGE(before.ok() == done.ok(), "the check before gives the verdict of the study");
     return before ? "none" : before.error().text();
-}
-
-StudyResult study_of(const Plan& p)
-{
-    auto result = run_study(library(), p);
-    REQUIRE_MESSAGE(result.ok(), (result ? "" : result.error().text()));
-    return result.take();
 }
 
 }  // namespace
@@ -94,7 +89,7 @@ TEST_CASE("with several step lengths a step is not a time; a time has to be a st
 
 TEST_CASE("ids and types are checked before the runs, with the short names of --vary")
 {
-    const auto why = [](const std::string& swap) { return wrong(plan("projectile.xml", {"dt=1/60"}, {swap}, "none")); };
+    const auto why = [](const std::string& swap) { return wrong(swap_plan("projectile.xml", {"dt=1/60"}, {swap}, "none")); };
     CHECK(why("0:solver=StoermerVerlet") == "none");
     CHECK(why("0:solver=Solver/StoermerVerlet") == "none");
     CHECK(has(why("0:solver=StormerVerlet"), "unknown type 'Solver/StormerVerlet', did you mean 'Solver/StoermerVerlet'"));
@@ -103,25 +98,26 @@ TEST_CASE("ids and types are checked before the runs, with the short names of --
     CHECK(has(why("0:dt=1/30"), "no component has the id 'dt'"));
     CHECK(has(why("0:ball.mass=2"), "no component has the id 'ball.mass'"));
     CHECK(has(why("500:solver=Exact"), "the runs end at 2 s"));
-    CHECK(wrong(plan("bounce.xml", {"dt=1/60"}, {"0:contact.response=Rows", "1:contact.response.manager=SoftStep"}, "none")) == "none");
+    CHECK(wrong(swap_plan("bounce.xml", {"dt=1/60"}, {"0:contact.response=Rows", "1:contact.response.manager=SoftStep"}, "none")) ==
+          "none");
 }
 
 TEST_CASE("a swap that one algorithm does not support is that run's result; a reference that cannot make it is an error")
 {
     const StudyResult r =
-        study_of(plan("bounce.xml", {"contact.response=Rows,Impulse", "dt=1/60"}, {"0.5s:contact.response.manager=SoftStep"}, "none"));
+        study_of(swap_plan("bounce.xml", {"contact.response=Rows,Impulse", "dt=1/60"}, {"0.5s:contact.response.manager=SoftStep"}, "none"));
     CHECK(r.points[0].record.ok());
     CHECK(r.points[0].record.swaps.size() == 1);
     CHECK(r.points[1].record.outcome == Outcome::Refused);
     CHECK(has(r.points[1].record.why, "contact.response.manager"));
-    Plan p = plan("projectile.xml", {"dt=1/60"}, {"0.5s:solver=SemiImplicitEuler"}, "auto");
+    Plan p = swap_plan("projectile.xml", {"dt=1/60"}, {"0.5s:solver=SemiImplicitEuler"}, "auto");
     p.reference.algorithm = *parse_algorithm("dt=1/7");
     CHECK(has(wrong(p), "in the reference: --swap '0.5s:solver=SemiImplicitEuler': no step of dt = "));
 }
 
 TEST_CASE("all runs and the reference swap at one time: the order is the method's")
 {
-    Plan p = plan("projectile.xml", {"solver=RungeKutta4", "dt=1/60,1/120,1/240"}, {"0.5s:solver=SemiImplicitEuler"}, "auto");
+    Plan p = swap_plan("projectile.xml", {"solver=RungeKutta4", "dt=1/60,1/120,1/240"}, {"0.5s:solver=SemiImplicitEuler"}, "auto");
     const StudyResult r = study_of(p);
     CHECK(r.reference.order[0] == doctest::Approx(1).epsilon(0.01));
     CHECK(r.reference.converges);
@@ -132,7 +128,7 @@ TEST_CASE("all runs and the reference swap at one time: the order is the method'
         CHECK(near(point.errors[0].last_absolute, 1.5 * 9.81 * point.record.dt / 2, 1e-9));
     }
     // A step of the runs' one length is the same time in the reference.
-    p = plan("projectile.xml", {"solver=RungeKutta4", "dt=1/60"}, {"30:solver=SemiImplicitEuler"}, "auto");
+    p = swap_plan("projectile.xml", {"solver=RungeKutta4", "dt=1/60"}, {"30:solver=SemiImplicitEuler"}, "auto");
     CHECK(study_of(p).reference.order[0] == doctest::Approx(1).epsilon(0.01));
 }
 

@@ -11,6 +11,7 @@
 #include "foreign.h"
 #include "idl/domain.h"
 #include "support/process.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -37,8 +38,6 @@ std::vector<Json> lines(const std::string& text)
     for (std::string line; std::getline(in, line);) out.push_back(Json::parse(line));
     return out;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// A participant with writers, of pLab's types and of a foreign one.
 class Bus

@@ -20,6 +20,7 @@ namespace
 {
 
 using namespace plab;
+using plab::test::has;
 using test::FakeServer;
 using test::quoted;
 using test::Script;
@@ -126,8 +127,6 @@ double row_of_height(double z, int height)
     const double up = 8 * -forward_z + (z - 2) * forward_y;
     return height / 2.0 * (1 - up / depth / std::tan(0.35));
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// The time of this picture that the program prints, s.
 double time_of(const std::string& text, const std::string& picture)

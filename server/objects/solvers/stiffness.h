@@ -1,0 +1,26 @@
+/// The measured properties that decide which method is suitable for a group.
+#pragma once
+
+#include "flat_system.h"
+#include "fixed_step.h"
+
+namespace plab::solvers
+{
+
+/// The largest angular speed of a body, rad/s.
+double fastest_spin(DynamicSystem& system);
+
+/// The stiffness along a step of RungeKutta4, estimated from its slopes without further evaluations. Differences of the slopes form a
+/// power iteration, d1 = k2 - k1, d2 = k3 - k2 = (h/2) J d1, d3 = k4 - 2 k3 + k1 = h J d2, so |h lambda|^2 is about 2 |d3| / |d1|
+/// (Hairer, Wanner, Solving ordinary differential equations II, eq. (IV.2.26), use this for other methods). Each body and shaft is judged
+/// separately, in the norm |du| + |dx| / h, so that a stiff one is not hidden by larger motions of others; quantities are judged
+/// together. Rates that are small compared with those of the others, or at rounding level, do not count.
+struct Stiffness
+{
+    double value = 0;       ///< |h lambda|, the largest value found; infinite if slopes are not finite
+    bool too_much = false;  ///< for some member: above 0.5, and above 4 |w| h
+};
+/// With `each_alone` each member is judged as if there were no others; what passes then also passes in any group.
+Stiffness stiffness_of(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone = false);
+
+}  // namespace plab::solvers
