@@ -1,7 +1,5 @@
 #include "publish/roster.h"
 
-#include <algorithm>
-
 namespace plab::publish
 {
 namespace
@@ -61,9 +59,6 @@ Roster::Differences Roster::update(const world::World& world, Tick boundary)
         ++known;
     }
     drop_until(nullptr);
-    const auto by_row = [](const ObjectRow& a, const ObjectRow& b) { return a.row < b.row; };
-    std::sort(bodies_.begin(), bodies_.end(), by_row);
-    std::sort(shafts_.begin(), shafts_.end(), by_row);
     return out;
 }
 

@@ -47,7 +47,7 @@ public:
     /// Null if there is no such component, or if it is a group.
     const Member* find(const std::string& id) const;
     const std::map<std::string, Member>& members() const { return members_; }
-    /// Static objects included. In order of their rows, so that whoever reads them all goes through the host's table once.
+    /// In order of their ids, static objects included.
     const std::vector<ObjectRow>& bodies() const { return bodies_; }
     const std::vector<ObjectRow>& shafts() const { return shafts_; }
     std::size_t count(Kind kind) const { return counts_[static_cast<std::size_t>(kind)]; }
