@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "reference/pendulums.h"
+#include "support/allocation_counter.h"
 
 using namespace plab;
 using namespace plab::simulation;
@@ -186,4 +187,77 @@ TEST_CASE("Any number of threads, the same bits")
     REQUIRE_MESSAGE(one.loaded(), one.error());
     one.step(100), four.step(100);
     CHECK(one.hash() == four.hash());
+}
+
+TEST_CASE("One internal step per step: the error falls with the fifth power of the step")
+{
+    const auto end_after = [](const std::string& solver, int per_second)
+    {
+        Scene s(level_chain(solver, 3, "Ball"), dt(per_second));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(.5);
+        return s.vec(link_id(2), "position");
+    };
+    const Vec3 exact = end_after(tight("Articulated", "1e-13"), 240);
+    std::vector<double> errors;
+    for (const int per_second : {80, 160, 320}) errors.push_back(distance(end_after(tight("Articulated", "1e3"), per_second), exact));
+    CAPTURE(errors[0]);
+    CAPTURE(errors[1]);
+    CAPTURE(errors[2]);
+    CHECK(errors[0] > 1e-9);
+    for (const std::size_t i : {0u, 1u}) CHECK(std::log2(errors[i] / errors[i + 1]) == doctest::Approx(5).epsilon(.12));
+}
+
+TEST_CASE("A pendulum's hinge carries the centripetal force and the weight that it does not yield to")
+{
+    Scene s(pendulum(tight("Articulated"), "Hinge"), dt(240));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    for (int i = 0; i < 5; ++i)
+    {
+        s.step(60);
+        const Vec3 r = s.vec("bob", "position"), w = s.vec("bob", "angular_velocity"), weight{0, 0, -3 * 9.81};
+        const Vec3 turn = (1 / 1.5) * cross(r, weight);  // 1.5 kg m^2 about the pivot
+        const Vec3 acceleration = cross(turn, r) + cross(w, cross(w, r));
+        CHECK(length(s.vec("j", "force") - (3 * acceleration - weight)) < 1e-7);
+    }
+}
+
+TEST_CASE("Reactions of all kinds of joints agree with the multipliers of their rows")
+{
+    Scene minimal(mixed_tree(tight("Articulated")), dt(240)), rows(mixed_tree(tight("DormandPrince54")), dt(240));
+    REQUIRE_MESSAGE(minimal.loaded(), minimal.error());
+    minimal.step(60), rows.step(60);
+    for (const std::string id : {"j1", "j2", "j3", "j4", "j5"})
+    {
+        CAPTURE(id);
+        CHECK(length(rows.vec(id, "force")) > 1e-2);
+        CHECK(length(minimal.vec(id, "force") - rows.vec(id, "force")) < 1e-5);
+        CHECK(length(minimal.vec(id, "torque") - rows.vec(id, "torque")) < 1e-5);
+    }
+}
+
+TEST_CASE("A chain of 20 hinges that whips for 10 s keeps its energy")
+{
+    Scene s(level_chain(tight("Articulated", "1e-10"), 20, "Hinge"), dt(60));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(10);
+    const double drift = std::fabs(energy(s, 20)) / (9.81 * 100);
+    CAPTURE(drift);
+    CHECK(drift < 1e-7);
+    for (int i = 0; i < 20; ++i) CHECK(s.real("j" + link_id(i), "position_error") < 1e-13);
+}
+
+TEST_CASE("A restored snapshot goes on with the same bits, and a warm step allocates nothing")
+{
+    Scene whole(level_chain(solver_is("Articulated"), 20, "Ball"), dt(240)), again(solver_is("Articulated") + body("x", 1, {1, 1, 1}, {}));
+    REQUIRE_MESSAGE(whole.loaded(), whole.error());
+    whole.step(50);
+    const Snapshot middle = whole.simulation().capture();
+    whole.step(50);
+    REQUIRE(again.simulation().restore(middle).ok());
+    again.step(50);
+    CHECK(again.hash() == whole.hash());
+    const long now = allocations;
+    whole.simulation().step();
+    CHECK(allocations == now);
 }
