@@ -8,6 +8,7 @@
 #include <random>
 
 #include "link/json.h"
+#include "link/names.h"
 #include "link/text.h"
 
 using namespace plab::link;
@@ -77,4 +78,18 @@ TEST_CASE("the keys of an object stay in the order in which they were set")
 {
     const Json json{{"time", 0.5}, {"names", {"a", "b"}}, {"empty", Json::object()}, {"list", {Json::array(), true, -3}}};
     CHECK(line_of(json) == R"({"time":0.5,"names":["a","b"],"empty":{},"list":[[],true,-3]})");
+}
+
+TEST_CASE("the id at the beginning of a name is the longest one that is known, since ids may contain dots")
+{
+    const auto is_id = [](const std::string& id) { return id == "ball" || id == "ball.3" || id == "contact.response"; };
+    const auto split = [&](const std::string& text) { return plab::split_id(text, is_id); };
+    CHECK(split("ball.position.z").id == "ball");
+    CHECK(split("ball.position.z").rest == "position.z");
+    CHECK(split("ball.3.position").id == "ball.3");
+    CHECK(split("contact.response.cost").rest == "cost");
+    CHECK(split("energy.kinetic").id.empty());
+    CHECK(split("energy.kinetic").rest == "energy.kinetic");
+    CHECK(split("ball").id.empty());  // the whole is not a beginning
+    CHECK(split(".x").id.empty());
 }
