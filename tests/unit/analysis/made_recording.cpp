@@ -256,7 +256,7 @@ std::uint64_t made_hash(std::uint64_t run, std::int64_t step, bool differs)
 
 std::string fresh_path(const std::string& name)
 {
-    const std::filesystem::path path = std::filesystem::path(PLAB_BINARY_DIR) / ("unit_recordings_" + name);
+    const std::filesystem::path path = std::filesystem::path(PLAB_BINARY_DIR) / ("unit_analysis_" + name);
     std::filesystem::remove_all(path);
     return path.string();
 }
