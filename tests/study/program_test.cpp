@@ -56,7 +56,7 @@ TEST_CASE("a study writes its report, tables and pictures, and says what it foun
                              "convergence.svg", "convergence.png", "energy.svg", "digits.svg", "digits.png"})
         CHECK_MESSAGE(std::filesystem::file_size(where + "/" + file) > 100, file);
     const auto json = results(where);
-    CHECK(json["schema"] == "plab-study 1");
+    CHECK(json["schema"] == "plab-study 2");
     REQUIRE(json["points"].size() == 4);
     const auto& best = json["points"][3];
     CHECK(best["settings"]["solver"] == "RungeKutta4");
