@@ -167,7 +167,7 @@ void Logger::write(const std::vector<Line>& lines)
 End follow(const LoggerOptions& options, const link::Stop& interrupted)
 {
     using Clock = std::chrono::steady_clock;
-    constexpr link::Seconds kLook(0.1);  // how late an interruption may be seen
+    constexpr link::Seconds kCheckInterval(0.1);  // how late an interruption may be seen
     const auto begin = Clock::now();
     const auto is_over = [&] { return options.duration && link::Seconds(Clock::now() - begin).count() >= *options.duration; };
     const auto stop = [&] { return interrupted() || is_over(); };
@@ -182,7 +182,7 @@ End follow(const LoggerOptions& options, const link::Stop& interrupted)
     if (!logger) return {1, logger.errors()};
     while (!stop() && !logger->is_full())
     {
-        const auto state = logger->step(kLook);
+        const auto state = logger->step(kCheckInterval);
         if (state == Output::State::Closed) return {};
         if (state == Output::State::Broken) return {1, {reason(logger->output().why())}};
     }

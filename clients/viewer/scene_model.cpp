@@ -181,9 +181,9 @@ render::Drawing& SceneModel::draw(const State& state)
     for (const Prop& prop : props_)
         if (const std::optional<Pose> X_WB = pose_of(prop, state))
             for (const Part& part : prop.parts) drawing_.items.push_back({part.form, *X_WB * part.X_BS, part.size, part.color, part.mesh});
-    drawing_.ground = look_.ground;
+    drawing_.ground = overlays_.ground;
     drawing_.captions.clear();
-    if (look_.captions)
+    if (overlays_.captions)
         for (std::string& line : captions_.lines(state)) drawing_.captions.push_back({std::move(line), false});
     return drawing_;
 }

@@ -17,12 +17,12 @@ namespace plab::view
 class SceneModel
 {
 public:
-    struct Look
+    struct Overlays
     {
         bool captions = true, ground = true;
     };
 
-    explicit SceneModel(const Look& look) : look_(look) {}
+    explicit SceneModel(const Overlays& overlays) : overlays_(overlays) {}
 
     /// Use this scene from now on. Cheap if it is already in use.
     void use(std::shared_ptr<const link::CatalogueContents> scene);
@@ -59,7 +59,7 @@ private:
     void add_parts(const link::Object& object, const Vec3& color, std::vector<Part>& out) const;
     std::optional<Pose> pose_of(const Prop& prop, const State& state) const;
 
-    Look look_;
+    Overlays overlays_;
     std::shared_ptr<const link::CatalogueContents> scene_;
     std::vector<Prop> props_;
     std::vector<std::string> mesh_ids_;  ///< of shapes, as in drawing_.meshes

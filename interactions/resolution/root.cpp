@@ -57,9 +57,9 @@ double next_in_bracket(const Trial& t)
     double next = hermite_zero(t.begin, t.gap_begin, t.rate_begin, t.end, t.gap_end, t.rate_end);
     // One end of the bracket soon comes close to the zero. A time slightly beyond the zero moves the other end as well. The
     // shift is never less than what time can resolve.
-    const double nudge = std::max(shortest_bracket(t) * 0.5, 1e-3 * std::min(next - t.begin, t.end - next));
+    const double overshoot = std::max(shortest_bracket(t) * 0.5, 1e-3 * std::min(next - t.begin, t.end - next));
     const bool begin_is_near = next - t.begin < t.end - next;
-    next += begin_is_near ? nudge : -nudge;
+    next += begin_is_near ? overshoot : -overshoot;
     return next > t.begin && next < t.end ? next : middle;
 }
 

@@ -29,8 +29,8 @@ struct Total
 /// For each contact: calls `normal` (returns the NormalForce for the contact, its mobility along the normal and its separation
 /// speed), adds friction, and applies the forces to the bodies.
 template <class Normal>
-void touch(const StepContext& context, Row row, SurfaceColumns& surface, const Bodies& bodies, Wrenches& wrenches, Impact& impact,
-           Normal normal)
+void add_contact_forces(const StepContext& context, Row row, SurfaceColumns& surface, const Bodies& bodies, Wrenches& wrenches,
+                        Impact& impact, Normal normal)
 {
     Total total;
     wrenches.begin(row < context.component_of_row.size() ? context.component_of_row[row] : kNoIndex);
@@ -144,11 +144,11 @@ void evaluate_penalty(const StepContext& context, Row row, PenaltyRows& rows, co
         n.stored = 0.5 * spring * spring / k;
         return n;
     };
-    touch(context, row, rows.surface, bodies, wrenches, impact, law);
+    add_contact_forces(context, row, rows.surface, bodies, wrenches, impact, law);
 }
 
-void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& rows, const Bodies& bodies, Wrenches& wrenches,
-                         Impact& impact)
+void evaluate_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& rows, const Bodies& bodies, Wrenches& wrenches,
+                            Impact& impact)
 {
     const double k = rows.stiffness[row], exponent = rows.exponent[row];
     const auto law = [&](const Contact& c, double mobility, double separation_speed)
@@ -168,7 +168,7 @@ void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& 
         n.stored = spring * x / (exponent + 1);
         return n;
     };
-    touch(context, row, rows.surface, bodies, wrenches, impact, law);
+    add_contact_forces(context, row, rows.surface, bodies, wrenches, impact, law);
 }
 
 void stored_penalty(Rows rows, const PenaltyRows& table, StoredEnergy& stored)

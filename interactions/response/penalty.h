@@ -67,8 +67,8 @@ struct HuntCrossleyRows
 /// the force on b. Contact::stretch is the present extension of the stiction spring on entry, and limited by Coulomb's law on
 /// return.
 void evaluate_penalty(const StepContext& context, Row row, PenaltyRows& rows, const Bodies& bodies, Wrenches& wrenches, Impact& impact);
-void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& rows, const Bodies& bodies, Wrenches& wrenches,
-                         Impact& impact);
+void evaluate_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& rows, const Bodies& bodies, Wrenches& wrenches,
+                            Impact& impact);
 
 /// Phase::Potential: energy in the springs, J, at the end of the last step.
 void stored_penalty(Rows rows, const PenaltyRows& table, StoredEnergy& stored);

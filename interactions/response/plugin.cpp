@@ -44,7 +44,7 @@ PLAB_PLUGIN("response", registrar)
     registrar
         .component<HuntCrossleyRows>("Response/HuntCrossley",
                                      "contacts are Hertzian springs with Hunt and Crossley's damping; they never pull")
-        .command<touch_hunt_crossley>(Phase::Touch, "Response/Touch", "adds the forces of contacts at a solver stage")
+        .command<evaluate_hunt_crossley>(Phase::Touch, "Response/Touch", "adds the forces of contacts at a solver stage")
         .command<stored_hunt_crossley>(Phase::Potential, "Response/Potential", "energy in the springs")
         .by_force()
         .accuracy("the solver's order up to 3, in pieces of the contact's duration")

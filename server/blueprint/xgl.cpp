@@ -14,12 +14,13 @@ namespace
 {
 
 /// Elements of a mesh that only affect its appearance.
-constexpr std::string_view kLooks[] = {"N", "TC", "MAT", "SURFACE", "L", "LINE", "TEXTURE", "TEXTURERGB", "TEXTURERGBA", "NAME", "DATA"};
+constexpr std::string_view kAppearance[] = {"N",       "TC",         "MAT",         "SURFACE", "L",   "LINE",
+                                            "TEXTURE", "TEXTURERGB", "TEXTURERGBA", "NAME",    "DATA"};
 
 bool is_look(const XmlElement& e)
 {
     if (e.name.starts_with("EXT")) return true;  // the specification's prefix for applications' own data
-    for (const std::string_view name : kLooks)
+    for (const std::string_view name : kAppearance)
         if (e.name == name) return true;
     return false;
 }

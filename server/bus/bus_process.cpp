@@ -22,7 +22,7 @@ namespace plab::bus
 namespace
 {
 
-constexpr std::chrono::milliseconds kLook(100);  ///< interval of checks for a stopped process while a caller waits for its end
+constexpr std::chrono::milliseconds kCheckInterval(100);  ///< interval of checks for a stopped process while a caller waits for its end
 
 /// A descriptor that closes itself.
 class Descriptor
@@ -144,7 +144,7 @@ bool BusProcess::wait(std::chrono::milliseconds longest)
         if (left.count() <= 0 || is_stopped_) return false;
         pollfd watched{lifeline_, POLLIN, 0};
         // The socket closes a moment before the process can be waited for.
-        if (poll(&watched, 1, static_cast<int>(std::min(left, kLook).count())) > 0) (void)usleep(500);
+        if (poll(&watched, 1, static_cast<int>(std::min(left, kCheckInterval).count())) > 0) (void)usleep(500);
     }
     return true;
 }

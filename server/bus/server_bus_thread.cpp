@@ -17,7 +17,7 @@ constexpr std::size_t kBurst = 64;  ///< records of one stream before the others
 constexpr int kMostMessages = 256;  ///< messages from plab-bus before other work gets its turn
 constexpr milliseconds kSecond(1000);
 constexpr milliseconds kSettling(1000);  ///< time for readers to find a new plab-bus before their streams count as unwanted
-constexpr milliseconds kGoodbye(2000), kLastWords(1000), kHangUp(100), kBusyLook(500);
+constexpr milliseconds kGoodbye(2000), kLastWords(1000), kHangUp(100), kBusyCheck(500);
 /// The longest delay is below the lease after which readers consider a participant lost (10 s), so that the next process joins
 /// before that.
 constexpr milliseconds kFirstDelay(50), kLongestDelay(5000);
@@ -53,8 +53,8 @@ void ServerBus::run()
         const Clock::time_point now = Clock::now();
         supervise(now);
         if (pass(now)) continue;
-        const Clock::duration next = process_ ? (process_->stopped() ? kStopped : kBusyLook) : start_at_ - now;
-        sleep(std::min<Nanoseconds>(next, kBusyLook));
+        const Clock::duration next = process_ ? (process_->stopped() ? kStopped : kBusyCheck) : start_at_ - now;
+        sleep(std::min<Nanoseconds>(next, kBusyCheck));
         wake_.acknowledge();
     }
     say_goodbye();
@@ -289,7 +289,7 @@ void ServerBus::send_status(Clock::time_point now)
         status_.status = *status, overload_ = status->overload, has_status_ = status_is_new_ = true;
         statuses_.end_pop();
     }
-    const bool is_due = status_is_new_ || (has_status_ && now - status_sent_ >= kBusyLook);
+    const bool is_due = status_is_new_ || (has_status_ && now - status_sent_ >= kBusyCheck);
     if (!is_due || !process_->writer().ready() || is_broken_) return;
     std::string busy = options_.busy != nullptr ? options_.busy(options_.busy_argument) : std::string();
     status_sent_ = now;

@@ -31,7 +31,7 @@ int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLib
     plab::program::call_on_signal(interrupt_work);
     plab::program::catch_signals();
     plab::program::wake_on_signal(wake->descriptor());
-    simulation.obey(&work);
+    simulation.set_interruption(&work);
     int code = 0;
     {
         plab::daemon::Service service(simulation, library, options);

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "idl/json/json.h"
-#include "model/exact_text.h"
+#include "model/numbers.h"
 #include "publish/error_probe.h"
 #include "publish/figures.h"
 #include "world/host_tables.h"
@@ -44,8 +44,8 @@ Json interaction_json(const simulation::Simulation& s, std::uint32_t i, const pu
                 {"cost_quartiles_ns", quartiles_json(cost.last)},
                 {"cost_shared_by", cost.shared},
                 {"work", s.stepper().work()[i]},
-                {"made", s.stepper().contact_energy()[i].made},
-                {"lifted", s.stepper().contact_energy()[i].lifted},
+                {"created", s.stepper().contact_energy()[i].created},
+                {"created_by_correction", s.stepper().contact_energy()[i].by_correction},
                 {"error", error.value},
                 {"error_unit", error.unit},
                 {"error_meaning", error.meaning}};

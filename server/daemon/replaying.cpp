@@ -154,7 +154,7 @@ int replay_recording(plugins::PluginLibrary& library, const DaemonOptions& optio
     warn_of_another_build(**log, library);
 
     simulation::Simulation simulation(library, options.threads);
-    simulation.obey(&interruption);
+    simulation.set_interruption(&interruption);
     // Every recorded request was allowed when it was recorded, so no limits apply here.
     model::CompileLimits recorded;
     recorded.components = std::numeric_limits<std::uint32_t>::max();

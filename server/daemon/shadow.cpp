@@ -178,7 +178,7 @@ int run_shadow(plugins::PluginLibrary& library, const DaemonOptions& options, co
     auto snapshot = read_snapshot(options.load, library);
     if (!snapshot) return fail(snapshot.errors());
     Future without(library, options.threads), with(library, options.threads);
-    for (Future* future : {&without, &with}) future->simulation.obey(&interruption);
+    for (Future* future : {&without, &with}) future->simulation.set_interruption(&interruption);
     for (Future* future : {&without, &with})
         if (auto restored = future->simulation.restore(snapshot->snapshot); !restored) return fail(restored.errors());
     Outcome outcome;

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "daemon/output.h"
-#include "model/value_numbers.h"
+#include "model/values.h"
 #include "world/host_tables.h"
 
 namespace plab::daemon

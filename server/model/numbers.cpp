@@ -1,7 +1,9 @@
 #include "model/numbers.h"
 
 #include <charconv>
+#include <cinttypes>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "model/text.h"
@@ -108,6 +110,21 @@ std::string format_real(double value)
     const auto [end, ec] =
         std::to_chars(buffer, buffer + sizeof buffer, value, plain ? std::chars_format::fixed : std::chars_format::scientific);
     return ec == std::errc() ? std::string(buffer, end) : std::string();
+}
+
+std::string exact_text(double value, std::string_view otherwise)
+{
+    if (!std::isfinite(value)) return std::string(otherwise);
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+}
+
+std::string hash_text(std::uint64_t hash)
+{
+    char text[20];
+    std::snprintf(text, sizeof text, "%016" PRIx64, hash);
+    return text;
 }
 
 }  // namespace plab::model

@@ -24,4 +24,11 @@ Result<std::uint64_t> parse_unsigned(std::string_view word);
 /// The shortest decimal text that reads back as the same double.
 std::string format_real(double value);
 
+// For files that other programs read:
+
+/// 17 significant digits, which read back to the same bits; `otherwise` for values that are not finite.
+std::string exact_text(double value, std::string_view otherwise);
+/// 16 hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
+
 }  // namespace plab::model

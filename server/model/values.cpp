@@ -1,5 +1,3 @@
-/// Text to values.
-
 #include "model/values.h"
 
 #include <algorithm>
@@ -233,6 +231,97 @@ Result<Value> parse_value(std::string_view text, const Field& field)
     if (!value) return value;
     if (Result<void> checked = check_value(*value, field); !checked) return checked.errors();
     return value;
+}
+
+// Values to text.
+
+namespace
+{
+
+std::string join(std::initializer_list<double> numbers)
+{
+    std::string out;
+    for (const double x : numbers) out += (out.empty() ? "" : " ") + format_real(x);
+    return out;
+}
+
+/// Whether it is +0, bit for bit: the elements that a matrix of three numbers leaves out.
+bool is_plain_zero(double x) { return x == 0 && !std::signbit(x); }
+
+std::string format_matrix(const Mat3& a)
+{
+    if (is_plain_zero(a(0, 1)) && is_plain_zero(a(0, 2)) && is_plain_zero(a(1, 2))) return join({a(0, 0), a(1, 1), a(2, 2)});
+    return join({a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(0, 2), a(1, 2)});
+}
+
+struct Formatter
+{
+    std::string operator()(std::monostate) const { return {}; }
+    std::string operator()(bool b) const { return b ? "true" : "false"; }
+    std::string operator()(std::int64_t n) const { return std::to_string(n); }
+    std::string operator()(double x) const { return format_real(x); }
+    std::string operator()(const Vec3& v) const { return join({v.x, v.y, v.z}); }
+    std::string operator()(const Quat& q) const { return join({q.w, q.x, q.y, q.z}); }
+    std::string operator()(const Mat3& a) const { return format_matrix(a); }
+    std::string operator()(const std::string& text) const { return text; }
+    std::string operator()(const Reals& list) const
+    {
+        std::string out;
+        for (const double x : list) out += (out.empty() ? "" : " ") + format_real(x);
+        return out;
+    }
+    std::string operator()(const Integers& list) const
+    {
+        std::string out;
+        for (const std::int64_t n : list) out += (out.empty() ? "" : " ") + std::to_string(n);
+        return out;
+    }
+    std::string operator()(const Entries& entries) const { return format_entries(entries); }
+};
+
+}  // namespace
+
+std::string format_value(const Value& value) { return std::visit(Formatter{}, value); }
+
+// The numbers of a value.
+
+std::size_t number_count(const Value& v)
+{
+    switch (type_of(v))
+    {
+        case FieldType::Boolean:
+        case FieldType::Integer:
+        case FieldType::Real:
+            return 1;
+        case FieldType::Vector:
+            return 3;
+        case FieldType::Rotation:
+            return 4;
+        case FieldType::RealList:
+            return std::get<Reals>(v).size();
+        default:
+            return 0;
+    }
+}
+
+void append_numbers(const Value& v, std::vector<double>& out)
+{
+    if (const auto* b = std::get_if<bool>(&v)) out.push_back(*b ? 1 : 0);
+    if (const auto* n = std::get_if<std::int64_t>(&v)) out.push_back(static_cast<double>(*n));
+    if (const auto* d = std::get_if<double>(&v)) out.push_back(*d);
+    if (const auto* x = std::get_if<Vec3>(&v)) out.insert(out.end(), {x->x, x->y, x->z});
+    if (const auto* q = std::get_if<Quat>(&v)) out.insert(out.end(), {q->w, q->x, q->y, q->z});
+    if (const auto* list = std::get_if<Reals>(&v)) out.insert(out.end(), list->begin(), list->end());
+}
+
+std::vector<std::string> number_suffixes(const Value& v)
+{
+    if (std::holds_alternative<Vec3>(v)) return {".x", ".y", ".z"};
+    if (std::holds_alternative<Quat>(v)) return {".w", ".x", ".y", ".z"};
+    std::vector<std::string> out(number_count(v));
+    if (std::holds_alternative<Reals>(v))
+        for (std::size_t k = 0; k < out.size(); ++k) out[k] = "." + std::to_string(k + 1);
+    return out;
 }
 
 }  // namespace plab::model

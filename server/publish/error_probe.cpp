@@ -14,7 +14,7 @@ namespace
 {
 
 /// A measurement that would block the loop for longer is not made.
-constexpr Nanoseconds kLongestLook = 20'000'000;
+constexpr Nanoseconds kLongestProbe = 20'000'000;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -100,7 +100,7 @@ Result<ErrorFigure> shadow_error(const simulation::Simulation& s, std::uint32_t 
     for (simulation::Simulation* each : {&as_it_is, &with_finer})
     {
         if (auto restored = each->restore(now); !restored) return restored.errors();
-        each->obey(interruption);
+        each->set_interruption(interruption);
     }
     simulation::Request request;
     request.operations.push_back(simulation::SwapOperation{s.world().id_of(component), finer, {}});
@@ -147,7 +147,7 @@ void ErrorProbe::follow(const simulation::Simulation& s, Nanoseconds now)
     last_ = s.world().id_of(i);
     // Two restored copies, and one step of each.
     const auto expected = std::max(longest_, static_cast<Nanoseconds>(4 * s.stepper().cost().step().median));
-    if (expected > kLongestLook)
+    if (expected > kLongestProbe)
     {
         due_ = now + 1'000'000'000;
         known_[last_] = {type.info.name,
@@ -156,7 +156,7 @@ void ErrorProbe::follow(const simulation::Simulation& s, Nanoseconds now)
     }
     const Nanoseconds begin = monotonic_now();
     Interruption deadline;
-    deadline.ask(std::chrono::nanoseconds(kLongestLook));
+    deadline.ask(std::chrono::nanoseconds(kLongestProbe));
     auto figure = shadow_error(s, i, finer, &deadline);
     const Nanoseconds took = monotonic_now() - begin;
     longest_ = std::max(longest_, took);

@@ -74,7 +74,7 @@ void main()
 )";
 
 /// What a point of a body looks like.
-constexpr const char* kLook = R"(
+constexpr const char* kShading = R"(
 uniform vec3 to_light;
 // Sky above, light that the ground throws back below.
 vec3 surroundings(float up) { return mix(vec3(0.46, 0.44, 0.42), vec3(0.78, 0.86, 0.96), smoothstep(-0.6, 0.8, up)); }
@@ -236,8 +236,8 @@ constexpr const char* kDepthOnly = "#version 330 core\nvoid main() {}\n";
 
 }  // namespace
 
-ShaderText solid_shader() { return {"solid", kSolidVertex, std::string(kCommon) + kShadow + kLook + kSolidFragment}; }
-ShaderText ball_shader() { return {"ball", kBallVertex, std::string(kCommon) + kShadow + kLook + kBallFragment}; }
+ShaderText solid_shader() { return {"solid", kSolidVertex, std::string(kCommon) + kShadow + kShading + kSolidFragment}; }
+ShaderText ball_shader() { return {"ball", kBallVertex, std::string(kCommon) + kShadow + kShading + kBallFragment}; }
 ShaderText solid_shadow_shader() { return {"solid shadow", kSolidVertex, kDepthOnly}; }
 ShaderText ball_shadow_shader() { return {"ball shadow", kBallShadowVertex, kDepthOnly}; }
 ShaderText plane_shader() { return {"plane", kPlaneVertex, std::string(kCommon) + kPlaneFragment}; }

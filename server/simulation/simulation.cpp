@@ -19,7 +19,7 @@ void Simulation::begin_run(LiveScene live, std::shared_ptr<const model::SceneSpe
     run_.live.stepper = std::move(live.stepper);
     run_.live.world = std::move(live.world);
     run_.stepper().on_changes(&Simulation::apply_script_changes, this);
-    run_.stepper().obey(context_.interruption, &context_.progress);
+    run_.stepper().set_interruption(context_.interruption, &context_.progress);
     run_.loaded = std::move(scene);
     run_.clock.dt = run_.loaded->settings.dt;
     run_.clock.tick = run_.clock.base_tick = 0;
@@ -180,10 +180,10 @@ bool Simulation::step_once()
     return true;
 }
 
-void Simulation::obey(const Interruption* interruption)
+void Simulation::set_interruption(const Interruption* interruption)
 {
     context_.interruption = interruption;
-    if (run_.live.stepper) run_.stepper().obey(context_.interruption, &context_.progress);
+    if (run_.live.stepper) run_.stepper().set_interruption(context_.interruption, &context_.progress);
 }
 
 bool Simulation::run_step()

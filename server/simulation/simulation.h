@@ -42,7 +42,7 @@ public:
     Reply carry_out_now(const Request& request) { return carry_out(request); }
     /// Sets the flag that can interrupt a step or a trial while it is being computed. It must outlive this object. Null: steps cannot be
     /// interrupted.
-    void obey(const Interruption* interruption);
+    void set_interruption(const Interruption* interruption);
     /// Applies the requests that are due and then, unless paused, makes one step. Returns false if paused or if the step was interrupted.
     bool step();
     /// Makes one step whether paused or not, without applying waiting requests: for recomputing past steps. Returns false if the step was

@@ -5,7 +5,7 @@
 
 #include "model/names.h"
 #include "model/type_summary.h"
-#include "model/value_numbers.h"
+#include "model/values.h"
 
 namespace plab::study
 {

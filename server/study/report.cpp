@@ -4,7 +4,7 @@
 
 #include "figures/axes.h"
 #include "figures/page.h"
-#include "model/exact_text.h"
+#include "model/numbers.h"
 #include "model/values.h"
 #include "study/plot.h"
 #include "study/write.h"

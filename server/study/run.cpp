@@ -171,7 +171,7 @@ RunRecord record_run(model::TypeSource& types, const model::SceneSpec& scene, co
     out.dt = scene.settings.dt.seconds;
     const auto refuse = [&](std::string why) { out.outcome = Outcome::Refused, out.why = std::move(why); };
     simulation::Simulation s(types, 1);
-    s.obey(options.stop);
+    s.set_interruption(options.stop);
     if (auto loaded = s.load(scene); !loaded) return refuse(join(loaded.errors())), out;
     for (const std::string& text : options.quantities)
     {
@@ -190,7 +190,7 @@ double seconds_of_a_run(model::TypeSource& types, const model::SceneSpec& scene,
     constexpr Tick kFewest = 2;
     const double loading = thread_cpu_seconds();
     simulation::Simulation s(types, 1);
-    s.obey(options.stop);
+    s.set_interruption(options.stop);
     if (!s.load(scene)) return 0;
     const double begin = thread_cpu_seconds();
     const Tick last = std::max<Tick>(kFewest, static_cast<Tick>(std::llround(options.until / s.dt())));
@@ -205,7 +205,7 @@ Timing time_run(model::TypeSource& types, const model::SceneSpec& scene, const R
 {
     Timing out;
     simulation::Simulation s(types, 1);
-    s.obey(options.stop);
+    s.set_interruption(options.stop);
     if (!s.load(scene))
     {
         out.outcome = Outcome::Refused;

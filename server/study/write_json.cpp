@@ -3,7 +3,7 @@
 
 #include "control/replies.h"
 #include "idl/json/json.h"
-#include "model/exact_text.h"
+#include "model/numbers.h"
 #include "study/write.h"
 
 namespace plab::study

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "model/alike.h"
+#include "world/command_call.h"
 #include "world/state_hash.h"
 #include "world/world.h"
 
@@ -96,21 +97,13 @@ int World::prepare_order(std::uint32_t component) const
 Result<void> World::run(std::uint32_t component, Phase phase)
 {
     const Component& c = directory_->components[component];
-    Table& table = *tables_[c.table];
-    StepContext context;
-    context.seed = scene_->settings.seed;
-    context.component_of_row = table.component_of_row();
-    context.facet_of_row = table.host_of_row();
-    PhaseCall call;
-    call.context = &context;
-    call.rows = Rows(&c.row, 1);
-    call.bodies = &host_.bodies, call.shafts = &host_.shafts, call.quantities = &host_.quantities, call.shapes = &host_.shapes;
-    call.materials = &host_.materials;
-    if (phase == Phase::Measure) call.solid = &host_.shapes.solid[c.host_index];
-    for (const CommandInfo& command : table.type().info.commands)
-        if (command.phase == phase && command.run)
-            if (auto done = command.run(call, table.rows()); !done) return done;
-    return {};
+    CommandCall call;
+    call.context.seed = scene_->settings.seed;
+    call.arguments.bodies = &host_.bodies, call.arguments.shafts = &host_.shafts, call.arguments.quantities = &host_.quantities;
+    call.arguments.shapes = &host_.shapes, call.arguments.materials = &host_.materials;
+    if (phase == Phase::Measure) call.arguments.solid = &host_.shapes.solid[c.host_index];
+    call.select(*tables_[c.table]);
+    return call.run(phase, Rows(&c.row, 1));
 }
 
 namespace

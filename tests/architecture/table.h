@@ -32,8 +32,8 @@ inline const std::vector<Layer>& layers()
         {"server/plugins", {"server/sdk", "server/model"}, {"dlfcn.h"}, false},
         {"server/completion", {"server/sdk", "server/model", "server/blueprint", "server/plugins", "server/program"}, {"unistd.h"}, false},
         // From below: what a step is made of, a run, snapshots of it and transactions on it, and the simulation that owns them.
-        {"server/simulation/costs", {"server/sdk", "server/model", "server/world"}, {}},
         {"server/simulation/groups", {"server/sdk", "server/model", "server/world"}, {}},
+        {"server/simulation/costs", {"server/sdk", "server/model", "server/world", "server/simulation/groups"}, {}},
         {"server/simulation/shafts", {"server/sdk", "server/model", "server/world", "server/simulation/groups"}, {}},
         {"server/simulation/rows",
          {"server/sdk", "server/linear", "server/model", "server/world", "server/simulation/groups", "server/simulation/shafts"},

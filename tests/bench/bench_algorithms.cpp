@@ -205,7 +205,7 @@ Result<double> cost_of_run(const std::string& text)
     if (!simulation) return simulation.errors();
     Interruption deadline;
     deadline.ask(std::chrono::seconds(model::kDearestStep));
-    (*simulation)->obey(&deadline);
+    (*simulation)->set_interruption(&deadline);
     std::uint64_t begin = processor_ns();
     for (std::size_t i = 0; i < kWarm && processor_ns() - begin < kLongestWarming; ++i)
     {
@@ -213,7 +213,7 @@ Result<double> cost_of_run(const std::string& text)
         if (i == 0) return kGivenUp;
         break;
     }
-    (*simulation)->obey(nullptr);
+    (*simulation)->set_interruption(nullptr);
     begin = processor_ns();
     std::vector<double> us;
     while (us.size() < kMost && (us.empty() || processor_ns() - begin < kLongest))

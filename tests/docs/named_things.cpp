@@ -28,7 +28,7 @@ std::string on_one_line(const std::string& text)
     return out;
 }
 
-/// "a/{b,c}.h" is "a/b.h" and "a/c.h".
+/// "a/{b,c}" is "a/b" and "a/c".
 std::vector<std::string> without_braces(const std::string& text)
 {
     const std::size_t open = text.find('{'), close = text.find('}', open == std::string::npos ? 0 : open);

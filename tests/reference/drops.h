@@ -9,7 +9,7 @@
 namespace plab::test
 {
 
-/// A combination of algorithms that answers contacts: a resolution, and Manager/X or Response/Impulse.
+/// A combination of algorithms that answers contacts: a resolution, and a manager or Response/Impulse.
 struct Method
 {
     const char* resolution;
@@ -75,7 +75,7 @@ inline Fall play(const Drop& d, const Method& method)
         out.highest = std::max(out.highest, std::isfinite(now) ? now : HUGE_VAL);
         out.lifted = std::max(out.lifted, now - out.last);
         double lift = 0;
-        for (const simulation::ContactEnergy& e : s.simulation().stepper().contact_energy()) lift += e.lifted;
+        for (const simulation::ContactEnergy& e : s.simulation().stepper().contact_energy()) lift += e.by_correction;
         out.gained = std::max(out.gained, std::isfinite(now) ? now - out.start - lift : HUGE_VAL);
         out.last = now;
     }

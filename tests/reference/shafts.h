@@ -79,7 +79,7 @@ struct GearLine
             worst = std::fmax(worst, std::fabs(s.angle(id(static_cast<int>(i))) / (ratios[i] * s.angle(id(0))) - 1));
         return worst;
     }
-    /// rad, the largest |angle_i - rho_i angle_root| with the ratios and the root that the graph has found: 0 if angles are
+    /// rad, the largest difference of an angle and the ratio times the angle of the root, as the graph has found them: 0 if angles are
     /// derived.
     static double drift(const Scene& s)
     {

@@ -81,7 +81,7 @@ public:
         const simulation::Totals t = s.simulation().totals();
         // Energy added by contacts is reported separately.
         double made = 0;
-        for (const simulation::ContactEnergy& e : s.simulation().stepper().contact_energy()) made += e.made;
+        for (const simulation::ContactEnergy& e : s.simulation().stepper().contact_energy()) made += e.created;
         const double now = t.kinetic - s.simulation().kinetic_at_start() - t.work - made;
         // Comparisons with NaN are false, so NaN must be checked explicitly.
         out.finite = out.finite && std::isfinite(now) && std::isfinite(t.stored);

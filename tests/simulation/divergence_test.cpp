@@ -188,7 +188,7 @@ TEST_CASE("a manager that adds energy is reported, and this energy stays unexpla
                 reported += e.kind == "contact.gains_energy" && s.world().id_of(e.component) == "contact.response.manager" ? 1 : 0;
         }
         const simulation::Totals t = s.totals();
-        const double made = s.stepper().contact_energy()[s.world().find("contact.response.manager")].made;
+        const double made = s.stepper().contact_energy()[s.world().find("contact.response.manager")].created;
         // Any energy beyond the initial one is not the work of a force: the manager has added it.
         CHECK(made == doctest::Approx(t.kinetic - 0.5));
         CHECK(t.kinetic - s.kinetic_at_start() - t.work == doctest::Approx(made));

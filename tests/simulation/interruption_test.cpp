@@ -77,12 +77,12 @@ TEST_CASE("a step that is abandoned at any time leaves no trace: the same bits b
         {
             const Snapshot before = disturbed.simulation().capture();
             Interruption interruption;
-            disturbed.simulation().obey(&interruption);
+            disturbed.simulation().set_interruption(&interruption);
             // At a random time within the step, which depends on the machine: it must leave no trace.
             interruption.ask(std::chrono::microseconds(17 * i));
             const bool stepped = disturbed.simulation().step();
             CHECK(stepped != disturbed.simulation().gave_up());
-            disturbed.simulation().obey(nullptr);
+            disturbed.simulation().set_interruption(nullptr);
             if (!stepped)
             {
                 ++given_up;
@@ -110,7 +110,7 @@ TEST_CASE("a step that takes minutes ends at once, and the world has its state b
         REQUIRE_MESSAGE(s.loaded(), s.error());
         const std::uint64_t before = s.hash();
         Interruption interruption;
-        s.simulation().obey(&interruption);
+        s.simulation().set_interruption(&interruption);
         interruption.ask(std::chrono::milliseconds(100));
         const Clock::time_point begin = Clock::now();
         CHECK(!s.simulation().step());
@@ -128,7 +128,7 @@ TEST_CASE("the progress of a long step can be read from another thread")
     REQUIRE_MESSAGE(s.loaded(), s.error());
     CHECK(s.simulation().progress().read().activity == Activity::Nothing);
     Interruption interruption;
-    s.simulation().obey(&interruption);
+    s.simulation().set_interruption(&interruption);
     Progress::Reading seen;
     std::thread watcher(
         [&]

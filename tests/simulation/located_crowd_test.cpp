@@ -68,7 +68,7 @@ TEST_CASE("a thousand balls dropped from random heights are where the closed for
 TEST_CASE("what an impact looks at does not grow with the number of bodies that rest or fly elsewhere")
 {
     // Per impact, in the second of two steps: the same scene without the balls that bounce shows what a step looks at anyway.
-    const auto looked_at_per_impact = [](int n)
+    const auto visited_per_impact = [](int n)
     {
         constexpr int kBouncing = 50;
         const auto count = [&](double height, int& events)
@@ -82,7 +82,7 @@ TEST_CASE("what an impact looks at does not grow with the number of bodies that 
             s.run(0.1);
             double sum = 0;
             while (s.simulation().time() < 0.5)
-                s.step(), sum += static_cast<double>(s.simulation().stepper().report().looked_at),
+                s.step(), sum += static_cast<double>(s.simulation().stepper().report().visited),
                     events += s.simulation().stepper().report().events;
             return sum;
         };
@@ -92,7 +92,7 @@ TEST_CASE("what an impact looks at does not grow with the number of bodies that 
         REQUIRE(with >= kBouncing);
         return (all - plain) / with;
     };
-    const double few = looked_at_per_impact(200), many = looked_at_per_impact(3200);
+    const double few = visited_per_impact(200), many = visited_per_impact(3200);
     CHECK(few > 1);
     CHECK(many < 1.5 * few);
 }

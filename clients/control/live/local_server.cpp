@@ -21,7 +21,7 @@ namespace plab::cli
 namespace
 {
 
-constexpr std::chrono::milliseconds kLook(5);  // how late its end may be seen
+constexpr std::chrono::milliseconds kCheckInterval(5);  // how late its end may be seen
 
 Error failed(const std::string& what, int code) { return reason(what + ": " + std::strerror(code)); }
 
@@ -117,7 +117,7 @@ Result<int> run_plabd(const std::vector<std::string>& arguments, const link::Sto
         if (ended < 0 && errno != EINTR) return failed("cannot wait for plabd", errno);
         // Ctrl-C reaches both; another signal only this process.
         if (!is_stopping && stop()) is_stopping = kill(*process, SIGTERM) == 0;
-        std::this_thread::sleep_for(kLook);
+        std::this_thread::sleep_for(kCheckInterval);
     }
 }
 

@@ -36,7 +36,7 @@ std::string check_rate(const std::string& text)
 double in_seconds(std::uint64_t time) { return static_cast<double>(time) * 1e-9; }
 
 /// False: the playback should end.
-bool obey(player::Player& player, player::Key key)
+bool handle_key(player::Player& player, player::Key key)
 {
     const Clock::time_point now = Clock::now();
     const player::Pace& pace = player.pace();
@@ -85,7 +85,7 @@ Result<void> follow(const Context& c, player::Player& player, player::Terminal& 
     {
         const Clock::time_point now = Clock::now();
         if (auto stepped = player.step(now); !stepped) return stepped;
-        for (const player::Key key : keys.take(terminal.read())) goes_on = obey(player, key) && goes_on;
+        for (const player::Key key : keys.take(terminal.read())) goes_on = handle_key(player, key) && goes_on;
         if (c.settings.duration && link::Seconds(now - begin).count() >= *c.settings.duration) goes_on = false;
         if (c.settings.count && player.sent() >= *c.settings.count) goes_on = false;
         show(line, player);

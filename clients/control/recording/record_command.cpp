@@ -82,8 +82,8 @@ recorder::State follow(const Context& c, recorder::Recorder& recorder, const std
     };
     program::Progress line(c.progress_to(), std::chrono::milliseconds(0));
     TroubleWatch watch;
-    auto state = recorder::State::Goes;
-    while (state == recorder::State::Goes && !c.stopped() && !is_over())
+    auto state = recorder::State::Running;
+    while (state == recorder::State::Running && !c.stopped() && !is_over())
     {
         state = recorder.step(kSlice);
         const recorder::Progress progress = recorder.progress();

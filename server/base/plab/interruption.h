@@ -34,20 +34,20 @@ public:
     {
         const std::int64_t at = at_.load(std::memory_order_relaxed);
         if ((at == kNever || now() < at) && !(also_ && also_->due())) return false;
-        heeded_.store(true, std::memory_order_relaxed);
+        has_interrupted_.store(true, std::memory_order_relaxed);
         return true;
     }
     /// Whether a computation found it due and left work unfinished.
-    bool heeded() const noexcept { return heeded_.load(std::memory_order_relaxed); }
+    bool has_interrupted() const noexcept { return has_interrupted_.load(std::memory_order_relaxed); }
     /// To be called before the next computation.
-    void forget_heeded() const noexcept { heeded_.store(false, std::memory_order_relaxed); }
+    void clear_interrupted() const noexcept { has_interrupted_.store(false, std::memory_order_relaxed); }
 
 private:
     static constexpr std::int64_t kNever = INT64_MAX;
     static std::int64_t now() noexcept { return std::chrono::steady_clock::now().time_since_epoch().count(); }
 
     std::atomic<std::int64_t> at_{kNever};  ///< ns of the steady clock
-    mutable std::atomic<bool> heeded_{false};
+    mutable std::atomic<bool> has_interrupted_{false};
     const Interruption* also_ = nullptr;
 };
 static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free, "signal handlers ask");

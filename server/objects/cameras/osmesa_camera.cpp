@@ -25,19 +25,19 @@ std::int64_t picture_at(double time, double frames_per_second)
 /// A compound is drawn by the triangles of all its parts.
 bool is_mesh(const Geometry& geometry) { return geometry.kind == GeometryKind::Mesh || geometry.kind == GeometryKind::Compound; }
 
-void keep_meshes(const Sight& sight, Studio& studio)
+void keep_meshes(const RenderScene& render_scene, Studio& studio)
 {
     render::Drawing& drawing = studio.drawing;
-    if (studio.meshes_known && drawing.meshes_revision == sight.shapes_revision) return;
+    if (studio.meshes_known && drawing.meshes_revision == render_scene.shapes_revision) return;
     drawing.meshes.clear(), studio.mesh_of_shape.clear();
-    for (const Visual& visual : sight.visuals)
+    for (const Visual& visual : render_scene.visuals)
     {
         if (!visual.geometry || !is_mesh(*visual.geometry)) continue;
         const auto number = static_cast<std::uint32_t>(drawing.meshes.size());
         if (!studio.mesh_of_shape.try_emplace(visual.shape, number).second) continue;
         drawing.meshes.push_back({visual.geometry->vertices, visual.geometry->triangles});
     }
-    drawing.meshes_revision = sight.shapes_revision, studio.meshes_known = true;
+    drawing.meshes_revision = render_scene.shapes_revision, studio.meshes_known = true;
     studio.overview.reset();
 }
 
@@ -64,11 +64,11 @@ Form form_of(const Visual& visual)
     return Form::Sphere;
 }
 
-void place_items(const Sight& sight, Studio& studio)
+void place_items(const RenderScene& render_scene, Studio& studio)
 {
     std::vector<render::Item>& items = studio.drawing.items;
     items.clear();
-    for (const Visual& visual : sight.visuals)
+    for (const Visual& visual : render_scene.visuals)
     {
         if (visual.geometry && visual.geometry->kind == GeometryKind::None) continue;
         render::Item item;
@@ -81,10 +81,10 @@ void place_items(const Sight& sight, Studio& studio)
     }
 }
 
-Result<render::View> named_view(const std::string& name, const Sight& sight)
+Result<render::View> named_view(const std::string& name, const RenderScene& render_scene)
 {
     std::string known;
-    for (const NamedView& view : sight.views)
+    for (const NamedView& view : render_scene.views)
     {
         if (view.name == name) return render::View{view.position, view.look_at, view.up, view.field_of_view};
         known += (known.empty() ? "" : ", ") + view.name;
@@ -92,9 +92,9 @@ Result<render::View> named_view(const std::string& name, const Sight& sight)
     return reason("the scene has no <camera id=\"" + name + "\">; " + (known.empty() ? "it has none" : "it has " + known));
 }
 
-Result<render::View> view_of(Row row, const CameraRows& cameras, const Sight& sight, Studio& studio)
+Result<render::View> view_of(Row row, const CameraRows& cameras, const RenderScene& render_scene, Studio& studio)
 {
-    if (!cameras.view[row].empty()) return named_view(cameras.view[row], sight);
+    if (!cameras.view[row].empty()) return named_view(cameras.view[row], render_scene);
     if (cameras.position[row] != kNotGiven)
         return render::View{cameras.position[row], cameras.look_at[row], cameras.up[row], cameras.field_of_view[row]};
     // The overview keeps its place until objects are added or removed.
@@ -103,12 +103,12 @@ Result<render::View> view_of(Row row, const CameraRows& cameras, const Sight& si
 }
 
 /// One line per interaction; its parts ("contact.response") are on the line of their owner.
-std::vector<render::Caption> captions_of(double time, const Sight& sight)
+std::vector<render::Caption> captions_of(double time, const RenderScene& render_scene)
 {
     char text[48];
     std::snprintf(text, sizeof text, "t = %.3f s", time);
     std::vector<render::Caption> out{{text, false}};
-    for (const std::string& line : sight.algorithms)
+    for (const std::string& line : render_scene.algorithms)
     {
         const std::size_t colon = line.find(": "), dot = line.rfind('.', colon);
         const std::string owner = dot < colon ? line.substr(0, dot) + ": " : std::string();
@@ -135,17 +135,17 @@ Result<void> keep_renderer(Row row, const CameraRows& cameras, Studio& studio)
     return {};
 }
 
-Result<void> draw_now(const StepContext& context, Row row, CameraRows& cameras, const Sight& sight, ImageSink& images)
+Result<void> draw_now(const StepContext& context, Row row, CameraRows& cameras, const RenderScene& render_scene, ImageSink& images)
 {
     Studio& studio = cameras.studio[row];
     if (auto done = keep_renderer(row, cameras, studio); !done) return done;
     if (!studio.renderer) return {};  // reported before
-    keep_meshes(sight, studio);
-    place_items(sight, studio);
-    const auto view = view_of(row, cameras, sight, studio);
+    keep_meshes(render_scene, studio);
+    place_items(render_scene, studio);
+    const auto view = view_of(row, cameras, render_scene, studio);
     if (!view) return view.error();
     studio.drawing.view = *view;
-    studio.drawing.captions = cameras.captions[row] ? captions_of(context.time, sight) : std::vector<render::Caption>{};
+    studio.drawing.captions = cameras.captions[row] ? captions_of(context.time, render_scene) : std::vector<render::Caption>{};
 
     render::Picture picture;
     if (auto done = studio.renderer->draw(studio.drawing, picture); !done) return done;
@@ -175,14 +175,14 @@ void CameraRows::describe(Schema& s)
     s.scratch(studio, "studio", "the renderer, and what it keeps from picture to picture");
 }
 
-void draw(const StepContext& context, Row row, CameraRows& cameras, const Sight& sight, ImageSink& images)
+void draw(const StepContext& context, Row row, CameraRows& cameras, const RenderScene& render_scene, ImageSink& images)
 {
     Studio& studio = cameras.studio[row];
     const std::int64_t number = picture_at(context.time, cameras.frames_per_second[row]);
     // After a reset the numbers start again from 0, so any change of the number makes a picture due.
     if (number == studio.last_picture || !images.wanted()) return;
     studio.last_picture = number;
-    const auto done = draw_now(context, row, cameras, sight, images);
+    const auto done = draw_now(context, row, cameras, render_scene, images);
     if (done || done.error().reason == studio.complaint) return;
     studio.complaint = done.error().reason;
     context.emit(row, "camera.error", Severity::Warning, "no picture: " + studio.complaint);

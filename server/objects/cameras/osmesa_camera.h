@@ -39,6 +39,6 @@ struct CameraRows
 };
 
 /// Draws if a picture is due and some client wants it.
-void draw(const StepContext& context, Row row, CameraRows& cameras, const Sight& sight, ImageSink& images);
+void draw(const StepContext& context, Row row, CameraRows& cameras, const RenderScene& render_scene, ImageSink& images);
 
 }  // namespace plab::cameras

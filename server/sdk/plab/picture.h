@@ -30,7 +30,7 @@ struct NamedView
 };
 
 /// Everything that can be seen at the end of a step.
-struct Sight
+struct RenderScene
 {
     std::span<const Visual> visuals;
     std::span<const NamedView> views;         ///< cameras that the scene names

@@ -77,7 +77,7 @@ struct PhaseCall
     Impact* impact = nullptr;                   // Respond, Touch
     MassProperties* solid = nullptr;            // Measure
     StoredEnergy* stored = nullptr;             // Potential
-    const Sight* sight = nullptr;               // Draw
+    const RenderScene* render_scene = nullptr;  // Draw
     ImageSink* images = nullptr;                // Draw
 };
 
@@ -163,7 +163,7 @@ PLAB_ARGUMENT(ContactLoad&, load, "ContactLoad");
 PLAB_ARGUMENT(Impact&, impact, "Impact");
 PLAB_ARGUMENT(MassProperties&, solid, "MassProperties");
 PLAB_ARGUMENT(StoredEnergy&, stored, "StoredEnergy");
-PLAB_ARGUMENT(const Sight&, sight, "Sight");
+PLAB_ARGUMENT(const RenderScene&, render_scene, "RenderScene");
 PLAB_ARGUMENT(ImageSink&, images, "Images");
 #undef PLAB_ARGUMENT
 

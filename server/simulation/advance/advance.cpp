@@ -18,7 +18,7 @@ void Advance::advance_all()
     contacts_.cache().forget_parked();
     if (forces_.any()) forces_.begin_step();
     hard_.begin_step();
-    if (some_without_solver_ || hard_.needs_islands() || (forces_.any() && forces_.may_touch()))
+    if (some_without_solver_ || hard_.needs_islands() || (forces_.any() && forces_.any_near()))
         advance(step_.all_groups, 0, step_.frame.step, step_.book(), false);
     else
         batches_.advance();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "simulation/contacts/contacts.h"
+#include "world/command_call.h"
 
 namespace plab::simulation
 {
@@ -27,19 +28,15 @@ void copy(const Bodies& from, std::uint32_t i, Bodies& to, std::uint32_t k)
 
 }  // namespace
 
-void run_force_laws(world::World& world, std::uint32_t response, StepContext& context, std::span<Contact> contacts, Bodies& bodies,
+void run_force_laws(world::World& world, std::uint32_t response, const StepContext& context, std::span<Contact> contacts, Bodies& bodies,
                     Wrenches& wrenches)
 {
-    const world::Component& c = world.component(response);
-    world::Table& table = *world.tables()[c.table];
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
     Impact impact;
     impact.dt = 1, impact.contacts = contacts;
-    PhaseCall call;
-    call.context = &context, call.rows = Rows(&c.row, 1);
-    call.bodies = &bodies, call.wrenches = &wrenches, call.impact = &impact;
-    for (const CommandInfo& command : table.type().info.commands)
-        if (command.phase == Phase::Touch && command.run) (void)command.run(call, table.rows());
+    world::CommandCall call{context, {}};
+    call.arguments.bodies = &bodies, call.arguments.wrenches = &wrenches, call.arguments.impact = &impact;
+    call.select(world.table_of(response));
+    (void)call.run(Phase::Touch, Rows(&world.component(response).row, 1));  // laws report trouble as events
 }
 
 void ForceProbe::take(const Bodies& bodies, const Contact& contact, double size, double h)

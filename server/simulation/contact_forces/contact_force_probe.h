@@ -13,7 +13,7 @@ namespace plab::simulation
 {
 
 /// Runs the Phase::Touch commands of a response. Contact::impulse comes out as the force on b, N.
-void run_force_laws(world::World& world, std::uint32_t response, StepContext& context, std::span<Contact> contacts, Bodies& bodies,
+void run_force_laws(world::World& world, std::uint32_t response, const StepContext& context, std::span<Contact> contacts, Bodies& bodies,
                     Wrenches& wrenches);
 
 class ForceProbe

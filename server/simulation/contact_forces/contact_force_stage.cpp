@@ -93,7 +93,7 @@ void ContactForces::detect(std::uint32_t index, std::span<const PersistentPair> 
     ContactCollector sink(step_.world, out);
     sink.begin_query(index, pairs, true, margin);
     ComponentCall query(step_, *step_.world.tables()[detector.table], detector.row);
-    query.context.events = nullptr, query.call.contacts = &sink;
+    query.context.events = nullptr, query.arguments.contacts = &sink;
     (void)query.run(*detector.command);  // an error occurs again in the detection at the end of the step, which reports it
 }
 

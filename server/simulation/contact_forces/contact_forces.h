@@ -19,6 +19,9 @@
 ///
 /// Groups whose bodies may touch by force within the step advance together as an island. An island that contains persistent hard
 /// contacts as well is advanced by the time stepping of those, with the springs as forces (contact_force_advance.cpp).
+///
+/// Sources: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.6 (discontinuous right-hand sides: locate the switch and
+/// restart there); Cundall, Strack, Geotechnique 29 (1979) (contacts as springs and dampers with a tangential history).
 #pragma once
 
 #include <vector>
@@ -42,7 +45,7 @@ public:
     /// Whether any detector's contacts are forces.
     bool any() const { return any_; }
     /// Whether anything may touch by force in this step; after begin_step.
-    bool may_touch() const { return !near_.empty(); }
+    bool any_near() const { return !near_.empty(); }
     /// Finds the pairs that may meet within the step.
     void begin_step();
 

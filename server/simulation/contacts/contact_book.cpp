@@ -136,8 +136,8 @@ void ContactBook::query(const Detector& detector, ContactSink& sink, const Index
 {
     const auto index = static_cast<std::size_t>(&detector - detectors_.data());
     ComponentCall question(step_, *step_.world.tables()[detector.table], detector.row);
-    question.call.contacts = &sink;
-    step_.report.looked_at += active ? active->members().size() : step_.world.host().bodies.size();
+    question.arguments.contacts = &sink;
+    step_.report.visited += active ? active->members().size() : step_.world.host().bodies.size();
     if (active)
         question.context.active_bodies = active->flags(), question.context.shortlists = shortlists_of(index, *active);
     else

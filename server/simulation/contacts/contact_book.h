@@ -118,7 +118,7 @@ private:
     StepState& step_;
     std::vector<Detector> detectors_;
     ContactCache cache_;
-    RestingPairs resting_{step_.world, step_.groups, cache_, step_.report.looked_at};
+    RestingPairs resting_{step_.world, step_.groups, cache_, step_.report.visited};
     std::vector<FoundContact> found_;
     std::vector<double> radius_of_body_;        ///< m, about C; infinite for planes
     std::vector<double> curve_radius_of_body_;  ///< m, of the most strongly curved shape; negative inside, infinite if there is none

@@ -54,7 +54,7 @@ void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, 
         answer.context.dt = dt, answer.context.interruption = step_.frame.interruption;
         Impact impact;
         impact.mode = mode, impact.dt = dt, impact.contacts = impact_contacts_;
-        answer.call.impact = &impact;
+        answer.arguments.impact = &impact;
         const double before = book.work ? kinetic_energy(contacts) : 0.0;
         step_.meter.enter(step_.meter.of_component(response));
         step_.meter.ran(step_.world.component(response).table, Phase::Respond);
@@ -73,7 +73,7 @@ void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, 
 }
 
 /// Books the work of an impact. Without kinematic bodies an impact cannot create energy; any excess is an error of the response and goes to
-/// ContactEnergy::made instead.
+/// ContactEnergy::created instead.
 void ContactBook::book_impact(std::uint32_t response, const std::vector<FoundContact>& contacts, ImpactMode mode, double work,
                               WorkBook book)
 {
@@ -84,7 +84,7 @@ void ContactBook::book_impact(std::uint32_t response, const std::vector<FoundCon
     for (const FoundContact& f : contacts)
         if (bodies.motion[f.contact.a.index] == Motion::Kinematic || bodies.motion[f.contact.b.index] == Motion::Kinematic) return;
     (*book.work)[response] -= book.sign * work;
-    step_.contact_energy[response].made += book.sign * work;
+    step_.contact_energy[response].created += book.sign * work;
 }
 
 }  // namespace plab::simulation

@@ -240,7 +240,7 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
     ComponentCall answer(step_, held.manager);
     answer.context.time = island.time, answer.context.dt = island.h, answer.context.interruption = island.interruption;
     if (trial) answer.context.events = nullptr;
-    answer.call.island = &island;
+    answer.arguments.island = &island;
     const double before = book.work ? held.motion.kinetic_energy() : 0.0;
     step_.meter.enter(step_.meter.of_component(held.manager));
     step_.meter.ran(world.component(held.manager).table, Phase::Solve);
@@ -260,21 +260,21 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
 
 /// Books the work of the manager. Contacts dissipate energy, so on bodies that nothing else drives their work must not be positive, apart
 /// from what position correction lifts. Energy that the method creates beyond that is not booked as work, so it remains visible as the
-/// unexplained part of the ledger (ContactEnergy::made).
+/// unexplained part of the ledger (ContactEnergy::created).
 void HeldIslands::book_contacts(HeldIsland& island, double gained, WorkBook book)
 {
     const Bodies& bodies = step_.world.host().bodies;
-    const double lifted = island.motion.count_corrections();
+    const double by_correction = island.motion.count_corrections();
     const double work = gained - island.motion.work_of_forces();
     const bool driven = !island.rows.empty() || std::any_of(island.contacts.begin(), island.contacts.end(),
                                                             [&](const Contact& c) {
                                                                 return bodies.motion[c.a.index] == Motion::Kinematic ||
                                                                        bodies.motion[c.b.index] == Motion::Kinematic;
                                                             });
-    const double made = driven ? 0.0 : std::max(0.0, work - lifted);
-    (*book.work)[island.manager] += book.sign * (work - made);
+    const double created = driven ? 0.0 : std::max(0.0, work - by_correction);
+    (*book.work)[island.manager] += book.sign * (work - created);
     ContactEnergy& own = step_.contact_energy[island.manager];
-    own.made += book.sign * made, own.lifted += book.sign * lifted;
+    own.created += book.sign * created, own.by_correction += book.sign * by_correction;
 }
 
 /// Reports the impulses of the joints, and moves their work from the manager's account to theirs.

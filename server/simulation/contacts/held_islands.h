@@ -14,6 +14,9 @@
 /// The ledger splits the change of kinetic energy into
 ///   work of forces    F . (distance that the bodies move)
 ///   work of manager   the rest of the change of kinetic energy
+///
+/// Sources: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988), for time stepping with impulses instead of
+/// forces; Stewart, Trinkle, IJNME 39 (1996).
 #pragma once
 
 #include <memory>

@@ -41,7 +41,7 @@ double HeldMotion::kinetic_energy() const
 
 double HeldMotion::count_corrections()
 {
-    double lifted = 0;
+    double work_of_corrections = 0;
     for (std::size_t k = 0; k < members_.size(); ++k)
     {
         const std::uint32_t b = system_->bodies()[members_[k]];
@@ -49,10 +49,10 @@ double HeldMotion::count_corrections()
         // A displacement below the rounding error of the position is not a correction.
         if (length(shift) <= 0x1p-48 * (length(started_[k]) + length(means_[k].velocity))) continue;
         means_[k].velocity += shift;
-        lifted -= bodies_->mass[b] * dot(system_->acceleration(members_[k]), shift);
+        work_of_corrections -= bodies_->mass[b] * dot(system_->acceleration(members_[k]), shift);
     }
-    worked_ -= lifted;
-    return lifted;
+    worked_ -= work_of_corrections;
+    return work_of_corrections;
 }
 
 void HeldMotion::kick(double h)

@@ -71,7 +71,7 @@ bool ContactBook::choose_search()
         if (!d.adapts) continue;
         load.has_manager = d.by_rows, load.search = ImpactSearch::AtEnd;
         ComponentCall question(step_, d.resolution);
-        question.call.load = &load;
+        question.arguments.load = &load;
         question.run(Phase::Choose);
         if (load.search == ImpactSearch::Locate && !d.gap) load.search = ImpactSearch::AtEnd;
         if (load.search == ImpactSearch::Speculate && !d.by_rows) load.search = ImpactSearch::AtEnd;

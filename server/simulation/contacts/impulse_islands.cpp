@@ -88,7 +88,7 @@ void ImpulseIslands::update_touching(double h)
 }
 
 /// Corrects the booked work of resting contacts. Along the actual displacements it must not be positive if no kinematic body takes part.
-/// Any excess is energy that the method created: it is moved to ContactEnergy::made, so that it remains unexplained in the ledger.
+/// Any excess is energy that the method created: it is moved to ContactEnergy::created, so that it remains unexplained in the ledger.
 /// ContactBook::respond() has booked the impulses at their mean velocities.
 void ImpulseIslands::book_rest(double work, WorkBook book)
 {
@@ -98,7 +98,7 @@ void ImpulseIslands::book_rest(double work, WorkBook book)
     if (!(work > 0) || touching_.empty() || std::any_of(touching_.begin(), touching_.end(), driven)) return;
     const std::uint32_t response = contacts_.detectors()[touching_.front().detector].response;
     (*book.work)[response] -= book.sign * work;
-    step_.contact_energy[response].made += book.sign * work;
+    step_.contact_energy[response].created += book.sign * work;
 }
 
 void ImpulseIslands::keep_impulses(const std::vector<FoundContact>& contacts, double from, double h)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/contacts/nudge.h"
+#include "simulation/contacts/body_displacement.h"
 
 namespace plab::simulation
 {
@@ -21,7 +21,7 @@ void PositionCorrection::separate(std::span<const FoundContact> contacts)
 {
     Bodies& bodies = step_.world.host().bodies;
     const Ref first = contacts.front().contact.a, second = contacts.front().contact.b;
-    Nudge a(bodies, first.index), b(bodies, second.index);
+    BodyDisplacement a(bodies, first.index), b(bodies, second.index);
     for (int sweep = 0; sweep < kCorrectionSweeps; ++sweep)
         for (const FoundContact& f : contacts)
         {
@@ -34,7 +34,8 @@ void PositionCorrection::separate(std::span<const FoundContact> contacts)
         }
     a.apply(bodies, first.index), b.apply(bodies, second.index);
     const std::uint32_t response = contacts_.detectors()[contacts.front().detector].response;
-    if (response != kNoIndex) step_.contact_energy[response].lifted -= dot(force_on(first), a.shift) + dot(force_on(second), b.shift);
+    if (response != kNoIndex)
+        step_.contact_energy[response].by_correction -= dot(force_on(first), a.shift) + dot(force_on(second), b.shift);
 }
 
 void PositionCorrection::note_forces(const GroupSystem& system)
@@ -119,7 +120,7 @@ void PositionCorrection::ease_pair(PairState& pair)
     if (eased.empty()) return;
     const double share = share_of_overlap_left(pair, eased);
     Bodies& bodies = step_.world.host().bodies;
-    Nudge a(bodies, pair.a.index), b(bodies, pair.b.index);
+    BodyDisplacement a(bodies, pair.a.index), b(bodies, pair.b.index);
     for (const Eased& e : eased) e.known->rest_depth *= share;
     for (int sweep = 0; sweep < kEasingSweeps; ++sweep)
         for (const Eased& e : eased)

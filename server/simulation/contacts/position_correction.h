@@ -7,8 +7,8 @@
 /// where K is the effective inverse mass at the contact point. The rotation matters: translating the whole body by the depth of its
 /// deepest corner would lift the other corners off, and the body would rock for ever.
 ///
-/// Moving a body against a force (gravity, mostly) changes its potential energy. This is booked as ContactEnergy::lifted, so that the
-/// energy ledger still balances.
+/// Moving a body against a force (gravity, mostly) changes its potential energy. This is booked as ContactEnergy::by_correction, so that
+/// the energy ledger still balances.
 #pragma once
 
 #include "simulation/contacts/contact_book.h"

@@ -33,7 +33,7 @@ void RestingPairs::build()
     first_.assign(groups_.all.size(), kNoIndex);
     nodes_.clear();
     const std::vector<PairState>& pairs = cache_.pairs();
-    looked_at_ += pairs.size();
+    visited_ += pairs.size();
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (pairs[i].resting) put(pairs[i], i);
 }
@@ -50,7 +50,7 @@ void RestingPairs::each_of(std::uint32_t group, Found&& found)
     for (std::uint32_t i = first_[group]; i != kNoIndex; i = nodes_[i].next)
     {
         Node& node = nodes_[i];
-        ++looked_at_;
+        ++visited_;
         const PairState* pair = cache_.find(node.detector, node.a, node.b, world_, node.place);
         if (pair && pair->resting) found(*pair, static_cast<std::uint32_t>(node.place));
     }
@@ -68,7 +68,7 @@ void RestingPairs::find(std::span<const std::uint32_t> groups, std::vector<std::
     for (const std::uint32_t g : groups) wanted_.add(g);
     const auto is_wanted = [&](Ref r) { return groups_.of(r) != kNoIndex && wanted_.has(groups_.of(r)); };
     const std::vector<PairState>& pairs = cache_.pairs();
-    looked_at_ += pairs.size();
+    visited_ += pairs.size();
     for (std::uint32_t i = 0; i < pairs.size(); ++i)
         if (pairs[i].resting && (is_wanted(pairs[i].a) || is_wanted(pairs[i].b))) places.push_back(i);
 }

@@ -13,9 +13,9 @@ namespace plab::simulation
 class RestingPairs
 {
 public:
-    /// `looked_at`: counts the pairs that are visited.
-    RestingPairs(const world::World& world, const Groups& groups, const ContactCache& cache, std::uint64_t& looked_at)
-        : world_(world), groups_(groups), cache_(cache), looked_at_(looked_at)
+    /// `visited`: counts the pairs that are visited.
+    RestingPairs(const world::World& world, const Groups& groups, const ContactCache& cache, std::uint64_t& visited)
+        : world_(world), groups_(groups), cache_(cache), visited_(visited)
     {
     }
 
@@ -49,7 +49,7 @@ private:
     const world::World& world_;
     const Groups& groups_;
     const ContactCache& cache_;
-    std::uint64_t& looked_at_;
+    std::uint64_t& visited_;
     std::vector<std::uint32_t> first_;  ///< by group: index of its first node
     std::vector<Node> nodes_;
     IndexSet wanted_;  ///< scratch

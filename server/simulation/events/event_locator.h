@@ -19,8 +19,12 @@
 /// Only the candidate at the front of the queue is located more precisely. If its time becomes later, it goes back into the queue; if it
 /// is still the earliest, it is the next event. An answer changes the trajectories of the rewound groups, so it raises their version
 /// number: candidates made with an older version are stale and are dropped, and the pairs of the rewound bodies are detected again.
+///
+/// Sources: Mirtich, Impulse-based Dynamic Simulation, PhD thesis (1996), chapter 2 (queue of lower bounds, conservative advancement);
+/// Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH (2000) (rewinding only what an impact affects).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "simulation/advance/advance.h"
@@ -75,6 +79,19 @@ private:
         double speed = 0;        ///< m/s, sum of the two speeds whose difference is the rate: the scale of its rounding error
         double contact_gap = 0;  ///< m: gaps up to this size count as contact (rounding)
         double slack = 0;        ///< m: a pair that touches and sinks in no deeper than this in the rest of the step is not an event
+    };
+    /// How far the conservative advancement of a pair has got.
+    struct Advancement
+    {
+        Trial trial;             ///< question to the resolution
+        DistanceSample sample;   ///< the present one
+        DistanceSample at_end;   ///< at the end of the step; taken after a few advances
+        Vec3 turn;               ///< rad/s: angular velocity of the normal between the last two samples
+        double clear = 0;        ///< s: from the present sample on, certain not to meet for so long
+        double uncertified = 0;  ///< fraction of the rest of the step that the next advance without a guarantee covers
+        bool touches = false;    ///< the gap is zero within rounding
+        bool separates = false;  ///< the gap grows by more than rounding
+        bool bracketed = false;  ///< the pair overlaps at the end of the step
     };
     /// The distance between a shape of one body and a shape of the other.
     struct ShapeGap
@@ -165,6 +182,10 @@ private:
     void ask(const Candidate& candidate, Trial& trial);
     void search(Candidate& candidate);
     bool meets(Candidate& candidate);
+    std::optional<bool> decide_now(Candidate& candidate, Advancement& a);
+    void extend_uncertified(Advancement& a) const;
+    void fill_trial(const Candidate& candidate, Advancement& a);
+    std::optional<bool> choose_time(Candidate& candidate, Advancement& a);
     bool answered_at(const Candidate& candidate, double time) const;
     DistanceSample sample_at(const Candidate& candidate, double time);
     bool presses(Candidate& candidate, const DistanceSample& sample);
@@ -211,20 +232,20 @@ private:
     Advance& advance_;
     std::vector<Candidate> candidates_;  ///< slots
     std::vector<std::uint32_t> free_;
-    std::vector<Entry> queue_;                        ///< heap, earliest event on top
-    std::vector<std::uint64_t> versions_;             ///< by group: number of its present smooth piece within the step
-    std::vector<std::uint32_t> chosen_;               ///< slots that are answered together
-    std::vector<std::uint32_t> set_aside_;            ///< slots
-    std::vector<std::uint32_t> scope_;                ///< groups that are rewound, ascending
-    std::vector<std::uint32_t> left_;                 ///< scratch of move_scope()
-    std::vector<std::uint32_t> resting_places_;       ///< of the persistent pairs in a scope
-    std::vector<std::uint8_t> flags_;                 ///< by group, scratch
-    IndexSet in_scope_;                               ///< groups, while a scope is collected
-    std::vector<std::uint32_t> disturbed_;            ///< groups of the last answer's pairs, and what rests on them
-    std::vector<std::uint8_t> rests_;                 ///< by group: it takes part in a persistent contact
-    bool any_rests_ = false;                          ///< a group in the scope of the present answer takes part in a persistent contact
-    bool rewound_ = false;                            ///< the last answer rewound groups
-    bool answers_at_end_ = false;                     ///< the work budget is spent: nothing is located any more
+    std::vector<Entry> queue_;                   ///< heap, earliest event on top
+    std::vector<std::uint64_t> versions_;        ///< by group: number of its present smooth piece within the step
+    std::vector<std::uint32_t> chosen_;          ///< slots that are answered together
+    std::vector<std::uint32_t> set_aside_;       ///< slots
+    std::vector<std::uint32_t> scope_;           ///< groups that are rewound, ascending
+    std::vector<std::uint32_t> left_;            ///< scratch of move_scope()
+    std::vector<std::uint32_t> resting_places_;  ///< of the persistent pairs in a scope
+    std::vector<std::uint8_t> flags_;            ///< by group, scratch
+    IndexSet in_scope_;                          ///< groups, while a scope is collected
+    std::vector<std::uint32_t> disturbed_;       ///< groups of the last answer's pairs, and what rests on them
+    std::vector<std::uint8_t> rests_;            ///< by group: it takes part in a persistent contact
+    bool any_rests_ = false;                     ///< a group in the scope of the present answer takes part in a persistent contact
+    bool rewound_ = false;                       ///< the last answer rewound groups
+    bool answers_at_end_ = false;                ///< the work budget is spent: nothing is located any more
     WorkBudget budget_;
     std::vector<PairKey> live_;          ///< pairs in the queue, sorted
     std::vector<ShapeGap> shape_gaps_;   ///< of the last distance query, if a body has several shapes

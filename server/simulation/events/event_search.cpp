@@ -25,7 +25,9 @@ constexpr double kNothing = 1e-300;
 constexpr double kNoGapRate = 1e-14;
 /// If a pair touches and does not close, and no bound says for how long it stays so, it is advanced by this fraction of the rest of the
 /// piece without a guarantee; twice as far each time, so that the end of the piece is reached after about twenty queries.
-constexpr double kLetGo = 0x1p-20;
+constexpr double kUncertified = 0x1p-20;
+/// Times closer than this fraction of the step are not told apart.
+constexpr double kShortest = 0x1p-48;
 /// Number of advancement steps towards a contact before the end of the piece is sampled, to find a bracket.
 constexpr int kFirstSteps = 4;
 
@@ -58,7 +60,7 @@ void EventLocator::ask(const Candidate& candidate, Trial& trial)
 {
     const std::uint32_t resolution = contacts_.detectors()[candidate.detector].resolution;
     ComponentCall question(step_, resolution);
-    question.call.trial = &trial;
+    question.arguments.trial = &trial;
     const CostScope scope(step_.meter, step_.meter.of_component(resolution));
     question.run(Phase::Locate);
 }
@@ -263,70 +265,102 @@ bool EventLocator::presses(Candidate& candidate, const DistanceSample& sample)
     return candidate.pressed = -0.5 * c.normal_acceleration * left * left > sample.slack;
 }
 
+/// Whether the pair meets, as far as the present sample decides it; empty: not decided, the pair has to be advanced.
+std::optional<bool> EventLocator::decide_now(Candidate& candidate, Advancement& a)
+{
+    const DistanceSample& sample = a.sample;
+    const double step = step_.frame.step, left = step - sample.time;
+    const bool responds = contacts_.detectors()[candidate.detector].responds;
+    a.touches = sample.query.gap <= sample.contact_gap, a.separates = sample.rate > kNoGapRate * sample.speed;
+    const bool closes = sample.rate < -kNoGapRate * sample.speed;
+    if (a.touches && (!responds || (closes && !(left > 0 && -sample.rate * left <= sample.slack)))) return true;
+    if (!(left > 0)) return false;
+    // A pair that touches a body which the present event stops may be stopped with it.
+    if (a.touches && !met_bodies_.empty() && !a.separates && presses(candidate, sample)) return true;
+    // Sliding along one another for the rest of the step is not an event.
+    a.clear = clear_for(candidate, sample, a.turn, a.touches ? sample.slack : 0.0, a.trial.closing);
+    if (sample.time + a.clear >= step)
+    {
+        if (a.touches && responds) unpressed_.push_back({candidate.detector, candidate.a, candidate.b, sample.time, candidate.version});
+        return false;
+    }
+    // A pair that separates and comes back meets at a gap of 0, not a rounding error below it, so the bound for its return has no slack.
+    if (a.touches) a.clear = clear_for(candidate, sample, a.turn, 0.0, a.trial.closing);
+    // It is closing, and the remaining time is shorter than times can be resolved: this is the impact.
+    if (!a.touches && a.clear < kShortest * step && sample.rate < 0) return true;
+    // A pair that separates is advanced further; so is one that no force presses together, although no bound excludes that it sinks in.
+    if (a.touches && !a.separates && presses(candidate, sample)) return true;
+    if (a.touches) extend_uncertified(a);
+    return {};
+}
+
+/// Extends the time in which the pair is taken to be clear beyond what the bound guarantees.
+void EventLocator::extend_uncertified(Advancement& a) const
+{
+    a.clear = std::max(a.clear, std::min(a.uncertified, 1.0) * (step_.frame.step - a.sample.time));
+    a.uncertified *= 2;
+}
+
+/// Fills the question to the resolution: the present sample as the clear end of a bracket, and an overlap at the end of the step, if there
+/// is one, as the other end.
+void EventLocator::fill_trial(const Candidate& candidate, Advancement& a)
+{
+    const DistanceSample& sample = a.sample;
+    Trial& trial = a.trial;
+    if (trial.iteration == kFirstSteps) a.at_end = sample_at(candidate, step_.frame.step);
+    a.bracketed = trial.iteration >= kFirstSteps && a.at_end.query.gap < -a.at_end.contact_gap;
+    trial.begin = sample.time, trial.gap_begin = std::max(sample.query.gap, 0x1p-60 * sample.contact_gap);
+    trial.rate_begin = -trial.gap_begin / std::max(a.clear, 0x1p-60 * step_.frame.step);
+    trial.gap_end = a.bracketed ? a.at_end.query.gap : kUnknown, trial.rate_end = a.bracketed ? a.at_end.rate : kUnknown;
+    trial.last = sample.time, trial.last_gap = sample.query.gap, trial.last_rate = sample.rate;
+}
+
+/// Lets the resolution choose the next time of a pair that does not touch. Decides if the resolution accepts, gives up, or jumps to its
+/// estimate of the zero and finds the impact there.
+std::optional<bool> EventLocator::choose_time(Candidate& candidate, Advancement& a)
+{
+    const DistanceSample& sample = a.sample;
+    ask(candidate, a.trial);
+    if (a.trial.decision == Trial::Decision::Accept)
+    {
+        // A pair that separates has no impact, however narrow its gap still is: go on.
+        if (!contacts_.detectors()[candidate.detector].responds || sample.rate < 0) return true;
+        extend_uncertified(a);
+        a.trial.next = sample.time + a.clear;
+    }
+    if (a.trial.decision == Trial::Decision::GiveUp) return found_when_given_up(candidate, sample);
+    // With a known overlap ahead, the resolution may jump to its estimate of the zero.
+    const bool may_jump = a.bracketed && (a.trial.iteration & 7) == kFirstSteps;
+    if (may_jump && a.trial.next > sample.time + a.clear && settle_in_bracket(candidate, sample, a.at_end, true)) return true;
+    return {};
+}
+
+/// Conservative advancement: measure, decide, advance by the time that is certain to be clear, and again.
 bool EventLocator::meets(Candidate& candidate)
 {
-    const double step = step_.frame.step, shortest = 0x1p-48 * step;
-    const bool responds = contacts_.detectors()[candidate.detector].responds;
-    Trial trial;
-    trial.end = trial.step = step;
-    Vec3 turn;
-    DistanceSample sample = sample_at(candidate, candidate.time), over;
-    if (settle_at_begin(candidate, sample)) return !candidate.nothing;
-    double let_go = kLetGo;
-    for (; !budget_.is_spent(); ++trial.iteration)
+    Advancement a;
+    a.uncertified = kUncertified;
+    a.trial.end = a.trial.step = step_.frame.step;
+    a.sample = sample_at(candidate, candidate.time);
+    if (settle_at_begin(candidate, a.sample)) return !candidate.nothing;
+    for (; !budget_.is_spent(); ++a.trial.iteration)
     {
         if (step_.frame.give_up()) return false;
-        candidate.time = sample.time;
-        const double left = step - sample.time;
-        const bool touches = sample.query.gap <= sample.contact_gap, closes = sample.rate < -kNoGapRate * sample.speed;
-        if (touches && (!responds || (closes && !(left > 0 && -sample.rate * left <= sample.slack)))) return true;
-        if (!(left > 0)) return false;
-        // A pair that touches a body which the present event stops may be stopped with it.
-        if (touches && !met_bodies_.empty() && !(sample.rate > kNoGapRate * sample.speed) && presses(candidate, sample)) return true;
-        // Sliding along one another for the rest of the step is not an event.
-        double clear = clear_for(candidate, sample, turn, touches ? sample.slack : 0.0, trial.closing);
-        if (sample.time + clear >= step)
-        {
-            if (touches && responds) unpressed_.push_back({candidate.detector, candidate.a, candidate.b, sample.time, candidate.version});
-            return false;
-        }
-        // A pair that separates and comes back meets at a gap of 0, not a rounding error below it, so the bound for its return has no
-        // slack.
-        if (touches) clear = clear_for(candidate, sample, turn, 0.0, trial.closing);
-        // It is closing, and the remaining time is shorter than times can be resolved: this is the impact.
-        if (!touches && clear < shortest && sample.rate < 0) return true;
-        // A pair that separates is advanced further; so is one that no force presses together, although no bound excludes that it sinks in.
-        if (touches && !(sample.rate > kNoGapRate * sample.speed) && presses(candidate, sample)) return true;
-        if (touches) clear = std::max(clear, std::min(let_go, 1.0) * left), let_go *= 2;
-        if (trial.iteration == kFirstSteps) over = sample_at(candidate, step);
-        const bool bracketed = trial.iteration >= kFirstSteps && over.query.gap < -over.contact_gap;
-        trial.begin = sample.time, trial.gap_begin = std::max(sample.query.gap, 0x1p-60 * sample.contact_gap);
-        trial.rate_begin = -trial.gap_begin / std::max(clear, 0x1p-60 * step);
-        trial.gap_end = bracketed ? over.query.gap : kUnknown, trial.rate_end = bracketed ? over.rate : kUnknown;
-        trial.last = sample.time, trial.last_gap = sample.query.gap, trial.last_rate = sample.rate;
-        if (touches)
-            trial.next = sample.time + clear;
-        else
-        {
-            ask(candidate, trial);
-            // A pair that separates has no impact, however narrow its gap still is: go on.
-            if (trial.decision == Trial::Decision::Accept && (!responds || sample.rate < 0)) return true;
-            if (trial.decision == Trial::Decision::Accept)
-                trial.next = sample.time + (clear = std::max(clear, std::min(let_go, 1.0) * left)), let_go *= 2;
-            if (trial.decision == Trial::Decision::GiveUp) return found_when_given_up(candidate, sample);
-            // With a known overlap ahead, the resolution may jump to its estimate of the zero.
-            if (bracketed && trial.next > sample.time + clear && (trial.iteration & 7) == kFirstSteps &&
-                settle_in_bracket(candidate, sample, over, true))
-                return true;
-        }
-        const double next = std::min(trial.next, sample.time + clear);
+        candidate.time = a.sample.time;
+        if (const auto decided = decide_now(candidate, a)) return *decided;
+        fill_trial(candidate, a);
+        if (a.touches)
+            a.trial.next = a.sample.time + a.clear;
+        else if (const auto decided = choose_time(candidate, a))
+            return *decided;
+        const double next = std::min(a.trial.next, a.sample.time + a.clear);
         // The next time is not distinguishable from the present one; a pair that separates here is left to the next step.
-        if (!(next > sample.time)) return !(sample.rate > kNoGapRate * sample.speed);
-        const DistanceSample ahead = sample_at(candidate, std::min(next, step));
+        if (!(next > a.sample.time)) return !a.separates;
+        const DistanceSample ahead = sample_at(candidate, std::min(next, step_.frame.step));
         // The bound relies on estimated accelerations, so an overlap is possible after all. Then the two samples are a bracket.
-        if (ahead.query.gap < -ahead.contact_gap) return settle_in_bracket(candidate, sample, ahead, false);
-        turn = turn_between(sample, ahead);
-        sample = ahead;
+        if (ahead.query.gap < -ahead.contact_gap) return settle_in_bracket(candidate, a.sample, ahead, false);
+        a.turn = turn_between(a.sample, ahead);
+        a.sample = ahead;
     }
     return false;
 }

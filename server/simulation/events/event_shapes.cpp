@@ -152,7 +152,7 @@ GapQuery EventLocator::measure(const Candidate& candidate, double time)
     GapQuery query;
     query.a = candidate.a, query.b = candidate.b;
     ComponentCall question(step_, *step_.world.tables()[detector.table], detector.row);
-    question.context.events = nullptr, question.call.gap = &query;
+    question.context.events = nullptr, question.arguments.gap = &query;
     (void)question.run(*detector.gap);
     budget_.spend(1 + WorkBudget::kFurtherPair * query.further_pairs);
     list_shape_gaps(candidate, query);

@@ -1,41 +1,31 @@
-/// A call of a component's commands within a step, with the arguments that each such call gets: time and number of the step, the rows of
-/// the component's table, and the host tables. The caller adds the argument of the phase (a sink, an island, an impact).
+/// A call of one component's commands within a step, with the arguments that each such call gets: time and number of the step, where events
+/// go, and the host tables. The caller adds the argument of the phase (a sink, an island, an impact).
 #pragma once
 
 #include "simulation/motion/step_state.h"
+#include "world/command_call.h"
 
 namespace plab::simulation
 {
 
-class ComponentCall
+class ComponentCall : public world::CommandCall
 {
 public:
-    ComponentCall(StepState& step, world::Table& table, Row row) : context(step.context()), call(step.call()), table_(table), row_(row)
+    ComponentCall(StepState& step, const world::Table& table, Row row) : CommandCall{step.context(), step.arguments()}, row_(row)
     {
         context.events = &step, context.workers = &step.workers;
-        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-        call.context = &context, call.rows = Rows(&row_, 1);
+        select(table);
     }
     ComponentCall(StepState& step, std::uint32_t component)
         : ComponentCall(step, step.world.table_of(component), step.world.component(component).row)
     {
     }
-    ComponentCall(const ComponentCall&) = delete;
-    ComponentCall& operator=(const ComponentCall&) = delete;
 
-    Result<void> run(const CommandInfo& command) { return command.run(call, table_.rows()); }
-    /// Runs all commands of its type for a phase and ignores their results.
-    void run(Phase phase)
-    {
-        for (const CommandInfo& command : table_.type().info.commands)
-            if (command.phase == phase && command.run) (void)run(command);
-    }
-
-    StepContext context;
-    PhaseCall call;
+    Result<void> run(const CommandInfo& command) { return CommandCall::run(command, Rows(&row_, 1)); }
+    /// Of a phase whose commands report trouble as events only.
+    void run(Phase phase) { (void)CommandCall::run(phase, Rows(&row_, 1)); }
 
 private:
-    world::Table& table_;
     Row row_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "world/command_call.h"
+
 namespace plab::simulation
 {
 
@@ -68,15 +70,10 @@ bool GroupMotion::run_solver(GroupSystem& system, std::uint32_t solver, double f
 
 bool GroupMotion::call_solver(GroupSystem& system, std::uint32_t solver, const CommandInfo& command)
 {
-    const world::Component& c = step_.world.component(solver);
-    world::Table& table = *step_.world.tables()[c.table];
-    StepContext context = system.context();  // the solver's own rows: evaluations set it to those of forces
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    PhaseCall call;
-    call.context = &context;
-    call.rows = Rows(&c.row, 1);
-    call.system = &system;
-    return static_cast<bool>(command.run(call, table.rows()));
+    world::CommandCall call{system.context(), {}};
+    call.arguments.system = &system;
+    call.select(step_.world.table_of(solver));
+    return static_cast<bool>(call.run(command, Rows(&step_.world.component(solver).row, 1)));
 }
 
 bool GroupMotion::goes_alone(const Group& group) const

@@ -18,7 +18,7 @@ struct StepReport
     int resting_pairs = 0;
     std::uint64_t swept_rows = 0;   ///< rows of contacts and joints times sweeps (or pivots) over them, trials included
     double further_pairs = 0;       ///< pairs of shapes that detection went through, beyond one for each pair of bodies
-    std::uint64_t looked_at = 0;    ///< bodies that detections were asked about, and known pairs visited to find what rests on what
+    std::uint64_t visited = 0;      ///< bodies that detections were asked about, and known pairs visited to find what rests on what
     std::uint64_t evaluations = 0;  ///< of forces, summed over the systems that solvers advanced, trials included
     double worst_residual = 0;      ///< m/s, largest residual of the contact responses
     double deepest = 0;             ///< m, overlap left at the end of the step
@@ -28,8 +28,8 @@ struct StepReport
 /// Energy that contacts created, by component (manager or response), J, since the run began.
 struct ContactEnergy
 {
-    double made = 0;    ///< by contacts that should only dissipate: not booked as work, so it shows up as unexplained in the ledger
-    double lifted = 0;  ///< by position correction, against the forces of the step
+    double created = 0;        ///< by contacts that should only dissipate: not booked as work, so it shows up as unexplained in the ledger
+    double by_correction = 0;  ///< by position correction, against the forces of the step
 };
 
 /// Conditions that have been reported by an event and are reported again only if they end and come back.
@@ -61,8 +61,8 @@ struct StepState final : EventSink
         return out;
     }
 
-    /// A call with the host tables that most commands may see.
-    PhaseCall call() const
+    /// The host tables that most commands may see.
+    PhaseCall arguments() const
     {
         world::HostTables& host = world.host();
         PhaseCall out;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "world/command_call.h"
+
 namespace plab::simulation
 {
 namespace
@@ -40,18 +42,15 @@ public:
     void constrain(const StepContext& given, RowSink& sink) override
     {
         world::HostTables& host = world_->host();
-        StepContext context = given;
-        PhaseCall call;
-        call.context = &context;
-        call.bodies = &host.bodies, call.shafts = &host.shafts, call.shapes = &host.shapes, call.materials = &host.materials;
-        call.quantities = &host.quantities, call.rows_out = &sink;
+        world::CommandCall call{given, {}};
+        PhaseCall& to = call.arguments;
+        to.bodies = &host.bodies, to.shafts = &host.shafts, to.shapes = &host.shapes, to.materials = &host.materials;
+        to.quantities = &host.quantities, to.rows_out = &sink;
         for (std::size_t k = 0; k < count_; ++k)
         {
             const Selected& s = selected_[k];
-            const world::Table& table = *world_->tables()[s.block->table];
-            context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-            call.rows = s.rows;
-            (void)s.block->command->run(call, table.rows());  // rows report problems as events, not as errors
+            call.select(*world_->tables()[s.block->table]);
+            (void)call.run(*s.block->command, s.rows);  // rows report problems as events, not as errors
         }
     }
 

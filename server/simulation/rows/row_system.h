@@ -2,7 +2,13 @@
 /// onto the rows.
 ///
 /// The constraints are enforced at acceleration level (index 1): M a = f + J^T lambda, J a = bias. The drift that remains is removed
-/// after the step by projecting positions and then speeds in the norm of M, which preserves the order of the solver.
+/// after the step by projecting positions and then speeds in the norm of M, which preserves the order of the solver:
+///
+///   positions   q += M^-1 J^T mu,  J M^-1 J^T mu = -phi(q),        repeated until phi is at rounding level (a Newton method)
+///   speeds      v += M^-1 J^T nu,  J M^-1 J^T nu = rate - J v,     once, up to rounding
+///
+/// Of all states that satisfy the rows this is the one at the least distance, measured with the masses. Both are solved as the equations
+/// of row_equations.h with g = 0, which never multiply J M^-1 J^T out.
 ///
 /// Sources: D. Baraff, "Linear-time dynamics using Lagrange multipliers", SIGGRAPH 1996 (M and J kept apart, in tree order); E. Hairer,
 /// G. Wanner, "Solving ordinary differential equations II", VII.2 (projection preserves the order).

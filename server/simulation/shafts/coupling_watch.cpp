@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "plab/number_text.h"
+#include "world/command_call.h"
 
 namespace plab::simulation
 {
@@ -53,11 +54,10 @@ private:
 FactorProbe probed(const Block& block, const world::Table& table, Row row, double speed)
 {
     FactorProbe probe(speed);
-    StepContext context;
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    PhaseCall call;
-    call.context = &context, call.shaft_motion = &probe, call.rows = Rows(&row, 1);
-    (void)block.command->run(call, table.rows());  // as in the sweeps
+    world::CommandCall call;
+    call.arguments.shaft_motion = &probe;
+    call.select(table);
+    (void)call.run(*block.command, Rows(&row, 1));  // as in the sweeps
     return probe;
 }
 

@@ -226,7 +226,7 @@ void ShaftCoupling::account(std::vector<double>& work, double share)
         });
 }
 
-// Power through each coupling of the prescribed shaft: (sum rho^2 J alpha_root - sum rho tau) w_root over the subtree.
+// Power through each coupling of the prescribed shaft: (a sum rho^2 J - sum rho tau) w over the subtree, a and w being those of the root.
 void ShaftCoupling::account_prescribed(const ShaftTree& tree, std::vector<double>& work, double share)
 {
     const auto nodes = graph_->nodes(tree);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "world/command_call.h"
+
 namespace plab::simulation
 {
 
@@ -60,9 +62,8 @@ void ShaftSystem::set_part(std::uint32_t shaft, std::uint32_t part)
 CouplingReport ShaftSystem::sweep(Part& part, const StepContext& outer)
 {
     if (part.couplings.empty()) return {};
-    StepContext context = outer;
-    PhaseCall call;
-    call.context = &context, call.shaft_motion = &part.coupling;
+    world::CommandCall call{outer, {}};
+    call.arguments.shaft_motion = &part.coupling;
     const auto& blocks = schedule_->of(Phase::Couple);
     return part.coupling.solve(
         [&]
@@ -70,10 +71,8 @@ CouplingReport ShaftSystem::sweep(Part& part, const StepContext& outer)
             for (const BlockRow& row : part.couplings)
             {
                 const Block& block = blocks[row.block];
-                const world::Table& table = *world_->tables()[block.table];
-                context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-                call.rows = Rows(&row.row, 1);
-                (void)block.command->run(call, table.rows());
+                call.select(*world_->tables()[block.table]);
+                (void)call.run(*block.command, Rows(&row.row, 1));
             }
         });
 }

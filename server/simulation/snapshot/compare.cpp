@@ -231,10 +231,11 @@ Portrait rest_of(const SnapshotContent& s)
             Facts& facts = out["ledger of " + c.id];
             if (i < s.ledger.work.size()) facts.push_back({"work", Weight::Ledger, s.ledger.work[i]});
             if (i < s.ledger.contact_energy.size())
-                facts.push_back({"made by contacts", Weight::Ledger, s.ledger.contact_energy[i].made}),
-                    facts.push_back({"lifted", Weight::Ledger, s.ledger.contact_energy[i].lifted});
+                facts.push_back({"created by contacts", Weight::Ledger, s.ledger.contact_energy[i].created}),
+                    facts.push_back({"created by position correction", Weight::Ledger, s.ledger.contact_energy[i].by_correction});
             if (i < s.watch.start_work.size()) facts.push_back({"work when counting began", Weight::Ledger, s.watch.start_work[i]});
-            if (i < s.watch.start_made.size()) facts.push_back({"energy made when counting began", Weight::Ledger, s.watch.start_made[i]});
+            if (i < s.watch.start_created.size())
+                facts.push_back({"energy created when counting began", Weight::Ledger, s.watch.start_created[i]});
             if (c.facet == Facet::Body && c.host_index < s.watch.linear.size())
                 facts.push_back({"reference speed of growth", Weight::Ledger, s.watch.linear[c.host_index].reference});
         });

@@ -155,9 +155,9 @@ private:
             const Life& life = (*lives)[i];
             directory_->components[i].quarantined = life.quarantined;
             s.reported.contradictory.push_back(life.contradictory ? 1 : 0), s.ledger.work.push_back(life.work);
-            s.ledger.contact_energy.push_back({life.made, life.lifted});
+            s.ledger.contact_energy.push_back({life.created, life.by_correction});
             if (!watch_.knows_work) continue;
-            s.watch.start_work.push_back(life.start_work), s.watch.start_made.push_back(life.start_made),
+            s.watch.start_work.push_back(life.start_work), s.watch.start_created.push_back(life.start_created),
                 s.watch.passive.push_back(life.passive ? 1 : 0);
         }
         return {};

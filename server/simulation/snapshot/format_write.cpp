@@ -83,10 +83,10 @@ void write_components(const SnapshotContent& s, const FileRows& rows, std::vecto
     {
         const std::uint32_t row = rows.component(i);
         if (row == kNoIndex) continue;
-        lives[row] = {s.world.component(i).quarantined,       at_or_default(s.reported.contradictory, i) != 0,
-                      at_or_default(s.watch.passive, i) != 0, at_or_default(s.ledger.work, i),
-                      at_or_default(s.watch.start_work, i),   at_or_default(s.ledger.contact_energy, i).made,
-                      at_or_default(s.watch.start_made, i),   at_or_default(s.ledger.contact_energy, i).lifted};
+        lives[row] = {s.world.component(i).quarantined,        at_or_default(s.reported.contradictory, i) != 0,
+                      at_or_default(s.watch.passive, i) != 0,  at_or_default(s.ledger.work, i),
+                      at_or_default(s.watch.start_work, i),    at_or_default(s.ledger.contact_energy, i).created,
+                      at_or_default(s.watch.start_created, i), at_or_default(s.ledger.contact_energy, i).by_correction};
     }
     s.world.for_each(
         [&](std::uint32_t i, const world::Component& c, const world::Layout&)

@@ -13,7 +13,8 @@ namespace plab::simulation::records
 
 // The columns of each record: visit(name, member) for each. -----------------------------------------------------------------
 // The names are part of the file format and stay as they were first written ("told" is what has been reported, "way" the linear motion,
-// "lively" a speed of oscillation), because a reader refuses files with columns that it does not know.
+// "lively" a speed of oscillation, "made" and "lifted" the energy that contacts and their position correction created), because a reader
+// refuses files with columns that it does not know.
 
 template <class V>
 void columns(ClockImage& c, V visit)
@@ -110,14 +111,14 @@ struct Life
 {
     bool quarantined = false, contradictory = false, passive = false;
     double work = 0, start_work = 0;
-    double made = 0, start_made = 0, lifted = 0;
+    double created = 0, start_created = 0, by_correction = 0;
 };
 template <class V>
 void columns(Life& l, V visit)
 {
     visit("quarantined", l.quarantined), visit("contradictory", l.contradictory), visit("passive", l.passive);
     visit("work", l.work), visit("start_work", l.start_work);
-    visit("made", l.made), visit("start_made", l.start_made), visit("lifted", l.lifted);
+    visit("made", l.created), visit("start_made", l.start_created), visit("lifted", l.by_correction);
 }
 
 struct Body

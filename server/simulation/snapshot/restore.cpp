@@ -56,7 +56,8 @@ DivergenceMemory rearranged(const DivergenceMemory& old, const world::Renumberin
     const auto body = [&](std::uint32_t i) { return now.body(i); };
     const auto shaft = [&](std::uint32_t i) { return now.shaft(i); };
     DivergenceMemory out = old;
-    out.start_work = rearranged(old.start_work, components, component), out.start_made = rearranged(old.start_made, components, component);
+    out.start_work = rearranged(old.start_work, components, component),
+    out.start_created = rearranged(old.start_created, components, component);
     out.passive = rearranged(old.passive, components, component);
     out.linear = rearranged(old.linear, bodies, body), out.spin = rearranged(old.spin, bodies, body);
     out.bodies_reported = rearranged(old.bodies_reported, bodies, body);

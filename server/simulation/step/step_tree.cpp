@@ -24,7 +24,7 @@ void Stepper::step(Tick tick, double start_time, double dt)
                    interruption_,
                    progress_,
                    &step_.reported.contradictory};
-    if (interruption_) interruption_->forget_heeded();
+    if (interruption_) interruption_->clear_interrupted();
     for (std::size_t i = 0; i < std::size(kStepTree) && !step_.frame.give_up(); ++i)
     {
         const StepNode& node = kStepTree[i];

@@ -2,36 +2,20 @@
 
 #include <utility>
 
+#include "simulation/costs/measured_call.h"
+
 namespace plab::simulation
 {
 
-/// Calls the block's command for all of its rows together, or for one row at a time if the cost of each is measured.
-void Stepper::run_block(const Block& block, StepContext& context, PhaseCall& call)
+/// Runs all blocks of a phase. `call` has what this phase gets.
+void Stepper::run_blocks(Phase phase, world::CommandCall& call)
 {
-    world::Table& table = *step_.world.tables()[block.table];
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    step_.meter.ran(block.table, block.command->phase);
-    if (!block.alone)
+    call.context.seed = step_.frame.seed, call.context.events = &step_;
+    for (const Block& block : step_.schedule.of(phase))
     {
-        const CostScope scope(step_.meter, step_.meter.of_table(block.table));
-        call.rows = block.rows;
-        (void)block.command->run(call, table.rows());
-        return;
+        call.select(*step_.world.tables()[block.table]);
+        run_measured(call, block, block.rows, step_.meter);
     }
-    for (const Row& row : block.rows)
-    {
-        const CostScope scope(step_.meter, step_.meter.of_component(context.component_of_row[row]));
-        call.rows = Rows(&row, 1);
-        (void)block.command->run(call, table.rows());
-    }
-}
-
-/// Runs all blocks of a phase. `context` and `call` hold what this phase gets in addition to the world's tables.
-void Stepper::run_blocks(Phase phase, StepContext& context, PhaseCall& call)
-{
-    context.seed = step_.frame.seed, context.events = &step_;
-    call.context = &context;
-    for (const Block& block : step_.schedule.of(phase)) run_block(block, context, call);
 }
 
 void Stepper::collect_cost()
@@ -59,10 +43,9 @@ void Stepper::save_start() { motion_.save_start(); }
 void Stepper::drive()
 {
     changes_.clear();
-    StepContext context = step_.context();
-    context.changes = &changes_, context.interruption = interruption_;
-    PhaseCall call = step_.call();
-    run_blocks(Phase::Drive, context, call);
+    world::CommandCall call{step_.context(), step_.arguments()};
+    call.context.changes = &changes_, call.context.interruption = interruption_;
+    run_blocks(Phase::Drive, call);
     if (!changes_.empty() && apply_changes_ && !step_.frame.give_up()) apply_changes_(changes_owner_, changes_);
 }
 
@@ -93,21 +76,19 @@ void Stepper::finish_contacts()
 
 void Stepper::finish()
 {
-    StepContext context = step_.context();
-    context.time += step_.frame.step;
-    PhaseCall call = step_.call();
-    call.reactions = &motion_.reactions(), call.row_reports = &motion_.row_reports();
-    run_blocks(Phase::Finish, context, call);
+    world::CommandCall call{step_.context(), step_.arguments()};
+    call.context.time += step_.frame.step;
+    call.arguments.reactions = &motion_.reactions(), call.arguments.row_reports = &motion_.row_reports();
+    run_blocks(Phase::Finish, call);
 }
 
 void Stepper::draw()
 {
-    const Sight sight = sight_.view_of(step_.world);
-    StepContext context = step_.context();
-    context.time += step_.frame.step;
-    PhaseCall call;
-    call.sight = &sight, call.images = images_;
-    run_blocks(Phase::Draw, context, call);
+    const RenderScene render_scene = render_scene_.view_of(step_.world);
+    world::CommandCall call{step_.context(), {}};
+    call.context.time += step_.frame.step;
+    call.arguments.render_scene = &render_scene, call.arguments.images = images_;
+    run_blocks(Phase::Draw, call);
 }
 
 }  // namespace plab::simulation

@@ -13,7 +13,8 @@
 #include "simulation/costs/cost_book.h"
 #include "simulation/events/event_locator.h"
 #include "simulation/shafts/coupling_watch.h"
-#include "simulation/step/sight.h"
+#include "simulation/step/render_scene.h"
+#include "world/command_call.h"
 
 namespace plab::simulation
 {
@@ -29,12 +30,12 @@ public:
     /// materials. On error (a contradictory graph) the world must be put back and rebuilt.
     Result<void> rebuild();
     /// `interruption` may abort a step, `progress` receives how far a step has got; null: none. Both must outlive this object.
-    void obey(const Interruption* interruption, Progress* progress) { interruption_ = interruption, progress_ = progress; }
+    void set_interruption(const Interruption* interruption, Progress* progress) { interruption_ = interruption, progress_ = progress; }
     /// Steps from tick to tick + 1 by running the nodes of the step tree (step_tree.cpp). Times in s.
     void step(Tick tick, double start_time, double dt);
 
     /// The last step was aborted: the world is in an intermediate state and has to be restored.
-    bool gave_up() const { return interruption_ && interruption_->heeded(); }
+    bool gave_up() const { return interruption_ && interruption_->has_interrupted(); }
 
     // The last step ---------------------------------------------------------------------------------------------------
     const std::vector<Event>& events() const { return step_.events; }
@@ -112,13 +113,12 @@ private:
     // stepper_build.cpp
     void connect_materials(Errors& errors);
     void connect_graph(Errors& errors);
-    Errors run_connect(const Block& block, PhaseCall call);
+    Errors run_connect(const Block& block, world::CommandCall& call);
     void rebuild_costs();
 
     // stepper.cpp
     void collect_cost();
-    void run_blocks(Phase phase, StepContext& context, PhaseCall& call);
-    void run_block(const Block& block, StepContext& context, PhaseCall& call);
+    void run_blocks(Phase phase, world::CommandCall& call);
 
     StepState step_;
     GroupMotion motion_{step_};
@@ -129,7 +129,7 @@ private:
     std::optional<EventLocator> locator_;  ///< made when it is needed first; reset when the structure changes
     ShaftSystem speed_system_;
     CouplingWatch coupling_watch_;
-    SightBuilder sight_;
+    RenderSceneBuilder render_scene_;
     CostBook cost_;
     double departed_work_ = 0, requests_work_ = 0;
 

@@ -32,23 +32,19 @@ void add_drives(const world::World& world, const Schedule& schedule, ConstraintG
 
 }  // namespace
 
-Stepper::Stepper(world::World& world, int threads)
-    : step_(world, std::max(1, threads)), advance_(step_, motion_, book_, hard_, forces_)
+Stepper::Stepper(world::World& world, int threads) : step_(world, std::max(1, threads)), advance_(step_, motion_, book_, hard_, forces_)
 {
     motion_.remember_with(&forces_);
 }
 
-Errors Stepper::run_connect(const Block& block, PhaseCall call)
+Errors Stepper::run_connect(const Block& block, world::CommandCall& call)
 {
     Errors errors;
-    world::Table& table = *step_.world.tables()[block.table];
-    StepContext context;
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    call.context = &context;
+    const world::Table& table = *step_.world.tables()[block.table];
+    call.select(table);
     for (const Row row : block.rows)
     {
-        call.rows = Rows(&row, 1);
-        const auto done = block.command->run(call, table.rows());
+        const auto done = call.run(*block.command, Rows(&row, 1));
         if (done) continue;
         for (Error e : done.errors())
         {
@@ -62,11 +58,12 @@ Errors Stepper::run_connect(const Block& block, PhaseCall call)
 void Stepper::connect_materials(Errors& errors)
 {
     step_.world.host().materials.clear_pairs();
-    PhaseCall call;
-    call.materials = &step_.world.host().materials;
     step_.graph.clear();
-    call.ratios = &step_.graph;
-    call.shafts = &step_.world.host().shafts, call.bodies = &step_.world.host().bodies, call.shapes = &step_.world.host().shapes;
+    world::HostTables& host = step_.world.host();
+    world::CommandCall call;
+    PhaseCall& to = call.arguments;
+    to.materials = &host.materials, to.ratios = &step_.graph;
+    to.shafts = &host.shafts, to.bodies = &host.bodies, to.shapes = &host.shapes;
     for (const Block& block : step_.schedule.of(Phase::Connect))
         for (Error& e : run_connect(block, call)) errors.push_back(std::move(e));
 }
@@ -108,7 +105,7 @@ Result<void> Stepper::rebuild()
     locator_.reset();
     speed_system_.configure(step_.world, step_.schedule, step_.groups, step_.all_groups, step_.graph);
     rebuild_costs();
-    sight_.structure_changed();
+    render_scene_.structure_changed();
     return {};
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/command_call.h"
+
 namespace plab::simulation
 {
 
@@ -37,17 +39,14 @@ Totals totals_of(world::World& world, const Stepper& stepper, double time, Tick 
 double stored_energy_of(world::World& world, const Stepper& stepper, double time, Tick tick)
 {
     StoredEnergy stored;
-    PhaseCall call;
-    StepContext context;
-    context.time = time, context.tick = tick;
-    call.context = &context, call.stored = &stored;
-    call.bodies = &world.host().bodies, call.shafts = &world.host().shafts, call.shapes = &world.host().shapes;
+    world::CommandCall call;
+    call.context.time = time, call.context.tick = tick;
+    PhaseCall& to = call.arguments;
+    to.bodies = &world.host().bodies, to.shafts = &world.host().shafts, to.shapes = &world.host().shapes, to.stored = &stored;
     for (const Block& block : stepper.schedule().of(Phase::Potential))
     {
-        const world::Table& table = *world.tables()[block.table];
-        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-        call.rows = block.rows;
-        (void)block.command->run(call, table.rows());
+        call.select(*world.tables()[block.table]);
+        (void)call.run(*block.command, block.rows);
     }
     return stored.joule;
 }

@@ -86,12 +86,12 @@ void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events
 {
     from_ = from;
     book_ = book;
-    context_ = {};
-    context_.time = frame_.start_time + from, context_.dt = to - from;
-    context_.tick = frame_.tick, context_.seed = frame_.seed, context_.events = events;
-    context_.interruption = frame_.interruption;
+    call_.context = {};
+    call_.context.time = frame_.start_time + from, call_.context.dt = to - from;
+    call_.context.tick = frame_.tick, call_.context.seed = frame_.seed, call_.context.events = events;
+    call_.context.interruption = frame_.interruption;
     activate();
-    context_.active_bodies = scratch_->active_bodies, context_.active_shafts = scratch_->active_shafts;
+    call_.context.active_bodies = scratch_->active_bodies, call_.context.active_shafts = scratch_->active_shafts;
     if (rows_ && !rows_held_) join();
 
     minimal_ = false;
@@ -203,9 +203,9 @@ void GroupSystem::rates_of_shafts(double weight)
 {
     if (roots_.empty()) return;
     world::HostTables& host = frame_.world->host();
-    shaft_system_.solve_accelerations(context_, scratch_->wrenches.shaft_torque);
+    shaft_system_.solve_accelerations(call_.context, scratch_->wrenches.shaft_torque);
     // Couplings of observed groups are booked when their own group is advanced.
-    if (book_.work && weight != 0 && !has_observed_) shaft_system_.account(*book_.work, book_.sign * weight * context_.dt);
+    if (book_.work && weight != 0 && !has_observed_) shaft_system_.account(*book_.work, book_.sign * weight * call_.context.dt);
     const std::size_t base = body_values_;
     for (std::size_t i = 0; i < roots_.size(); ++i)
     {
@@ -230,15 +230,15 @@ void GroupSystem::evaluate(double t, double weight)
         std::fill(speed_rates_.begin(), speed_rates_.end(), 0.0);
         return;
     }
-    context_.time = frame_.start_time + (from_ + t);
+    call_.context.time = frame_.start_time + (from_ + t);
     scatter(t);
     clear_wrenches();
     run_forces(weight);
     if (rows_ && !rows_held_ && !minimal_)
     {
         const CostScope scope(scratch_->meter(), scratch_->rows_ns);
-        (void)rows_->react(context_, scratch_->wrenches);  // non-finite results are detected at the end of the advance
-        if (book_.work && weight != 0) rows_->account(row_book(), weight * context_.dt);
+        (void)rows_->react(call_.context, scratch_->wrenches);  // non-finite results are detected at the end of the advance
+        if (book_.work && weight != 0) rows_->account(row_book(), weight * call_.context.dt);
     }
     rates_of_bodies();
     const Bodies& bodies = frame_.world->host().bodies;
@@ -258,7 +258,7 @@ void GroupSystem::evaluate_here()
     if (!book_.work) return;
     std::span<double> before = workspace(0);
     std::copy(speeds_.begin(), speeds_.end(), before.begin());
-    for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] += 0.5 * context_.dt * speed_rates_[i];
+    for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] += 0.5 * call_.context.dt * speed_rates_[i];
     evaluate(0, 1);
     std::copy(before.begin(), before.end(), speeds_.begin());
     evaluate(0, 0);  // booked or not, so that the kick has the same bits in both cases
@@ -301,7 +301,7 @@ RigidMember GroupSystem::rigid(std::size_t body) const
 
 bool GroupSystem::finish()
 {
-    scatter(context_.dt);
+    scatter(call_.context.dt);
     Bodies& bodies = frame_.world->host().bodies;
     for (const std::uint32_t b : bodies_) bodies.orientation[b] = normalized(bodies.orientation[b]);
     const bool finite = all_finite();
@@ -311,14 +311,14 @@ bool GroupSystem::finish()
 
 void GroupSystem::finish_held()
 {
-    scatter_prescribed(from_ + context_.dt);
+    scatter_prescribed(from_ + call_.context.dt);
     world::HostTables& host = frame_.world->host();
     if (!shafts_.empty()) frame_.graph->derive(host.shafts, scratch_->active_shafts);
     std::size_t at = speeds_.size() - quantity_values_;
     for (const std::uint32_t q : quantities_)
         for (double& value : host.quantities.value[q])
         {
-            value = speeds_[at] + context_.dt * speed_rates_[at];
+            value = speeds_[at] + call_.context.dt * speed_rates_[at];
             ++at;
         }
 }
@@ -330,5 +330,19 @@ bool GroupSystem::all_finite() const
            std::all_of(shafts_.begin(), shafts_.end(), [&](std::uint32_t s) { return is_finite(host.shafts, s); }) &&
            std::all_of(quantities_.begin(), quantities_.end(), [&](std::uint32_t q) { return is_finite(host.quantities, q); });
 }
+
+// Whether the values of an object are small and finite enough for the step to continue.
+bool is_finite(const Bodies& bodies, std::uint32_t b)
+{
+    return is_computable(bodies.position[b]) && is_computable(bodies.velocity[b]) && plab::is_finite(bodies.orientation[b]) &&
+           is_computable(bodies.angular_velocity[b]);
+}
+
+bool is_finite(const Quantities& quantities, std::uint32_t q)
+{
+    return std::all_of(quantities.value[q].begin(), quantities.value[q].end(), [](double v) { return is_computable(v); });
+}
+
+bool is_finite(const Shafts& shafts, std::uint32_t s) { return is_computable(shafts.angle[s]) && is_computable(shafts.speed[s]); }
 
 }  // namespace plab::simulation

@@ -16,6 +16,7 @@
 #include "simulation/shafts/shaft_system.h"
 #include "simulation/systems/progress.h"
 #include "simulation/systems/stage_scratch.h"
+#include "world/command_call.h"
 
 namespace plab::simulation
 {
@@ -100,14 +101,14 @@ public:
     /// For contact steps, after evaluate_here(): moves shafts by the mean of old and new speeds, and prescribed members to the
     /// end.
     void move_shafts(double h, Shafts& shafts);
-    void move_prescribed() { scatter_prescribed(from_ + context_.dt); }
+    void move_prescribed() { scatter_prescribed(from_ + call_.context.dt); }
 
     bool needs_solver() const { return !bodies_.empty() || !shafts_.empty() || !quantities_.empty(); }
     std::span<const std::uint32_t> bodies() const { return bodies_; }
     std::span<const std::uint32_t> shafts() const { return shafts_; }
     std::span<const std::uint32_t> roots() const { return roots_; }
     std::span<const std::uint32_t> quantities() const { return quantities_; }
-    const StepContext& context() const { return context_; }
+    const StepContext& context() const { return call_.context; }
     /// Of a member body after an evaluation: dv/dt (m/s^2), and the torque about the centre of mass (N m).
     Vec3 acceleration(std::size_t member) const { return get(speed_rates_, 6 * member); }
     Vec3 torque(std::size_t member) const { return scratch_->wrenches.torque[bodies_[member]]; }
@@ -154,7 +155,6 @@ private:
         std::vector<Shortlist> shortlists;
     };
 
-    void run_force(const Selected& selected, PhaseCall& call, bool booked);
     void share_cost_of_rows();
 
     static Vec3 get(const std::vector<double>& v, std::size_t i) { return {v[i], v[i + 1], v[i + 2]}; }
@@ -193,7 +193,7 @@ private:
     bool has_observed_ = false;
     bool uniform_ = false;  ///< no force depends on time or state
 
-    StepContext context_;
+    world::CommandCall call_;  ///< of the Force commands; its context is that of all evaluations
     double from_ = 0;
     WorkBook book_;
     ShaftSystem shaft_system_;

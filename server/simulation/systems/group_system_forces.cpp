@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "simulation/costs/measured_call.h"
 #include "simulation/systems/group_system.h"
 
 namespace plab::simulation
@@ -79,55 +80,31 @@ void GroupSystem::run_forces(double weight)
     ++scratch.evaluations;
     wrenches.power = booked ? &scratch.power : nullptr;
     wrenches.accounted_bodies = scratch.accounted_bodies, wrenches.accounted_shafts = scratch.accounted_shafts;
-    PhaseCall call;
-    call.context = &context_;
-    call.bodies = &host.bodies, call.shafts = &host.shafts, call.quantities = &host.quantities, call.shapes = &host.shapes;
-    call.materials = &host.materials;
-    call.wrenches = &wrenches;
+    // Forces report problems as events, not as errors. Solvers with error control make many short trial evaluations, so only one of kOneOf
+    // is timed.
+    constexpr std::uint32_t kOneOf = 8;
+    const std::uint32_t weight_of_time = booked ? 1 : (scratch.evaluations % kOneOf == 0 ? kOneOf : 0);
+    PhaseCall& to = call_.arguments;
+    to.bodies = &host.bodies, to.shafts = &host.shafts, to.quantities = &host.quantities, to.shapes = &host.shapes;
+    to.materials = &host.materials, to.wrenches = &wrenches;
     for (std::size_t k = 0; k < selected_count_; ++k)
     {
         const Selected& s = selected_[k];
-        const world::Table& table = *frame_.world->tables()[s.block->table];
-        context_.component_of_row = table.component_of_row(), context_.facet_of_row = table.host_of_row();
-        context_.shortlists = s.shortlists;
-        run_force(s, call, booked);
+        call_.select(*frame_.world->tables()[s.block->table]);
+        call_.context.shortlists = s.shortlists;
+        run_measured(call_, *s.block, s.rows, scratch.meter(), weight_of_time);
         if (!booked) continue;
-        const double share = book_.sign * weight * context_.dt;
+        const double share = book_.sign * weight * call_.context.dt;
         for (const Row row : s.rows)
         {
-            const std::uint32_t component = context_.component_of_row[row];
+            const std::uint32_t component = call_.context.component_of_row[row];
             (*book_.work)[component] += share * scratch.power[component];
             scratch.power[component] = 0;
         }
     }
     if (!extra_) return;
-    extra_->add(context_, wrenches);
-    if (booked) extra_->book(context_, *book_.work, scratch.power, book_.sign * weight * context_.dt);
-}
-
-/// Forces report problems as events, not as errors. Solvers with error control make many short trial evaluations, so only one of kOneOf
-/// is timed.
-void GroupSystem::run_force(const Selected& s, PhaseCall& call, bool booked)
-{
-    constexpr std::uint64_t kOneOf = 8;
-    CostMeter& meter = scratch_->meter();
-    void* const rows = frame_.world->tables()[s.block->table]->rows();
-    meter.ran(s.block->table, Phase::Force);
-    if (s.block->alone)
-    {
-        for (const Row& row : s.rows)
-        {
-            const CostScope scope(meter, meter.of_component(context_.component_of_row[row]));
-            call.rows = Rows(&row, 1);
-            (void)s.block->command->run(call, rows);
-        }
-        return;
-    }
-    call.rows = s.rows;
-    const bool timed = booked || scratch_->evaluations % kOneOf == 0;
-    if (timed) meter.enter(meter.of_table(s.block->table));
-    (void)s.block->command->run(call, rows);
-    if (timed) meter.leave(booked ? 1 : kOneOf);
+    extra_->add(call_.context, wrenches);
+    if (booked) extra_->book(call_.context, *book_.work, scratch.power, book_.sign * weight * call_.context.dt);
 }
 
 }  // namespace plab::simulation

@@ -30,7 +30,7 @@ void GroupSystem::join()
 {
     if (!rows_) return;
     const CostScope scope(scratch_->meter(), scratch_->rows_ns);
-    rows_->join(context_, row_book());
+    rows_->join(call_.context, row_book());
 }
 
 /// The state is what the tables hold, and begin() has made the speeds fit the joints; so nothing is kept from advance to advance.
@@ -74,10 +74,10 @@ void GroupSystem::share_cost_of_rows()
 void GroupSystem::project()
 {
     if (!rows_) return;
-    context_.time = frame_.start_time + (from_ + context_.dt);
+    call_.context.time = frame_.start_time + (from_ + call_.context.dt);
     scratch_->meter().enter(scratch_->rows_ns);
     if (minimal_) rows_->forget_multipliers();
-    ProjectionReport report = rows_->project(context_, row_book());
+    ProjectionReport report = rows_->project(call_.context, row_book());
     keep_reactions();
     scratch_->meter().leave();
     const auto by_id = [this](std::uint32_t x, std::uint32_t y) { return frame_.world->rank(x) < frame_.world->rank(y); };
@@ -100,20 +100,20 @@ std::string left_over(const ProjectionReport& report)
 
 void GroupSystem::announce_contradictions(const ProjectionReport& report)
 {
-    if (!context_.events) return;
+    if (!call_.context.events) return;
     std::vector<std::uint8_t>& reported = *frame_.reported_contradictory;
     for (const std::uint32_t component : report.contradictory)
     {
         if (reported[component] != 0) continue;
         Event e;
-        e.time = context_.time, e.kind = "constraint.contradiction", e.severity = Severity::Warning, e.component = component;
+        e.time = call_.context.time, e.kind = "constraint.contradiction", e.severity = Severity::Warning, e.component = component;
         std::string others;
         for (const std::uint32_t other : report.contradictory)
             if (other != component) others += (others.empty() ? "" : ", ") + frame_.world->id_of(other);
         e.message = "cannot hold" + (others.empty() ? std::string() : " together with " + others) + ": " + left_over(report) +
                     ", distributed by least squares";
         e.values = {report.position_error, report.speed_error};
-        context_.events->emit(std::move(e));
+        call_.context.events->emit(std::move(e));
     }
     for (const std::uint32_t component : joints_) reported[component] = 0;
     for (const std::uint32_t component : report.contradictory) reported[component] = 1;

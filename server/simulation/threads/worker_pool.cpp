@@ -38,12 +38,12 @@ WorkerPool::~WorkerPool()
 template <class Condition>
 bool WorkerPool::watch(const Condition& holds) const
 {
-    constexpr int kLooks = 64;  // between two readings of the clock
+    constexpr int kPolls = 64;  // between two readings of the clock
     if (holds()) return true;
     if (!may_watch_) return false;
     const auto end = std::chrono::steady_clock::now() + kWatch;
     do
-        for (int i = 0; i < kLooks; ++i)
+        for (int i = 0; i < kPolls; ++i)
         {
             if (holds()) return true;
             pause_briefly();

@@ -141,7 +141,7 @@ TrialResult Trial::once(Stepper& part, const std::vector<std::uint32_t>& compone
     out.moving = first.kinetic + kinetic_of_prescribed(world_.host());
     out.least = least_energy(world_.host(), part.radius_of_body(), step_.h);
     part.step(step_.tick, step_.start, step_.h);
-    out.given_up = deadline.heeded();
+    out.given_up = deadline.has_interrupted();
     out.failure = failure_in(part.events());
     const Totals then = totals_of(world_, part, step_.start + step_.h, step_.tick + 1);
     out.kinetic_after = then.kinetic;
@@ -165,7 +165,7 @@ Spread Trial::measure(Stepper& part, const TrialScope& scope, const Interruption
         part.step(step_.tick, step_.start, step_.h);
         const std::uint64_t after = now_ns();
         put_back();
-        if (deadline.heeded()) break;
+        if (deadline.has_interrupted()) break;
         ns.push_back(static_cast<double>(after - before));
         const std::uint64_t end = now_ns();
         longest = std::max(longest, end - begin), begin = end;
@@ -187,7 +187,7 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         const world::HostTables fixed = world_.host();
         Stepper part(world_, 1);
         part.restrict_to(scope.has_everything() ? nullptr : &scope.components());
-        part.obey(&deadline, &progress);
+        part.set_interruption(&deadline, &progress);
         part.on_changes(&Trial::apply_changes, this);
         part_ = &part;
         bool grown = false, tried = false;

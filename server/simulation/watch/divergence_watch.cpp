@@ -13,7 +13,7 @@ namespace plab::simulation
 namespace
 {
 
-constexpr double kMostGain = 100, kMostMade = 0.05, kGrowthToCheck = 4, kSmallTurn = 1e-3;
+constexpr double kMostGain = 100, kMostCreated = 0.05, kGrowthToCheck = 4, kSmallTurn = 1e-3;
 constexpr int kMostDoublings = 24, kQuickSteps = 8, kPatience = 8;
 constexpr double kEnergyRounding = 0x1p-40;  // rad or m: relative rounding of positions, with a margin for what a step makes of it
 
@@ -127,8 +127,8 @@ void DivergenceWatch::before_step(const RunView& s)
     m_.counting = true, m_.reported = false, m_.sealed = sealed(host), m_.gaining_since = -1, m_.gaining_steps = 0;
     size_for(s);
     m_.start_work = stepper.work();
-    m_.start_made.clear();
-    for (const ContactEnergy& e : stepper.contact_energy()) m_.start_made.push_back(e.made);
+    m_.start_created.clear();
+    for (const ContactEnergy& e : stepper.contact_energy()) m_.start_created.push_back(e.created);
     m_.start_other_work = stepper.departed_work() + stepper.requests_work();
     m_.passive.assign(m_.start_work.size(), 0);
     if (m_.sealed)
@@ -175,18 +175,19 @@ void DivergenceWatch::watch_contacts(const RunView& s, std::vector<Event>& event
     double scale = -1;
     for (const std::uint32_t c : s.world.in_id_order())
     {
-        if (c >= std::min(energy.size(), m_.start_made.size()) || !(energy[c].made > m_.start_made[c])) continue;
+        if (c >= std::min(energy.size(), m_.start_created.size()) || !(energy[c].created > m_.start_created[c])) continue;
         if (scale < 0) scale = std::fabs(m_.start_energy) + sources(s).gross + least_energy(s.world.host(), s.dt);
-        const double made = energy[c].made - m_.start_made[c];
-        if (!(made > kMostMade * scale)) continue;
-        m_.start_made[c] = HUGE_VAL;
+        const double created = energy[c].created - m_.start_created[c];
+        if (!(created > kMostCreated * scale)) continue;
+        m_.start_created[c] = HUGE_VAL;
         Event e;
         e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.gains_energy", e.severity = Severity::Warning, e.component = c;
         char text[160];
         std::snprintf(text, sizeof text,
-                      "its contacts have created %.3g J, compared with %.3g J present or added; shorter steps may prevent it", made, scale);
+                      "its contacts have created %.3g J, compared with %.3g J present or added; shorter steps may prevent it", created,
+                      scale);
         e.message = text;
-        e.values = {made, scale};
+        e.values = {created, scale};
         events.push_back(std::move(e));
     }
 }

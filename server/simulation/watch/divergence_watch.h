@@ -10,7 +10,7 @@
 ///   growth   the speed of a body or shaft has doubled kMostDoublings times in a row, each time within kQuickSteps steps, which no
 ///            resolved motion does.
 ///   contacts the event contact.gains_energy, once per manager or response: the energy that its contacts have created since counting
-///            began, although contacts can only dissipate, exceeds kMostMade S.
+///            began, although contacts can only dissipate, exceeds kMostCreated S.
 /// A kinetic energy that overflows is reported, too. Energies below E_f = sum 1/2 I (kSmallTurn/h)^2 are ignored: no body turns by a
 /// thousandth of a radian, or moves by a thousandth of its radius of gyration, in a step h. Non-finite motion is another event,
 /// state.not_finite.
@@ -45,7 +45,7 @@ struct DivergenceMemory
     Tick gaining_since = -1;
     std::int64_t gaining_steps = 0;
     std::vector<double> start_work;          ///< J, by component
-    std::vector<double> start_made;          ///< J, by component; infinite once it was reported
+    std::vector<double> start_created;       ///< J, by component; infinite once it was reported
     std::vector<std::uint8_t> passive;       ///< by component: stores energy but supplies none
     std::vector<Growth> linear, spin, turn;  ///< by body, body, shaft
     std::vector<std::uint8_t> bodies_reported, shafts_reported;

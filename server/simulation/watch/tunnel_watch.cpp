@@ -154,23 +154,23 @@ bool TunnelWatch::find_swept_boxes(const RunView& s, const CollidingBodies& coll
 }
 
 /// Tests exactly what the boxes of fast bodies overlap.
-void TunnelWatch::find_passages(const RunView& s, const CollidingBodies& colliding)
+void TunnelWatch::find_tunnelled_pairs(const RunView& s, const CollidingBodies& colliding)
 {
-    passages_.clear();
+    tunnelled_.clear();
     tree_.build(swept_, bounded_);
     for (const std::uint32_t i : fast_)
         tree_.query(swept_[i],
                     [&](std::uint32_t j)
                     {
-                        if (i != j && passed(s, colliding.bodies[i], colliding.bodies[j])) passages_.push_back({i, j});
+                        if (i != j && passed(s, colliding.bodies[i], colliding.bodies[j])) tunnelled_.push_back({i, j});
                     });
-    std::sort(passages_.begin(), passages_.end());
+    std::sort(tunnelled_.begin(), tunnelled_.end());
 }
 
-void TunnelWatch::report_passages(const RunView& s, const CollidingBodies& colliding, std::vector<Event>& events)
+void TunnelWatch::report_tunnelled_pairs(const RunView& s, const CollidingBodies& colliding, std::vector<Event>& events)
 {
     const world::World& world = s.world;
-    for (const Passage& p : passages_)
+    for (const TunnelledPair& p : tunnelled_)
     {
         const std::uint32_t body = colliding.bodies[p.body];
         if (memory_.reported[body] != 0) continue;
@@ -192,8 +192,8 @@ void TunnelWatch::after_step(const RunView& s, std::vector<Event>& events)
     for (const CollidingBodies& colliding : colliding_)
     {
         if (colliding.certified || !find_swept_boxes(s, colliding)) continue;
-        find_passages(s, colliding);
-        report_passages(s, colliding, events);
+        find_tunnelled_pairs(s, colliding);
+        report_tunnelled_pairs(s, colliding, events);
     }
     if (!colliding_.empty() && s.stepper.report().deepest > shallow_) find_overlaps(s, events);
 }

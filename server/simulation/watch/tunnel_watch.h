@@ -65,16 +65,16 @@ private:
     };
 
     /// Indices in CollidingBodies::bodies: `body` passed through `other`.
-    struct Passage
+    struct TunnelledPair
     {
         std::uint32_t body = 0, other = 0;
-        friend auto operator<=>(const Passage&, const Passage&) = default;
+        friend auto operator<=>(const TunnelledPair&, const TunnelledPair&) = default;
     };
 
     void find_colliding_bodies(const RunView& s);
     bool find_swept_boxes(const RunView& s, const CollidingBodies& colliding);
-    void find_passages(const RunView& s, const CollidingBodies& colliding);
-    void report_passages(const RunView& s, const CollidingBodies& colliding, std::vector<Event>& events);
+    void find_tunnelled_pairs(const RunView& s, const CollidingBodies& colliding);
+    void report_tunnelled_pairs(const RunView& s, const CollidingBodies& colliding, std::vector<Event>& events);
     void find_overlaps(const RunView& s, std::vector<Event>& events);
     bool passed(const RunView& s, std::uint32_t body, std::uint32_t other) const;
 
@@ -89,7 +89,7 @@ private:
     std::vector<std::uint32_t> bounded_;  ///< indices in its bodies: those with such a box
     std::vector<std::uint32_t> fast_;     ///< those of them that moved farther than their width and are not reported yet
     geometry::BoxTree tree_;              ///< of swept_
-    std::vector<Passage> passages_;
+    std::vector<TunnelledPair> tunnelled_;
 };
 
 }  // namespace plab::simulation

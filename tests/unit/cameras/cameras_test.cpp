@@ -69,8 +69,8 @@ struct Room
     {
         StepContext context = camera.context();
         context.time = time, context.events = &events;
-        const Sight sight{visuals, views, algorithms, revision};
-        draw(context, 0, camera.rows, sight, viewer);
+        const RenderScene render_scene{visuals, views, algorithms, revision};
+        draw(context, 0, camera.rows, render_scene, viewer);
     }
 };
 

@@ -38,12 +38,12 @@ Again play_and_record(const std::string& file, const std::string& name, recorder
     CHECK(server.playback == file);
     auto recorder = recorder::Recorder::open(session, server, options);
     REQUIRE_MESSAGE(recorder.ok(), recorder.error().text());
-    REQUIRE(play_until(*player, [&] { return (*recorder)->step(Seconds(0)) != recorder::State::Goes || player->is_over(); }));
+    REQUIRE(play_until(*player, [&] { return (*recorder)->step(Seconds(0)) != recorder::State::Running || player->is_over(); }));
     CHECK(player->broken() == 0);
     player.reset();  // announces its end
     const auto end = Clock::now() + std::chrono::seconds(5);
-    auto state = recorder::State::Goes;
-    while (state == recorder::State::Goes && Clock::now() < end) state = (*recorder)->step(Seconds(0.05));
+    auto state = recorder::State::Running;
+    while (state == recorder::State::Running && Clock::now() < end) state = (*recorder)->step(Seconds(0.05));
     CHECK((state == recorder::State::Gone || state == recorder::State::Done));
     const auto closed = (*recorder)->close();
     REQUIRE_MESSAGE(closed.ok(), closed.error().text());

@@ -145,7 +145,7 @@ Result<void> Recorder::subscribe(const link::Session& session, const std::vector
 
 State Recorder::step(link::Seconds longest)
 {
-    if (state_ != State::Goes) return state_;
+    if (state_ != State::Running) return state_;
     (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::duration_of(longest));
     take_all();
     const auto now = Clock::now();
@@ -156,9 +156,9 @@ State Recorder::step(link::Seconds longest)
 
 Result<void> Recorder::close()
 {
-    if (state_ == State::Goes) take_all();
+    if (state_ == State::Running) take_all();
     // The latest disposals count, except those of a server's end.
-    if (state_ == State::Goes || state_ == State::Done) write(disposals_.take(Clock::time_point::max()));
+    if (state_ == State::Running || state_ == State::Done) write(disposals_.take(Clock::time_point::max()));
     report_gaps();
     return writer_.close();
 }
@@ -193,7 +193,7 @@ void Recorder::take(Track& track)
 
 void Recorder::process(Arrived& sample)
 {
-    if (state_ != State::Goes) return;
+    if (state_ != State::Running) return;
     if (sample.is_gone) return process_gone(sample);
     if (!sample.has_value) return;
     Track& track = *sample.track;
@@ -204,7 +204,7 @@ void Recorder::process(Arrived& sample)
         return;
     }
     if (is_topic<plab_v2_Server>(*track.topic)) note_server(*header);
-    if (state_ != State::Goes) return;
+    if (state_ != State::Running) return;
     const std::uint64_t log_time = header->time && header->run > 0 ? timeline_.at(header->run, *header->time) : timeline_.now();
     run_ = std::max(run_, header->run);
     if (header->entries > 0) note_gap(track, *header, sample.writer, log_time);

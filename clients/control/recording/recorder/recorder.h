@@ -25,7 +25,7 @@ struct RecorderOptions
 
 enum class State : std::uint8_t
 {
-    Goes,
+    Running,
     Done,       ///< `until` is reached
     Gone,       ///< the server has gone
     Restarted,  ///< another server of that name has taken its place
@@ -125,7 +125,7 @@ private:
     recording::Timeline timeline_;
     PendingDisposals disposals_;
     recording::Encoder encoder_;
-    State state_ = State::Goes;
+    State state_ = State::Running;
     std::uint64_t run_ = 0;
     std::optional<std::pair<std::uint64_t, double>> next_frame_;  ///< run, s: for state_rate
     bool has_blueprint_ = false;

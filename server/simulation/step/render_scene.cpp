@@ -1,4 +1,4 @@
-#include "simulation/step/sight.h"
+#include "simulation/step/render_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ Pose pose_of_shaft(const Shafts& shafts, std::uint32_t shaft)
     return {shafts.axle[shaft].p, shafts.axle[shaft].q * Quat{std::cos(half), 0, 0, std::sin(half)}};
 }
 
-void SightBuilder::add_shapes(const world::World& world, const world::Component& component, const RefList& shapes, const Vec3& color)
+void RenderSceneBuilder::add_shapes(const world::World& world, const world::Component& component, const RefList& shapes, const Vec3& color)
 {
     for (const Ref shape : shapes)
     {
@@ -58,7 +58,7 @@ void SightBuilder::add_shapes(const world::World& world, const world::Component&
     }
 }
 
-void SightBuilder::learn_shaft(const world::World& world, const world::Component& component, const Vec3& color)
+void RenderSceneBuilder::learn_shaft(const world::World& world, const world::Component& component, const Vec3& color)
 {
     const Shafts& shafts = world.host().shafts;
     if (!shafts.shapes[component.host_index].empty()) return add_shapes(world, component, shafts.shapes[component.host_index], color);
@@ -72,7 +72,7 @@ void SightBuilder::learn_shaft(const world::World& world, const world::Component
     things_.push_back(thing);
 }
 
-void SightBuilder::learn(const world::World& world)
+void RenderSceneBuilder::learn(const world::World& world)
 {
     things_.clear(), views_.clear(), algorithms_.clear();
     for (const std::uint32_t i : world.in_id_order())
@@ -88,7 +88,7 @@ void SightBuilder::learn(const world::World& world)
     known_ = true;
 }
 
-Sight SightBuilder::view_of(const world::World& world)
+RenderScene RenderSceneBuilder::view_of(const world::World& world)
 {
     if (!known_) learn(world);
     visuals_.clear();

@@ -9,7 +9,7 @@ namespace plab::simulation
 {
 
 /// Accumulates positional impulses (kg m, in some direction at some point); apply() moves the body.
-struct Nudge
+struct BodyDisplacement
 {
     Vec3 arm_origin;  ///< p_WC
     Mat3 inverse_inertia_W;
@@ -17,7 +17,7 @@ struct Nudge
     Vec3 shift;  ///< m
     Vec3 turn;   ///< rad
 
-    Nudge(const Bodies& bodies, std::uint32_t b) : arm_origin(bodies.position[b])
+    BodyDisplacement(const Bodies& bodies, std::uint32_t b) : arm_origin(bodies.position[b])
     {
         if (!bodies.dynamic(b)) return;
         inverse_mass = bodies.inverse_mass[b];

@@ -10,13 +10,13 @@ namespace plab::simulation
 {
 
 /// Collects the visible shapes (those with the command Shape/Draw), with the present poses of their bodies and shafts.
-class SightBuilder
+class RenderSceneBuilder
 {
 public:
     /// Names, colours and geometry are looked up again before the next picture.
     void structure_changed() { known_ = false, ++revision_; }
     /// The present view of the world; valid until the next call.
-    Sight view_of(const world::World& world);
+    RenderScene view_of(const world::World& world);
 
 private:
     struct Thing
