@@ -10,8 +10,8 @@
 #include <span>
 #include <string>
 
-#include "idl/limits.h"
 #include "idl/plab.h"
+#include "idl/values/limits.h"
 
 namespace plab::wire
 {

@@ -3,8 +3,8 @@
 #include <chrono>
 
 #include "completion/server_values.h"
-#include "control/commands.h"
-#include "control/recordings/quantity.h"
+#include "control/live/commands.h"
+#include "control/recording/analysis/signal.h"
 #include "idl/topics.h"
 
 namespace plab::cli
@@ -110,10 +110,10 @@ std::vector<Candidate> snapshots(const link::SessionOptions& options)
 std::vector<Candidate> quantities(const Wanted& wanted)
 {
     const auto end = std::chrono::steady_clock::now() + kForFile;
-    const auto log = recordings::Log::open(wanted.first("file"), [end](double) { return std::chrono::steady_clock::now() < end; });
+    const auto log = analysis::Log::open(wanted.first("file"), [end](double) { return std::chrono::steady_clock::now() < end; });
     std::vector<Candidate> out;
     if (!log) return out;
-    for (const std::string& name : recordings::quantity_names(log->things())) out.push_back({name, ""});
+    for (const std::string& name : analysis::signal_names(log->things())) out.push_back({name, ""});
     return out;
 }
 

@@ -1,13 +1,11 @@
 /// plabctl: queries and controls a running plabd.
-#include <CLI/CLI.hpp>
-#include <sstream>
+#include <cstdio>
 
-#include "control/commands.h"
 #include "control/completion_values.h"
-#include "control/topics.h"
-#include "link/names.h"
+#include "control/live/commands.h"
+#include "control/recording/commands.h"
+#include "control/topics/topics.h"
 #include "link/numbers.h"
-#include "program/completion.h"
 #include "program/interruption.h"
 
 namespace
@@ -30,107 +28,41 @@ Exit codes: 0 done, 1 failed, 2 usage, 3 no server or time-out, 4 refused with t
 Environment: PLAB_SERVER, PLAB_DOMAIN, PLAB_INTERFACE, NO_COLOR; CYCLONEDDS_URI wins over --interface.
 )";
 
-/// Help with the examples first: most readers need no more.
-class Format : public CLI::Formatter
+void add_global_options(const Command& app, Settings& s)
 {
-public:
-    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override
-    {
-        if (mode == CLI::AppFormatMode::Sub) return make_expanded(app);
-        std::ostringstream out;
-        out << make_description(app) << '\n'
-            << make_usage(app, name) << app->get_footer() << make_positionals(app) << make_groups(app, mode);
-        out << make_subcommands(app, mode);
-        out << (app->get_parent() != nullptr ? "\nGlobal options (--server, --json, --timeout ..): plabctl --help\n" : kExitCodes);
-        return out.str();
-    }
-};
-
-void add_global_options(CLI::App& app, Settings& s)
-{
-    app.set_version_flag("--version", std::string("plabctl ") + PLAB_VERSION);
-    app.add_option("-s,--server", s.link.server, "name of the server; default: the only one in the domain")->type_name("NAME");
-    app.add_option("--domain", s.link.domain.id, "DDS domain, 0 to 232")->check(CLI::Range(0, 232))->type_name("N");
-    app.add_option("--interface", s.link.domain.network_interface, "network interface; default: this host only")->type_name("NAME");
+    app.add_option("-s,--server", s.link.server, "name of the server; default: the only one in the domain").type_name("NAME");
+    app.add_option("--domain", s.link.domain.id, "DDS domain, 0 to 232").between(0, 232).type_name("N");
+    app.add_option("--interface", s.link.domain.network_interface, "network interface; default: this host only").type_name("NAME");
     app.add_option("--timeout", s.timeout, "how long to wait for a server and a reply; default 5 (wait: 30, servers: 0.5)")
-        ->check(plab::link::check_positive)
-        ->type_name("SECONDS");
+        .check(plab::link::check_positive)
+        .type_name("SECONDS");
     app.add_flag("--progress", s.progress,
                  "print the progress of long work every five seconds on standard error, even if that is not a terminal");
     app.add_flag("--json", s.json, "print one JSON object; for streams, one per line");
-    app.add_option("--color", s.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN");
-    app.add_option("-n,--count", s.count, "end a stream after this many samples")->check(plab::link::check_count)->type_name("N");
-    app.add_option("-d,--duration", s.duration, "end a stream after this time")->check(plab::link::check_positive)->type_name("SECONDS");
-}
-
-/// What CLI11 says, and which command or option was probably meant.
-std::string usage_message(const CLI::App& app, const CLI::ParseError& error)
-{
-    const std::vector<std::string> rest = app.remaining();
-    if (rest.empty() || dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return error.what();
-    std::vector<std::string> known;
-    const std::vector<CLI::App*> chosen = app.get_subcommands();
-    const bool is_option = rest.front().starts_with("-");
-    if (is_option)
-    {
-        for (const CLI::App* a : {&app, chosen.empty() ? &app : static_cast<const CLI::App*>(chosen.front())})
-            for (const CLI::Option* option : a->get_options())
-                for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-    }
-    else if (chosen.empty())
-        for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) known.push_back(command->get_name());
-    const std::string what = is_option ? "no option '" : chosen.empty() ? "no command '" : "too many arguments: '";
-    return what + rest.front() + "'" + plab::link::did_you_mean(rest.front(), known);
-}
-
-int parse_error(const CLI::App& app, const CLI::ParseError& error)
-{
-    if (error.get_exit_code() == 0)
-    {
-        std::ostringstream out;
-        (void)app.exit(error, out, out);
-        std::cout << out.str();
-        return 0;
-    }
-    std::cerr << "plabctl: " << printable(usage_message(app, error)) << "; see plabctl --help\n";
-    return static_cast<int>(Exit::Usage);
+    app.add_option("--color", s.color, "auto, always or never").one_of({"auto", "always", "never"}).type_name("WHEN");
+    app.add_option("-n,--count", s.count, "end a stream after this many samples").check(plab::link::check_count).type_name("N");
+    app.add_option("-d,--duration", s.duration, "end a stream after this time").check(plab::link::check_positive).type_name("SECONDS");
 }
 
 }  // namespace
 
 int main(int argc, char** argv)
 {
-    CLI::App app{"plabctl: queries and controls a running plabd", "plabctl"};
-    app.formatter(std::make_shared<Format>());
-    app.footer(kExamples);
-    app.require_subcommand(0, 1);
+    const CommandLine line({"plabctl", "plabctl: queries and controls a running plabd", PLAB_VERSION, kExamples, kExitCodes,
+                            "\nGlobal options (--server, --json, --timeout ..): plabctl --help\n"});
     Context context;
     auto environment = plab::link::options_from_environment();
     if (environment) context.settings.link = *environment;
-    add_global_options(app, context.settings);
-    const Command commands(app);
-    add_list_commands(commands, context);
-    add_show_command(commands, context);
-    add_watch_command(commands, context);
-    add_scene_commands(commands, context);
-    add_clock_commands(commands, context);
-    add_past_commands(commands, context);
-    add_wait_command(commands, context);
-    add_topics_command(commands, context);
-    add_recording_commands(commands, context);
-    add_recording_views(commands, context);
-    add_record_command(commands, context);
-    add_play_command(commands, context);
+    add_global_options(line.root(), context.settings);
+    for (const auto add : {add_list_commands, add_show_command, add_watch_command, add_scene_commands, add_clock_commands,
+                           add_past_commands, add_wait_command, add_topics_command, add_file_commands, add_diff_command, add_view_commands,
+                           add_record_command, add_play_command})
+        add(line.root(), context);
     const auto values = [&](const plab::program::Wanted& wanted) { return completion_values(wanted, context.settings.link); };
-    if (const auto answer = plab::program::answer_for_shell(app, argc, argv, PLAB_VERSION, values, kExitCodes))
-        return std::fputs(answer->c_str(), stdout) < 0 ? static_cast<int>(Exit::Failed) : 0;
-    try
+    if (const auto end = line.parse(argc, argv, values))
     {
-        app.parse(argc, argv);
-    }
-    catch (const CLI::ParseError& error)
-    {
-        return parse_error(app, error);
+        const bool is_written = std::fputs(end->text.c_str(), end->exit_code == 0 ? stdout : stderr) >= 0;
+        return is_written ? end->exit_code : static_cast<int>(Exit::Failed);
     }
     context.console = Console::make(context.settings.color);
     if (!environment) return static_cast<int>(context.fail(Exit::Usage, environment.errors()));

@@ -93,8 +93,6 @@ Result<void> decode(const DynamicType& type, std::span<const std::byte> bytes, S
 /// Null if it has no key.
 DynamicTypePtr key_of(const DynamicType& type);
 
-/// One JSON value, on one line. Enums are the names of their literals, or numbers if they have none.
-Result<std::string> json_of(const DynamicType& type, std::span<const std::byte> bytes);
 /// "name: value" lines, members of structs indented below it. Lists longer than `most` elements are shortened, with a note.
 Result<std::string> tree_of(const DynamicType& type, std::span<const std::byte> bytes, std::size_t most);
 

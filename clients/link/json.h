@@ -1,32 +1,31 @@
-/// Data of a server as JSON, for all programs that print it: in SI units. Members keep their names of the bus, or have
-/// shorter ones (json.cpp); vectors are [x, y, z], rotations [w, x, y, z]; numbers that are not finite are null.
+/// Data of a server as JSON, for all clients that print it. The shapes of values are those of idl/json/json.h.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 
-#include "link/caller.h"
-#include "link/catalogue.h"
+#include "idl/json/json.h"
+#include "idl/plab.h"
+#include "link/dynamic_sample.h"
 
 namespace plab::link
 {
 
-using Json = nlohmann::ordered_json;
+using wire::Json;
+using wire::json_of;
+using wire::line_of;
 
-Json json_of(const Vec3& v);
-Json json_of(const Quat& q);
-Json json_of(const ServerInfo& s);
-Json json_of(const Object& o);
-Json json_of(const Shape& s);
-Json json_of(const Interaction& i);
-Json json_of(const InteractionMetrics& m);
-Json json_of(const Metrics& m);
-Json json_of(const Type& t);
-Json json_of(const Reply& r);
 /// One of the sample's entries.
 Json json_of(const plab_v2_Events& sample, std::uint32_t entry);
 Json json_of(const plab_v2_Collisions& sample, std::uint32_t entry);
 
-/// One line; text that is not UTF-8 is repaired, and no control character in it reaches a terminal.
-std::string line_of(const Json& json);
+enum class Numbers : std::uint8_t
+{
+    Plain,
+    Quoted,  ///< exact texts, since JSON's own numbers lose 64-bit integers, infinities and the sign of zero in most readers
+};
+/// A sample of any type. Enums are the names of their literals, or numbers if they have none or if numbers are quoted.
+Result<Json> json_of(const DynamicType& type, std::span<const std::byte> bytes, Numbers numbers = Numbers::Plain);
 
 }  // namespace plab::link

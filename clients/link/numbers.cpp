@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cstdint>
 
-#include "link/duration.h"
+#include "link/session.h"
 
 namespace plab::link
 {

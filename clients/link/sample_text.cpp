@@ -1,42 +1,11 @@
-// Samples as text: json_of and tree_of of dynamic_sample.h.
+// Samples as text: tree_of of dynamic_sample.h.
 #include "link/dynamic_sample.h"
-#include "link/json_text.h"
+#include "link/text.h"
 
 namespace plab::link
 {
 namespace
 {
-
-class JsonVisitor final : public SampleVisitor
-{
-public:
-    void open_struct(const DynamicType&) override { json_.open('{'); }
-    void member(std::string_view name) override { json_.key(name); }
-    void close_struct() override { json_.close('}'); }
-    void open_list(const DynamicType&, std::size_t) override { json_.open('['); }
-    void close_list() override { json_.close(']'); }
-    void scalar(const Scalar& value) override
-    {
-        std::visit([this](const auto& v) { put(v); }, value);
-    }
-    std::string take() { return json_.take(); }
-
-private:
-    template <class T>
-    void put(const T& v)
-    {
-        json_.value(v);
-    }
-    void put(const EnumValue& v)
-    {
-        if (v.literal.empty())
-            json_.value(v.number);
-        else
-            json_.value(v.literal);
-    }
-
-    JsonWriter json_;
-};
 
 std::string shown(bool v) { return v ? "true" : "false"; }
 std::string shown(std::int64_t v) { return std::to_string(v); }
@@ -158,13 +127,6 @@ private:
 };
 
 }  // namespace
-
-Result<std::string> json_of(const DynamicType& type, std::span<const std::byte> bytes)
-{
-    JsonVisitor visitor;
-    if (auto decoded = decode(type, bytes, visitor); !decoded) return decoded.errors();
-    return visitor.take();
-}
 
 Result<std::string> tree_of(const DynamicType& type, std::span<const std::byte> bytes, std::size_t most)
 {

@@ -2,11 +2,7 @@
 /// documented in idl/plab.idl.
 #pragma once
 
-#include <optional>
-#include <string_view>
-#include <vector>
-
-#include "idl/values/values.h"
+#include "idl/values/scene.h"
 
 namespace plab::link
 {
@@ -18,18 +14,6 @@ using Camera = wire::View;
 using Object = wire::SceneObject;
 using ServerInfo = wire::Server;
 
-inline bool is_shaft(const Object& object) { return object.shape_of == "shaft"; }
-
-/// Empty: the scene gives none.
-std::optional<Vec3> color_of(const Object& object);
-
-/// Indices of the corners of its triangles, three by three; triples that refer to nonexistent vertices are left out.
-std::vector<std::uint32_t> triangles_of(const Shape& shape);
-
-/// The server's explanation of a figure; null if there is none.
-const Parameter* find_account(const InteractionMetrics& metrics, std::string_view name);
-
-/// Null: nothing is known of this component.
-const InteractionMetrics* find_metrics(const std::optional<Metrics>& metrics, std::string_view component);
+using wire::color_of, wire::find_account, wire::find_metrics, wire::is_shaft, wire::triangles_of;
 
 }  // namespace plab::link

@@ -1,6 +1,9 @@
 #include "logger/logger.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
 
 #include "idl/samples.h"
 
@@ -159,6 +162,61 @@ void Logger::write(const std::vector<Line>& lines)
         output_.write(line.text);
         if (line.counts) ++written_;
     }
+}
+
+End follow(const LoggerOptions& options, const link::Stop& interrupted)
+{
+    using Clock = std::chrono::steady_clock;
+    constexpr link::Seconds kCheckInterval(0.1);  // how late an interruption may be seen
+    const auto begin = Clock::now();
+    const auto is_over = [&] { return options.duration && link::Seconds(Clock::now() - begin).count() >= *options.duration; };
+    const auto stop = [&] { return interrupted() || is_over(); };
+
+    auto output = Output::open(options.out);
+    if (!output) return {1, output.errors()};
+    auto session = link::Session::join(options.link);
+    if (!session) return {1, session.errors()};
+    const link::Seconds patience = options.timeout > 0 ? link::Seconds(options.timeout) : link::kLongestWait;
+    if (auto found = session->find_server(options.link, patience, stop); !found) return interrupted() ? End{} : End{3, found.errors()};
+    auto logger = Logger::make(*session, options, output.take());
+    if (!logger) return {1, logger.errors()};
+    while (!stop() && !logger->is_full())
+    {
+        const auto state = logger->step(kCheckInterval);
+        if (state == Output::State::Closed) return {};
+        if (state == Output::State::Broken) return {1, {reason(logger->output().why())}};
+    }
+    if (!logger->is_full() && logger->finish() == Output::State::Broken) return {1, {reason(logger->output().why())}};
+    return {};
+}
+
+Result<Output> Output::open(const std::string& file)
+{
+    Output out;
+    out.name_ = file.empty() ? "standard output" : "'" + file + "'";
+    if (file.empty()) return out;
+    out.file_.reset(std::fopen(file.c_str(), "ae"));
+    if (out.file_ == nullptr) return reason("cannot write " + out.name_ + ": " + std::strerror(errno));
+    return out;
+}
+
+void Output::note_error()
+{
+    if (state_ != State::Good) return;
+    state_ = errno == EPIPE ? State::Closed : State::Broken;
+    why_ = "cannot write " + name_ + ": " + std::strerror(errno);
+}
+
+void Output::write(const std::string& line)
+{
+    std::FILE* const to = file_ ? file_.get() : stdout;
+    if (std::fwrite(line.data(), 1, line.size(), to) != line.size() || std::fputc('\n', to) == EOF) note_error();
+}
+
+Output::State Output::flush()
+{
+    if (std::fflush(file_ ? file_.get() : stdout) != 0) note_error();
+    return state_;
 }
 
 }  // namespace plab::logger

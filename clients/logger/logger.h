@@ -1,17 +1,52 @@
-/// Follows one server, through its ends and restarts, and writes what happens in it.
+/// plab-log without its command line.
 #pragma once
 
+#include <cstdio>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "link/sequence.h"
 #include "logger/lines.h"
 #include "logger/options.h"
 #include "logger/order.h"
-#include "logger/output.h"
+#include "plab/result.h"
 
 namespace plab::logger
 {
 
+/// Where lines go: standard output or a file.
+class Output
+{
+public:
+    enum class State : unsigned char
+    {
+        Good,
+        Closed,  ///< the reader of the pipe has gone: a normal end
+        Broken,
+    };
+
+    /// Appends to `file`; empty: standard output.
+    static Result<Output> open(const std::string& file);
+
+    void write(const std::string& line);
+    State flush();
+    /// Why it is broken.
+    const std::string& why() const { return why_; }
+
+private:
+    struct Closer
+    {
+        void operator()(std::FILE* f) const { (void)std::fclose(f); }
+    };
+    void note_error();
+
+    std::unique_ptr<std::FILE, Closer> file_;  ///< empty: standard output
+    State state_ = State::Good;
+    std::string name_, why_;
+};
+
+/// Follows one server, through its ends and restarts, and writes what happens in it.
 class Logger
 {
 public:
@@ -55,5 +90,16 @@ private:
     std::uint64_t run_ = 0;  ///< run of the last line; 0: none yet
     std::uint64_t written_ = 0;
 };
+
+/// How it ended: 0, 1 (cannot write, no bus), 3 (no server), and why.
+struct End
+{
+    int code = 0;
+    Errors errors;
+};
+
+/// plab-log without its command line; `plabctl log` uses it too. Joins, finds the server and writes its lines until `interrupted`, or until
+/// the number of entries or the time of `options` is reached.
+End follow(const LoggerOptions& options, const link::Stop& interrupted);
 
 }  // namespace plab::logger

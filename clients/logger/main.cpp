@@ -1,7 +1,7 @@
 // plab-log: writes what happens in a server, line by line.
 #include <iostream>
 
-#include "logger/follow.h"
+#include "logger/logger.h"
 #include "logger/options.h"
 #include "program/command_line.h"
 #include "program/interruption.h"

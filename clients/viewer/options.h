@@ -69,4 +69,20 @@ Result<Shot> parse_shot(const std::string& text);
 /// "x y z", with blanks or commas.
 Result<Vec3> parse_vector(const std::string& text);
 
+/// How plab-view ends: exit codes, as those of plabctl.
+enum class Exit : int
+{
+    Done = 0,
+    Failed = 1,
+    Usage = 2,
+    NoServer = 3,
+    Interrupted = 130,  ///< by a signal; main() gives 128 + its number
+};
+
+struct Outcome
+{
+    Exit exit = Exit::Done;
+    std::string message;  ///< for standard error; empty: nothing to say
+};
+
 }  // namespace plab::view

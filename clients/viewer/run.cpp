@@ -7,7 +7,6 @@
 #include "program/progress.h"
 #include "viewer/feed.h"
 #include "viewer/file_source.h"
-#include "viewer/film.h"
 #include "viewer/frame_sink.h"
 #include "viewer/live_source.h"
 #include "viewer/painter.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "viewer/options.h"
-#include "viewer/outcome.h"
 
 namespace plab::view
 {

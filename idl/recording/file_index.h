@@ -75,4 +75,9 @@ Result<std::uint32_t> crc_of_range(const Source& source, std::uint64_t begin, st
 /// Reads the summary that the footer names. An error: it is damaged, its CRC is wrong, or there is none.
 Result<FileIndex> read_summary(const Source& source, const Footer& footer, const Limits& limits);
 
+/// Uses the summary if there is a complete one, otherwise a scan. An error: this is not a recording, or cannot be read at all.
+/// In a file without a summary, the channels of a chunk are read from records that no CRC covers: readers rely on them,
+/// recover() does not.
+Result<FileIndex> read_index(const Source& source, const Limits& limits);
+
 }  // namespace plab::recording

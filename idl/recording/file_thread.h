@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
+#include "idl/recording/queue.h"
 #include "idl/recording/topic_file.h"
-#include "idl/recording/wake_up.h"
 
 namespace plab::recording
 {

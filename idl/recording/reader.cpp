@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "idl/recording/metadata.h"
+#include "idl/recording/file_index.h"
 #include "idl/recording/parse.h"
-#include "idl/recording/read_index.h"
 
 namespace plab::recording
 {

@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "idl/limits.h"
+#include "idl/values/limits.h"
 #include "publish/records.h"
 
 namespace plab::bus

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "idl/limits.h"
+#include "idl/values/limits.h"
 
 namespace plab::bus
 {

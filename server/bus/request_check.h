@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "idl/limits.h"
+#include "idl/values/limits.h"
 #include "publish/records.h"
 
 namespace plab::bus

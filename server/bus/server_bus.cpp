@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-#include "idl/limits.h"
+#include "idl/values/limits.h"
 
 namespace plab::bus
 {

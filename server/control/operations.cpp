@@ -8,6 +8,7 @@
 #include <set>
 
 #include "blueprint/reader.h"
+#include "idl/values/limits.h"
 #include "model/compile.h"
 #include "model/names.h"
 #include "model/numbers.h"
@@ -44,15 +45,6 @@ std::vector<simulation::NamedValue> named_values(const wire::Operation& op)
     std::vector<simulation::NamedValue> out;
     for (const auto& [name, text] : op.values) out.push_back({name, text});
     return out;
-}
-
-/// The rule for server names (idl/topics.h, which this module must not include): both occur in file names and command lines.
-bool is_snapshot_name(const std::string& name)
-{
-    constexpr std::size_t kLongest = 64;
-    const auto allowed = [](char c)
-    { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-'; };
-    return name.size() <= kLongest && std::all_of(name.begin(), name.end(), allowed);
 }
 
 Result<Vec3> parse_vector(const std::string& text, Unit unit)
@@ -135,7 +127,7 @@ Result<Operation> make_dt(const wire::Operation& op, const Compiling&)
 }
 Result<Operation> make_snapshot(const wire::Operation& op, const Compiling&)
 {
-    if (!is_snapshot_name(op.target))
+    if (!wire::is_server_name(op.target))  // both occur in file names and command lines
         return reason("'" + op.target.substr(0, 64) + "' is not a valid snapshot name: use 1 to 64 letters, digits, '.', '_' or '-'");
     return Operation{simulation::SnapshotOperation{op.target}};
 }
@@ -274,145 +266,6 @@ Result<void> append(const wire::Operation& op, const Compiling& with, Wanted& ou
 }
 
 }  // namespace
-
-Result<simulation::TrialChoice> parse_trial(const std::string& text)
-{
-    using Budget = simulation::TrialChoice::Budget;
-    constexpr std::string_view kRefuse = "or refuse";
-    simulation::TrialChoice out;
-    out.budget = Budget::Automatic;
-    std::string_view time = text;
-    if (time.ends_with(kRefuse))
-    {
-        out.must = true;
-        time.remove_suffix(kRefuse.size());
-    }
-    while (time.ends_with(' ')) time.remove_suffix(1);
-    if (time.empty() && out.must) return out;
-    if (time == "none" && !out.must)
-    {
-        out.budget = Budget::None;
-        return out;
-    }
-    if (time == "unlimited" && !out.must)
-    {
-        out.budget = Budget::Unlimited;
-        return out;
-    }
-    constexpr double kMost = 1e9;  // ms
-    double ms = 0;
-    std::string_view number = time;
-    if (number.ends_with("ms")) number.remove_suffix(2);
-    while (number.ends_with(' ')) number.remove_suffix(1);
-    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), ms);
-    if (error != std::errc() || stop != number.data() + number.size() || !(ms > 0) || !(ms <= kMost))
-        return reason("'" + text.substr(0, 64) +
-                      "' is not a budget of a trial: give none, unlimited, or a time in ms; 'or refuse' after it refuses untested swaps");
-    out.budget = Budget::Given, out.ns = 1e6 * ms;
-    return out;
-}
-
-Result<Wanted::Cancelled> parse_request_name(const std::string& text)
-{
-    Wanted::Cancelled out;
-    const std::size_t digits = 2 * out.client.size();
-    bool fine = text.size() > digits + 1 && text[digits] == ':';
-    for (std::size_t i = 0; fine && i < out.client.size(); ++i)
-    {
-        const char* const from = text.data() + 2 * i;
-        const auto [stop, error] = std::from_chars(from, from + 2, out.client[i], 16);
-        fine = error == std::errc() && stop == from + 2;
-    }
-    if (fine)
-    {
-        const char* const end = text.data() + text.size();
-        const auto [stop, error] = std::from_chars(text.data() + digits + 1, end, out.number);
-        fine = error == std::errc() && stop == end && out.number > 0;
-    }
-    if (!fine)
-        return reason("'" + text.substr(0, 64) +
-                      "' is not the name of a request: give the client's 32 hexadecimal digits, ':', and the number");
-    return out;
-}
-
-Description description_of(const simulation::Operation& operation)
-{
-    using namespace simulation;
-    struct Words
-    {
-        Description operator()(const AddOperation& op) const
-        {
-            return {"add", op.fragment.components.empty() ? "" : op.fragment.components.front().id, ""};
-        }
-        Description operator()(const AddBlueprintOperation& op) const
-        {
-            return {"add", op.blueprint->components.empty() ? "" : op.blueprint->components.front().id, ""};
-        }
-        Description operator()(const RemoveOperation& op) const { return {"remove", op.id, ""}; }
-        Description operator()(const SwapOperation& op) const { return {"swap", op.id, op.type}; }
-        Description operator()(const SetOperation& op) const
-        {
-            const auto* text = std::get_if<std::string>(&op.value);
-            return {"set", op.id, op.name + " = " + (text ? *text : model::format_value(std::get<Value>(op.value)))};
-        }
-        Description operator()(const PushOperation& op) const { return {"push", op.id, model::format_value(op.impulse)}; }
-        Description operator()(const PauseOperation&) const { return {"pause", "", ""}; }
-        Description operator()(const ResumeOperation&) const { return {"resume", "", ""}; }
-        Description operator()(const StepOperation& op) const { return {"step", "", std::to_string(op.steps)}; }
-        Description operator()(const RateOperation& op) const
-        {
-            return {"rate", "", op.factor == 0 ? std::string("max") : model::format_real(op.factor)};
-        }
-        Description operator()(const ResetOperation&) const { return {"reset", "", ""}; }
-        Description operator()(const LoadOperation& op) const { return {"load", "", op.scene.file}; }
-        Description operator()(const SnapshotOperation& op) const { return {"snapshot", op.name, ""}; }
-        Description operator()(const RestoreOperation& op) const { return {"restore", op.name, ""}; }
-        Description operator()(const ForgetOperation& op) const { return {"forget", op.name, ""}; }
-        Description operator()(const RewindOperation& op) const
-        {
-            return {"rewind", "", (op.back ? "back " : "") + model::format_real(op.time)};
-        }
-        Description operator()(const StepLengthOperation& op) const { return {"dt", "", model::format_real(op.dt.seconds)}; }
-    };
-    return std::visit(Words{}, operation);
-}
-
-wire::Operation text_of(const simulation::Operation& operation)
-{
-    const auto text = [](const simulation::GivenValue& given)
-    {
-        const auto* words = std::get_if<std::string>(&given);
-        return words ? *words : model::format_value(std::get<Value>(given));
-    };
-    const Description words = description_of(operation);
-    wire::Operation out{words.verb, words.target, words.argument, "", {}};
-    if (const auto* swap = std::get_if<simulation::SwapOperation>(&operation))
-        for (const simulation::NamedValue& v : swap->values) out.values.push_back({v.name, text(v.value)});
-    if (const auto* set = std::get_if<simulation::SetOperation>(&operation))
-    {
-        out.argument.clear();
-        out.values.push_back({set->name, text(set->value)});
-    }
-    return out;
-}
-
-bool begins_a_run(const std::vector<wire::Operation>& operations)
-{
-    const auto begins = [](const wire::Operation& op)
-    { return op.verb == "reset" || op.verb == "load" || op.verb == "restore" || op.verb == "rewind"; };
-    return std::any_of(operations.begin(), operations.end(), begins);
-}
-
-Result<double> parse_rate(const std::string& text)
-{
-    if (text == "real") return 1.0;
-    if (text == "max") return 0.0;
-    double factor = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
-    if (error != std::errc() || end != text.data() + text.size() || !(factor >= 1e-6) || !(factor <= 1e9))
-        return reason("a rate must be real, max or a factor of real time from 1e-6 to 1e9, not '" + text + "'");
-    return factor;
-}
 
 Result<Wanted> wanted_of(const wire::Request& text, model::TypeSource& types, const model::CompileLimits& limits)
 {

@@ -7,7 +7,14 @@ namespace plab::control
 namespace
 {
 
-wire::StepOutcome outcome_of(const simulation::StepOutcome& o) { return {o.energy, o.momentum, o.error, o.cost_ns}; }
+wire::StepOutcome outcome_of(const simulation::StepOutcome& from)
+{
+    wire::StepOutcome out;
+    for_each_member([](const char*, auto& to, const auto& value) { to = value; }, out, from);
+    return out;
+}
+
+}  // namespace
 
 wire::SwapReport report_of(const simulation::SwapReport& swap)
 {
@@ -15,8 +22,6 @@ wire::SwapReport report_of(const simulation::SwapReport& swap)
     for (const simulation::TransferredField& f : swap.fields) out.fields.push_back({f.field, simulation::name_of(f.transfer)});
     return out;
 }
-
-}  // namespace
 
 wire::Reply reply_of(const simulation::Reply& reply)
 {

@@ -7,6 +7,7 @@
 namespace plab::control
 {
 
+wire::SwapReport report_of(const simulation::SwapReport& swap);
 /// Without what only the server knows: whose request it was, the run, the time, and how long it waited.
 wire::Reply reply_of(const simulation::Reply& reply);
 

@@ -9,7 +9,7 @@ namespace
 
 using nlohmann::json;
 
-json json_of(const wire::Operation& op)
+json operation_json(const wire::Operation& op)
 {
     json values = json::array();
     for (const auto& [name, text] : op.values) values.push_back({name, text});
@@ -28,7 +28,7 @@ wire::Operation operation_of(const json& from)
 std::string text_of(const wire::Request& request)
 {
     json operations = json::array();
-    for (const wire::Operation& op : request.operations) operations.push_back(json_of(op));
+    for (const wire::Operation& op : request.operations) operations.push_back(operation_json(op));
     const json out{{"at", request.at}, {"revision", request.revision}, {"operations", operations}};
     return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdio>
 
 #include "plab/result.h"
 
@@ -14,6 +15,10 @@ inline constexpr std::chrono::milliseconds kGrace(250);
 inline constexpr int kExitGaveUp = 3;
 
 /// Prints each error on a line of standard error, and returns the exit code of a program that refuses to run.
-int fail(const Errors& errors);
+inline int fail(const Errors& errors)
+{
+    for (const Error& e : errors) (void)std::fprintf(stderr, "%s\n", e.text().c_str());
+    return 1;
+}
 
 }  // namespace plab::daemon

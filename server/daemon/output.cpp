@@ -1,10 +1,9 @@
 #include "daemon/output.h"
 
 #include <spdlog/spdlog.h>
-
 #include <nlohmann/json.hpp>
 
-#include "daemon/figures_text.h"
+#include "idl/json/json.h"
 #include "model/numbers.h"
 #include "publish/error_probe.h"
 #include "publish/figures.h"
@@ -15,13 +14,10 @@ namespace plab::daemon
 namespace
 {
 
-/// Keys stay in the order in which they are set. Numbers are the shortest texts that read back to the same bits; what is not
-/// finite becomes null.
-using Json = nlohmann::ordered_json;
+using wire::Json;
+using wire::json_of;
 
-Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
-Json json_of(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
-Json json_of(const simulation::Spread& s) { return s.samples == 0 ? Json(nullptr) : Json{s.low, s.median, s.high}; }
+Json quartiles_json(const simulation::Spread& s) { return s.samples == 0 ? Json(nullptr) : Json{s.low, s.median, s.high}; }
 
 Json object_json(const world::World& world, std::uint32_t i)
 {
@@ -45,7 +41,7 @@ Json interaction_json(const simulation::Simulation& s, std::uint32_t i, const pu
     const publish::ErrorFigure error = publish::own_error(s, i);
     Json out = {{"type", world.type_of(i)->info.name},
                 {"cost_ns_per_step", cost.mean},
-                {"cost_quartiles_ns", json_of(cost.last)},
+                {"cost_quartiles_ns", quartiles_json(cost.last)},
                 {"cost_shared_by", cost.shared},
                 {"work", s.stepper().work()[i]},
                 {"created", s.stepper().contact_energy()[i].created},
@@ -113,11 +109,12 @@ Json totals_json(const simulation::Simulation& s)
             {"ledger", ledger_json(s, totals)},
             {"contacts", contacts_json(s)},
             {"cost_ns_per_step", cost.mean()},
-            {"cost_quartiles_ns", json_of(cost.step())},
+            {"cost_quartiles_ns", quartiles_json(cost.step())},
             {"cost_of_server_ns_per_step", cost.mean_of_host()}};
 }
 
 /// Each member on a line of its own, and each object, interaction and contact, so that line tools can find and compare them.
+/// nlohmann writes all on one line, or each number on a line of its own; this layout is between the two, of values that it wrote.
 std::string in_lines(const Json& document)
 {
     const auto text = [](const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); };
@@ -178,6 +175,15 @@ bool write_end_state(const simulation::Simulation& s, const std::string& file)
     const bool closed = f && std::fclose(f) == 0;
     if (!written || !closed) spdlog::error("cannot write {}", file);
     return written && closed;
+}
+
+std::string number(double v) { return model::exact_text(v, "null"); }
+
+bool is_shown(const world::Component& c) { return publish::is_object(c) || c.facet == Facet::Quantities; }
+
+bool is_listed(const world::World& world, std::uint32_t i)
+{
+    return publish::is_interaction(world.component(i)) && !publish::is_solver(world, i);
 }
 
 }  // namespace plab::daemon

@@ -8,9 +8,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "control/replies.h"
 #include "daemon/ending.h"
 #include "daemon/recording.h"
 #include "daemon/runner.h"
+#include "idl/json/json.h"
 #include "program/interruption.h"
 #include "program/progress.h"
 #include "simulation/requests/request_words.h"
@@ -126,17 +128,16 @@ struct Outcome
     std::vector<Gap> trajectory;
 };
 
-nlohmann::json json_of(const Outcome& o, const Future& without, const Future& with, const ShadowChoice& choice)
+wire::Json outcome_json(const Outcome& o, const Future& without, const Future& with, const ShadowChoice& choice)
 {
-    using nlohmann::json;
     const auto future = [&](const Future& f)
     {
-        return json{{"cost_ns_per_step", median_of(f.costs)},
-                    {"mean_cost_ns_per_step", f.cpu_ns / static_cast<double>(std::max<std::int64_t>(1, o.steps))},
-                    {"largest_error", f.worst_error},
-                    {"events", f.events}};
+        return wire::Json{{"cost_ns_per_step", median_of(f.costs)},
+                          {"mean_cost_ns_per_step", f.cpu_ns / static_cast<double>(std::max<std::int64_t>(1, o.steps))},
+                          {"largest_error", f.worst_error},
+                          {"events", f.events}};
     };
-    json trajectory = json::array();
+    wire::Json trajectory = wire::Json::array();
     for (const Gap& g : o.trajectory)
         trajectory.push_back({{"time", g.time},
                               {"distance", g.distance},
@@ -145,17 +146,12 @@ nlohmann::json json_of(const Outcome& o, const Future& without, const Future& wi
                               {"most_turned", g.most_turned},
                               {"energy_without", g.energy_without},
                               {"energy_with", g.energy_with}});
-    json fields = json::array();
-    std::string from;
-    for (const simulation::SwapReport& swap : o.reply.swaps)
-    {
-        from = swap.from;
-        for (const simulation::TransferredField& f : swap.fields)
-            fields.push_back({{"field", f.field}, {"transfer", simulation::name_of(f.transfer)}});
-    }
-    return {
-        {"component", choice.id}, {"from", from},     {"to", choice.type},          {"step", o.from},       {"time", o.begin},
-        {"steps", o.steps},       {"fields", fields}, {"without", future(without)}, {"with", future(with)}, {"differences", trajectory}};
+    // As a reply reports it, with the same keys.
+    const wire::Json swap = wire::json_of(o.reply.swaps.empty() ? wire::SwapReport{choice.id, {}, choice.type, {}, 0, {}, {}}
+                                                                : control::report_of(o.reply.swaps.front()));
+    return {{"component", choice.id}, {"from", swap["from"]},     {"to", choice.type},        {"step", o.from},
+            {"time", o.begin},        {"steps", o.steps},         {"fields", swap["fields"]}, {"without", future(without)},
+            {"with", future(with)},   {"differences", trajectory}};
 }
 
 void print(const Outcome& o, const Future& without, const Future& with, const ShadowChoice& choice)
@@ -215,7 +211,7 @@ int run_shadow(plugins::PluginLibrary& library, const DaemonOptions& options, co
     const bool is_cut = outcome.steps < steps;
     if (options.shadow.json)
     {
-        nlohmann::json json = json_of(outcome, without, with, options.shadow);
+        wire::Json json = outcome_json(outcome, without, with, options.shadow);
         json["interrupted"] = is_cut;
         std::printf("%s\n", json.dump(2).c_str());
     }

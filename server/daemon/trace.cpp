@@ -3,7 +3,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "daemon/figures_text.h"
+#include "daemon/output.h"
 #include "model/values.h"
 #include "world/host_tables.h"
 

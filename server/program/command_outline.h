@@ -4,11 +4,6 @@
 #include <string>
 #include <vector>
 
-namespace CLI
-{
-class App;
-}  // namespace CLI
-
 namespace plab::program
 {
 
@@ -32,8 +27,5 @@ struct CommandOutline
     const CommandOutline* find(const std::string& command) const;
     const OptionOutline* option(const std::string& name) const;
 };
-
-/// Options that the help does not show are left out.
-CommandOutline outline_of(const CLI::App& app);
 
 }  // namespace plab::program

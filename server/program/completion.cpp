@@ -168,10 +168,4 @@ std::optional<std::string> answer_for_shell(const CommandOutline& program, int a
     return script;
 }
 
-std::optional<std::string> answer_for_shell(const CLI::App& app, int argc, const char* const* argv, const std::string& version,
-                                            const ValueSource& values, const std::string& more)
-{
-    return answer_for_shell(outline_of(app), argc, argv, version, values, more);
-}
-
 }  // namespace plab::program

@@ -54,8 +54,6 @@ std::string completion_lines(const CommandOutline& program, const std::vector<st
 std::string completion_script(const std::string& program, const std::string& shell);
 
 /// What the hidden first words --print (man, bash, zsh, fish) and --complete ask for; nothing: an ordinary command line.
-std::optional<std::string> answer_for_shell(const CLI::App& app, int argc, const char* const* argv, const std::string& version,
-                                            const ValueSource& values = {}, const std::string& more = {});
 std::optional<std::string> answer_for_shell(const CommandOutline& program, int argc, const char* const* argv, const std::string& version,
                                             const ValueSource& values = {}, const std::string& more = {});
 

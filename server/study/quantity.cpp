@@ -22,18 +22,6 @@ std::optional<std::size_t> part_of(const std::string& name, const Value& whole)
     return found == suffixes.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - suffixes.begin()));
 }
 
-/// The longest beginning of `text` that is a component's id.
-std::uint32_t find_owner(const world::World& world, const std::string& text, std::string& field)
-{
-    for (std::size_t dot = text.rfind('.'); dot != std::string::npos && dot > 0; dot = text.rfind('.', dot - 1))
-        if (const std::uint32_t i = world.find(text.substr(0, dot)); i != kNoIndex)
-        {
-            field = text.substr(dot + 1);
-            return i;
-        }
-    return kNoIndex;
-}
-
 std::vector<std::string> numbers_of(const world::World& world, std::uint32_t owner)
 {
     std::vector<std::string> names;
@@ -88,9 +76,10 @@ Result<Quantity> resolve_quantity(const world::World& world, const std::string& 
 {
     Quantity q;
     q.name = text;
-    const std::uint32_t owner = find_owner(world, text, q.field);
-    if (owner == kNoIndex) return unknown_owner(world, text);
-    q.id = world.id_of(owner);
+    const auto [id, field_name] = split_id(text, [&](const std::string& name) { return world.find(name) != kNoIndex; });
+    if (id.empty()) return unknown_owner(world, text);
+    const std::uint32_t owner = world.find(id);
+    q.id = id, q.field = field_name;
     Value value = world.get(owner, q.field);
     if (number_count(value) == 0)
     {

@@ -219,7 +219,8 @@ std::vector<std::string> findings_of(const std::vector<Done>& all, const std::ve
     return out;
 }
 
-Json json_of(const std::vector<Done>& all, const std::vector<Tally>& tallies, const std::vector<std::string>& sentences, double tolerance)
+Json suite_json(const std::vector<Done>& all, const std::vector<Tally>& tallies, const std::vector<std::string>& sentences,
+                double tolerance)
 {
     Json out{{"schema", "plab-study-suite 1"}, {"tolerance", tolerance}, {"findings", sentences}, {"studies", Json::array()}};
     for (const Tally& t : tallies)
@@ -283,7 +284,7 @@ Result<void> write_suite(const Suite& suite, const std::vector<Done>& all, const
         if (auto added = add_tally(page, tallies[i], options, folder, "-" + std::to_string(i + 1)); !added) return added;
     page.heading("To do it again");
     page.code(options.command);
-    const std::string json = json_of(all, tallies, sentences, options.tolerance).dump(1) + "\n";
+    const std::string json = suite_json(all, tallies, sentences, options.tolerance).dump(1) + "\n";
     if (auto written = program::write_file(folder + "/suite.json", json); !written) return written;
     return program::write_file(folder + "/report.html", page.html());
 }

@@ -10,7 +10,7 @@ namespace plab::study
 
 /// One row per combination. Columns are described in server/docs/study.md.
 std::string results_csv(const StudyResult& result);
-/// The same and more; numbers with 17 significant digits, null if unknown.
+/// The same and more; numbers read back to the same bits, null if unknown.
 std::string results_json(const StudyResult& result);
 /// The reference's time series as CSV: time and the quantities, to be used as --reference FILE.
 std::string time_series_csv(const StudyResult& result, const std::vector<double>& times, const std::vector<TimeSeries>& time_series);

@@ -1,7 +1,8 @@
 // results.json. The schema is in server/docs/study.md.
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "control/replies.h"
+#include "idl/json/json.h"
 #include "model/numbers.h"
 #include "study/write.h"
 
@@ -10,9 +11,8 @@ namespace plab::study
 namespace
 {
 
-using Json = nlohmann::ordered_json;
-
-Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
+using wire::Json;
+using wire::json_of;
 
 template <class T>
 Json optional(const std::optional<T>& v)
@@ -20,47 +20,16 @@ Json optional(const std::optional<T>& v)
     return v ? Json(*v) : Json(nullptr);
 }
 
-Json json_of(const Distance& d)
+Json distance_json(const Distance& d)
 {
-    return {{"series", number(d.series)},
-            {"final", number(d.last)},
-            {"series_absolute", number(d.series_absolute)},
-            {"final_absolute", number(d.last_absolute)}};
+    return {{"series", d.series}, {"final", d.last}, {"series_absolute", d.series_absolute}, {"final_absolute", d.last_absolute}};
 }
 
-Json json_of(const std::map<std::string, double>& values)
+/// As plabctl prints it, without what only a server knows.
+Json reply_json(const simulation::Reply& reply)
 {
-    Json out = Json::object();
-    for (const auto& [name, v] : values) out[name] = number(v);
-    return out;
-}
-
-Json json_of(const Vec3& v) { return {number(v.x), number(v.y), number(v.z)}; }
-
-Json json_of(const simulation::Reply& reply)
-{
-    Json out{{"step", reply.step},
-             {"done", reply.done},
-             {"pause_ns", number(reply.pause_ns)},
-             {"errors", Json::array()},
-             {"swaps", Json::array()}};
-    for (const Error& e : reply.errors) out["errors"].push_back(e.text());
-    for (const simulation::SwapReport& s : reply.swaps)
-    {
-        const auto outcome = [](const simulation::StepOutcome& o)
-        {
-            return Json{{"energy", number(o.energy)},
-                        {"momentum", json_of(o.momentum)},
-                        {"error", number(o.error)},
-                        {"cost_ns", number(o.cost_ns)}};
-        };
-        out["swaps"].push_back({{"id", s.id},
-                                {"from", s.from},
-                                {"to", s.to},
-                                {"energy_before", number(s.energy_before)},
-                                {"with_old", outcome(s.with_old)},
-                                {"with_new", outcome(s.with_new)}});
-    }
+    Json out = json_of(control::reply_of(reply));
+    for (const char* key : {"repeated", "run", "revision", "time", "waited_ns"}) out.erase(key);
     return out;
 }
 
@@ -71,22 +40,16 @@ Json parts_of(const RunRecord& x)
         out.push_back({{"id", p.id},
                        {"requested", p.requested},
                        {"resolved", p.resolved},
-                       {"error", number(p.error)},
-                       {"outputs", json_of(p.outputs)},
-                       {"largest", json_of(p.largest)}});
+                       {"error", p.error},
+                       {"outputs", p.outputs},
+                       {"largest", p.largest}});
     return out;
 }
 
 Json energy_of(const Point& p)
 {
     const EnergySeries& e = p.record.energy;
-    Json out{{"drift", number(p.energy_drift)},
-             {"scale", number(e.scale)},
-             {"time", e.time},
-             {"energy", Json::array()},
-             {"drift_series", Json::array()}};
-    for (const double v : e.energy) out["energy"].push_back(number(v));
-    for (const double v : e.drift) out["drift_series"].push_back(number(v));
+    Json out{{"drift", p.energy_drift}, {"scale", e.scale}, {"time", e.time}, {"energy", e.energy}, {"drift_series", e.drift}};
     return out;
 }
 
@@ -97,41 +60,41 @@ Json point_of(const StudyResult& r, const Point& p)
     for (const Setting& s : p.combination.settings) settings[s.target] = s.value;
     for (std::size_t k = 0; k < r.quantities.size() && k < p.errors.size(); ++k)
     {
-        errors[r.quantities[k].name] = json_of(p.errors[k]);
+        errors[r.quantities[k].name] = distance_json(p.errors[k]);
         errors[r.quantities[k].name]["resolved"] = static_cast<bool>(p.resolved[k]);
     }
     Json out{{"algorithm", p.combination.algorithm},
              {"settings", settings},
-             {"dt", number(x.dt)},
+             {"dt", x.dt},
              {"outcome", name_of(x.outcome)},
              {"why", x.why},
-             {"reached", number(x.reached)},
+             {"reached", x.reached},
              {"steps", x.steps},
              {"hash", model::hash_text(x.hash)},
-             {"error", number(p.error())},
-             {"final_error", number(p.final_error())},
-             {"digits", number(digits(p.error()))},
+             {"error", p.error()},
+             {"final_error", p.final_error()},
+             {"digits", digits(p.error())},
              {"errors", errors}};
-    out["cpu"] = {{"min", number(p.cpu_min)},
-                  {"median", number(p.cpu_median)},
-                  {"per_simulated_second", number(p.cpu_per_second())},
-                  {"per_step", number(p.cpu_per_step())},
+    out["cpu"] = {{"min", p.cpu_min},
+                  {"median", p.cpu_median},
+                  {"per_simulated_second", p.cpu_per_second()},
+                  {"per_step", p.cpu_per_step()},
                   {"runs", p.timed}};
     out["energy"] = energy_of(p);
-    out["momentum_change"] = number(x.momentum_change), out["angular_momentum_change"] = number(x.angular_momentum_change);
-    out["shaft_momentum_change"] = number(x.shaft_momentum_change);
-    out["violation"] = number(x.violation), out["penetration"] = number(x.penetration), out["residual"] = number(x.residual);
+    out["momentum_change"] = x.momentum_change, out["angular_momentum_change"] = x.angular_momentum_change;
+    out["shaft_momentum_change"] = x.shaft_momentum_change;
+    out["violation"] = x.violation, out["penetration"] = x.penetration, out["residual"] = x.residual;
     out["impacts"] = p.contacts.known ? Json{{"expected", p.contacts.expected},
                                              {"missed", p.contacts.missed},
                                              {"extra", p.contacts.extra},
-                                             {"time_error", number(p.contacts.worst_time_error)}}
+                                             {"time_error", p.contacts.worst_time_error}}
                                       : Json(nullptr);
     out["evaluations"] = x.evaluations, out["allocations"] = optional(x.allocations);
     out["trials"] = x.trials, out["rewinds"] = x.rewinds, out["events"] = x.events, out["warnings"] = x.warnings,
     out["first_warning"] = x.first_warning;
     out["components"] = parts_of(x);
     out["swaps"] = Json::array();
-    for (const simulation::Reply& reply : x.swaps) out["swaps"].push_back(json_of(reply));
+    for (const simulation::Reply& reply : x.swaps) out["swaps"].push_back(reply_json(reply));
     return out;
 }
 
@@ -142,9 +105,9 @@ Json reference_of(const StudyResult& r)
         out["quantities"].push_back(
             {{"name", r.quantities[k].name},
              {"unit", r.quantities[k].unit},
-             {"scale", number(r.reference.scale[k])},
-             {"uncertainty", json_of(r.reference.uncertainty[k])},
-             {"observed_order", number(r.reference.order[k])},
+             {"scale", r.reference.scale[k]},
+             {"uncertainty", distance_json(r.reference.uncertainty[k])},
+             {"observed_order", r.reference.order[k]},
              {"converged", k < r.reference.converged.size() ? Json(bool{r.reference.converged[k]}) : Json(nullptr)}});
     return out;
 }
@@ -153,8 +116,8 @@ Json reference_of(const StudyResult& r)
 
 std::string results_json(const StudyResult& r)
 {
-    Json out{{"schema", "plab-study 1"}, {"title", r.title},         {"scene", r.scene_file},
-             {"command", r.command},     {"until", number(r.until)}, {"repeat", r.repeat}};
+    Json out{{"schema", "plab-study 2"}, {"title", r.title}, {"scene", r.scene_file},
+             {"command", r.command},     {"until", r.until}, {"repeat", r.repeat}};
     out["machine"] = {{"processor", r.machine.processor},
                       {"system", r.machine.system},
                       {"compiler", r.machine.compiler},

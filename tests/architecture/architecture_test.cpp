@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "rules.h"
 #include "table.h"
@@ -111,6 +112,27 @@ TEST_CASE("Eigen is included by sources, and through plab/eigen.h")
         const bool asks = has(file, "#include \"plab/eigen.h\""), may = !file.path.ends_with(".h");
         CHECK((!has(file, "<Eigen/") || (asks && may)));
         CHECK((!asks || may || file.path == "server/objects/solvers/dense_view.h"));
+    }
+}
+
+TEST_CASE("headers that take long to compile are parsed where they are needed only")
+{
+    // nlohmann: headers name its types by <nlohmann/json_fwd.hpp>. CLI11: one file of a program, which hands its options to the rest.
+    std::map<std::string, int> files_with_parser;
+    for (const File& file : tree())
+    {
+        if (!is_source(file.path) || file.path.starts_with("tests/")) continue;
+        CAPTURE(file.path);
+        CHECK((!file.path.ends_with(".h") || file.text.find("<nlohmann/json.hpp>") == std::string::npos));
+        if (file.text.find("<CLI/CLI.hpp>") == std::string::npos) continue;
+        const std::size_t folder = file.path.find('/', file.path.find('/') + 1);
+        ++files_with_parser[file.path.substr(0, folder)];
+    }
+    CHECK(files_with_parser.size() == 6);  // plabctl, plab-log, plab-view, plabd, plab-study, and what all of them share
+    for (const auto& [folder, files] : files_with_parser)
+    {
+        CAPTURE(folder);
+        CHECK(files == 1);
     }
 }
 

@@ -13,7 +13,7 @@
 #include <cstdlib>
 
 #include "support/process.h"
-#include "unit/recordings/made_recording.h"
+#include "unit/analysis/made_recording.h"
 
 using namespace plab::test;
 

@@ -7,16 +7,17 @@
 #include <chrono>
 #include <cstdio>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 
 #include "idl/domain.h"
 #include "idl/recording/cdr.h"
 #include "idl/recording/reader.h"
-#include "idl/recording/topic_schema.h"
+#include "idl/recording/topic_file.h"
 #include "idl/recording/writer.h"
 #include "link/discovery.h"
-#include "link/json_text.h"
+#include "link/json.h"
 #include "random_samples.h"
 
 using namespace plab;
@@ -51,32 +52,6 @@ Result<std::map<std::string, Described>> describe_topics()
     }
     return out;
 }
-
-class QuotedJson final : public link::SampleVisitor
-{
-public:
-    void open_struct(const link::DynamicType&) override { json_.open('{'); }
-    void member(std::string_view name) override { json_.key(name); }
-    void close_struct() override { json_.close('}'); }
-    void open_list(const link::DynamicType&, std::size_t) override { json_.open('['); }
-    void close_list() override { json_.close(']'); }
-    void scalar(const link::Scalar& value) override
-    {
-        std::visit([this](const auto& v) { put(v); }, value);
-    }
-    std::string take() { return json_.take(); }
-
-private:
-    void put(bool v) { json_.value(v); }
-    void put(std::int64_t v) { json_.value(std::to_string(v)); }
-    void put(std::uint64_t v) { json_.value(std::to_string(v)); }
-    void put(float v) { json_.value(link::number_text(v)); }
-    void put(double v) { json_.value(link::number_text(v)); }
-    void put(std::string_view v) { json_.value(v); }
-    void put(const link::EnumValue& v) { json_.value(std::to_string(v.number)); }
-
-    link::JsonWriter json_;
-};
 
 Result<void> write(const std::string& path, const std::string& compression)
 {
@@ -140,13 +115,15 @@ Result<void> dump(const std::string& path)
         const auto& [channel, message] = **next;
         const Described& described = topics->at(channel->topic);
         if (auto same = check_round_trip(*described.topic, message.data); !same) return same;
-        QuotedJson value;
-        if (auto done = link::decode(*described.type, std::as_bytes(message.data), value); !done) return done;
-        link::JsonWriter line;
-        line.open('{').key("topic").value(channel->topic).key("schema").value(reader->schema_of(*channel)->name);
-        line.key("log_time").value(std::to_string(message.log_time)).key("publish_time").value(std::to_string(message.publish_time));
-        line.key("sequence").value(message.sequence).key("value").json(value.take()).close('}');
-        std::puts(line.take().c_str());
+        auto value = link::json_of(*described.type, std::as_bytes(message.data), link::Numbers::Quoted);
+        if (!value) return value.errors();
+        const link::Json line{{"topic", channel->topic},
+                              {"schema", reader->schema_of(*channel)->name},
+                              {"log_time", std::to_string(message.log_time)},
+                              {"publish_time", std::to_string(message.publish_time)},
+                              {"sequence", message.sequence},
+                              {"value", value.take()}};
+        std::puts(link::line_of(line).c_str());
     }
 }
 

@@ -7,7 +7,7 @@
 
 #include "idl/recording/cdr.h"
 #include "idl/recording/reader.h"
-#include "idl/recording/topic_schema.h"
+#include "idl/recording/topic_file.h"
 #include "idl/recording/writer.h"
 #include "walking_frames.h"
 

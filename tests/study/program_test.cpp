@@ -56,7 +56,7 @@ TEST_CASE("a study writes its report, tables and pictures, and says what it foun
                              "convergence.svg", "convergence.png", "energy.svg", "digits.svg", "digits.png"})
         CHECK_MESSAGE(std::filesystem::file_size(where + "/" + file) > 100, file);
     const auto json = results(where);
-    CHECK(json["schema"] == "plab-study 1");
+    CHECK(json["schema"] == "plab-study 2");
     REQUIRE(json["points"].size() == 4);
     const auto& best = json["points"][3];
     CHECK(best["settings"]["solver"] == "RungeKutta4");
@@ -119,8 +119,14 @@ TEST_CASE("a swap inside the runs, and plabd's trace as reference")
     REQUIRE_MESSAGE(done.code == 0, done.errors);
     const auto json = results(where);
     const auto& swap = json["points"][0]["swaps"][0];
-    CHECK(swap["done"] == true);
     CHECK(swap["step"] == 30);
+    // The keys of plabctl's reply.
+    CHECK(swap["outcome"] == "done");
+    CHECK(swap["reasons"].empty());
+    CHECK(swap["swaps"][0].contains("component"));
+    CHECK(swap["swaps"][0]["fields"].is_object());
+    CHECK(swap["swaps"][0]["with_new"]["energy"].is_number());
+    CHECK_FALSE(swap.contains("run"));
     CHECK(swap["swaps"][0]["to"] == "Solver/SemiImplicitEuler");
     // From t = 0.5 on late by g dt/2 a second.
     CHECK(json["points"][0]["errors"]["ball.position"]["final_absolute"] == doctest::Approx(1.5 * 9.81 / 120).epsilon(1e-6));

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "link/dynamic_sample.h"
+#include "link/json.h"
 
 namespace plab::test
 {
@@ -81,7 +82,7 @@ private:
 inline std::string json(const DynamicTypePtr& type, const std::vector<std::byte>& bytes)
 {
     const auto text = link::json_of(*type, bytes);
-    return text ? *text : "error: " + text.error().text();
+    return text ? link::line_of(*text) : "error: " + text.error().text();
 }
 
 /// Some of every kind of member: the hostile tests cut and alter it.

@@ -10,7 +10,7 @@ using namespace plab::test;
 TEST_CASE("a sample of XCDR1 is read member by member, each at its alignment")
 {
     CHECK(json(rich_type(), rich_sample().bytes()) ==
-          R"({"name":"ball","flag":true,"color":"BLUE","points":[{"x":0.5,"y":1.5},{"x":-2,"y":0.25}],)"
+          R"({"name":"ball","flag":true,"color":"BLUE","points":[{"x":0.5,"y":1.5},{"x":-2.0,"y":0.25}],)"
           R"("words":["a",""],"grid":[[1,2,3],[4,5,6]],"count":18446744073709551615})");
 }
 

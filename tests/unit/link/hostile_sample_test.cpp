@@ -20,7 +20,7 @@ std::string json_of_exactly(const DynamicTypePtr& type, std::span<const std::byt
     const auto copy = std::make_unique<std::byte[]>(bytes.size());
     std::copy(bytes.begin(), bytes.end(), copy.get());
     const auto text = link::json_of(*type, {copy.get(), bytes.size()});
-    return text ? *text : "error: " + text.error().text();
+    return text ? link::line_of(*text) : "error: " + text.error().text();
 }
 
 bool is_error(const std::string& text) { return text.starts_with("error: "); }

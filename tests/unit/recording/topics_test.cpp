@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "idl/recording/cdr.h"
-#include "idl/recording/topic_schema.h"
+#include "idl/recording/topic_file.h"
 #include "sample_file.h"
 
 using namespace plab::recording;

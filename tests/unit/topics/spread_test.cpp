@@ -1,4 +1,4 @@
-#include "control/spread.h"
+#include "control/topics/spread.h"
 
 #include <doctest/doctest.h>
 

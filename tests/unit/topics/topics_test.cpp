@@ -167,8 +167,8 @@ TEST_CASE("a foreign sample is printed with its names, as a tree and as JSON")
     const Outcome out = topics({"print", "readings", "-n", "1", "--json"});
     REQUIRE_MESSAGE(out.code == 0, out.errors);
     CHECK(Json::parse(out.output)["sample"].dump() ==
-          R"({"sensor":"north","place":"on the roof","color":"BLUE","matrix":[[0,1,2],[10,11,12]],)"
-          R"("points":[{"id_number":7,"x":0.5,"y":-1},{"id_number":8,"x":2,"y":0.1}],)"
+          R"({"sensor":"north","place":"on the roof","color":"BLUE","matrix":[[0.0,1.0,2.0],[10.0,11.0,12.0]],)"
+          R"("points":[{"id_number":7,"x":0.5,"y":-1.0},{"id_number":8,"x":2.0,"y":0.1}],)"
           R"("rows":[[1,-2],[3]],"raw":[250,251,252,253],"letter":"z","valid":true,"count":9223372036854775808})");
     const Outcome tree = topics({"print", "readings", "-n", "1"});
     CHECK(has(tree.output, "sensor: \"north\"\n"));

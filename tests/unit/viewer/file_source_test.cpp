@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "recordings/made_recording.h"
+#include "analysis/made_recording.h"
 
 using namespace plab;
 using namespace plab::test;

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "plab/rotation.h"
-#include "viewer/viewpoint.h"
+#include "viewer/painter.h"
 
 namespace
 {
