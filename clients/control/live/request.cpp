@@ -148,7 +148,7 @@ void print_fields(const Console& console, const link::SwapReport& swap)
     }
 }
 
-std::string vector_text(const Vec3& v) { return exact_number(v.x) + " " + exact_number(v.y) + " " + exact_number(v.z); }
+std::string vector_text(const Vec3& v) { return number(v.x) + " " + number(v.y) + " " + number(v.z); }
 
 std::string change_text(const Vec3& a, const Vec3& b) { return number(b.x - a.x) + " " + number(b.y - a.y) + " " + number(b.z - a.z); }
 
@@ -158,7 +158,7 @@ void add_cost(Table& table, const link::StepOutcome& old, const link::StepOutcom
     const auto text = [](double ns) { return std::isfinite(ns) ? duration_text(ns) : std::string("-"); };
     if (!std::isfinite(now.cost_ns) && !std::isfinite(old.cost_ns)) return;
     const double more = now.cost_ns - old.cost_ns;
-    table.add({"cost of the step", text(old.cost_ns), text(now.cost_ns), std::isfinite(more) ? duration_text(more) : "unknown"});
+    table.add({"cost of the step", text(old.cost_ns), text(now.cost_ns), std::isfinite(more) ? duration_text(more) : "not significant"});
 }
 
 void print_swap(const Console& console, const link::SwapReport& swap)
