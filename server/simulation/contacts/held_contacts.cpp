@@ -1,5 +1,6 @@
 // Contacts of islands that managers hold: which of them are known, which pairs become persistent, and what is kept for the next step.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "simulation/contacts/held_islands.h"
@@ -151,22 +152,54 @@ void HeldIslands::add_known_contacts(bool trial)
     }
 }
 
+std::uint32_t HeldIslands::island_of(const Contact& c) const
+{
+    for (const Ref r : {c.a, c.b})
+    {
+        if (!step_.world.host().bodies.dynamic(r.index) || step_.groups.of(r) == kNoIndex) continue;
+        if (const std::uint32_t number = island_of_group_[step_.groups.of(r)]; number != kNoIndex) return number;
+    }
+    return kNoIndex;
+}
+
+/// Distributes the contacts over the islands; those of an island keep their order.
 void HeldIslands::share_contacts(double h)
 {
-    const Bodies& bodies = step_.world.host().bodies;
-    for (std::uint32_t i = 0; i < touching_.size(); ++i)
+    const std::size_t all = touching_.size();
+    island_numbers_.resize(all), turning_.resize(all), ranks_.resize(all);
+    for_parts(&step_.workers, all, kPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i)
+                  {
+                      const Contact& c = touching_[i].contact;
+                      const std::uint32_t number = island_numbers_[i] = island_of(c);
+                      turning_[i] = number != kNoIndex && !islands_[number]->has_rows && midpoint_.turns(c, h) ? 1 : 0;
+                  }
+              });
+    for (std::size_t i = 0; i < all; ++i)
     {
-        const Contact& c = touching_[i].contact;
-        std::uint32_t number = kNoIndex;
-        for (const Ref r : {c.a, c.b})
-            if (bodies.dynamic(r.index) && step_.groups.of(r) != kNoIndex && number == kNoIndex)
-                number = island_of_group_[step_.groups.of(r)];
-        if (number == kNoIndex) continue;
-        HeldIsland& island = *islands_[number];
-        island.turns = island.turns || (!island.has_rows && midpoint_.turns(c, h));
-        island.contacts.push_back(c);
-        island.places.push_back(i);
+        if (island_numbers_[i] == kNoIndex) continue;
+        HeldIsland& island = *islands_[island_numbers_[i]];
+        ranks_[i] = island.count++;
+        island.turns = island.turns || turning_[i] != 0;
     }
+    std::uint32_t shared = 0;
+    for (std::size_t k = 0; k < island_count_; ++k) islands_[k]->first = shared, shared += islands_[k]->count;
+    contacts_of_islands_.resize(shared), places_.resize(shared), paradoxes_.resize(shared);
+    for (std::size_t k = 0; k < island_count_; ++k)
+        islands_[k]->contacts = std::span(contacts_of_islands_).subspan(islands_[k]->first, islands_[k]->count),
+        islands_[k]->places = std::span(places_).subspan(islands_[k]->first, islands_[k]->count);
+    for_parts(&step_.workers, all, kPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i)
+                  {
+                      if (island_numbers_[i] == kNoIndex) continue;
+                      const std::size_t to = islands_[island_numbers_[i]]->first + ranks_[i];
+                      contacts_of_islands_[to] = touching_[i].contact, places_[to] = static_cast<std::uint32_t>(i);
+                  }
+              });
 }
 
 /// Sets Contact::approach, the closing speed of impacts. A contact counts as an impact if it had no impulse in the last step and closes
@@ -175,15 +208,26 @@ void HeldIslands::share_contacts(double h)
 /// as an impact must not depend on how far a trial goes.
 void HeldIslands::set_approach(HeldIsland& island, const GroupSystem& system, double h)
 {
-    for (std::size_t k = 0; k < island.members.size(); ++k)
-        given_speed_[island.bodies[k]] = length(system.acceleration(island.members[k])) * step_.frame.step;
-    const double least = kNoApproach * least_gyration(step_.world.host().bodies, island.bodies) / h;
-    for (Contact& c : island.contacts)
-    {
-        const double speed = contacts_.normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
-        const double share = c.impulse == Vec3{} ? 0.5 : 2;
-        c.approach = speed < -std::max(least, share * given) ? -speed : 0.0;
-    }
+    std::atomic<double> smallest{-HUGE_VAL};  // negative, as raise_to() finds the largest
+    for_parts(&step_.workers, island.members.size(), kPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t k = begin; k < end; ++k)
+                      given_speed_[island.bodies[k]] = length(system.acceleration(island.members[k])) * step_.frame.step;
+                  raise_to(smallest, -least_gyration(step_.world.host().bodies, std::span(island.bodies).subspan(begin, end - begin)));
+              });
+    island.size = island.members.empty() ? 0.0 : -smallest;
+    const double least = kNoApproach * island.size / h;
+    for_parts(&step_.workers, island.contacts.size(), kPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (Contact& c : island.contacts.subspan(begin, end - begin))
+                  {
+                      const double speed = contacts_.normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
+                      const double share = c.impulse == Vec3{} ? 0.5 : 2;
+                      c.approach = speed < -std::max(least, share * given) ? -speed : 0.0;
+                  }
+              });
     for (const std::uint32_t b : island.bodies) given_speed_[b] = 0;
 }
 
@@ -218,6 +262,12 @@ void HeldIslands::note_releases(HeldIsland& island, double from, double h) const
         if (!contacts_.note_release(pair, island.contacts[i], pressing, from, h)) continue;
         for (std::size_t k = i; k < end; ++k) island.contacts[k].impulse = {};
     }
+}
+
+void HeldIslands::report_paradoxes(const HeldIsland& island, double time)
+{
+    for (std::size_t i = 0; i < island.contacts.size(); ++i)
+        if (paradoxes_[island.first + i] != 0) contacts_.report_paradox(island.contacts[i], *pair_of_contact_[island.places[i]], time);
 }
 
 void HeldIslands::report_impacts(const HeldIsland& island, double time)

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "simulation/motion/component_call.h"
-
 namespace plab::simulation
 {
 namespace
@@ -118,7 +116,7 @@ void HeldIslands::make_islands(DisjointSets& islands)
             if (islands_.size() < island_count_) islands_.push_back(std::make_unique<HeldIsland>());
             HeldIsland& fresh = *islands_[number];
             fresh.manager = manager_of_island_[root], fresh.has_rows = fresh.turns = false;
-            fresh.groups.clear(), fresh.contacts.clear(), fresh.places.clear();
+            fresh.groups.clear(), fresh.count = 0;
         }
         island_of_group_[g] = number;
         numbered_.push_back(root), numbered_.push_back(g);
@@ -175,10 +173,9 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
     }
     system.evaluate(0, 0);
     given_speed_.resize(step_.world.host().bodies.size(), 0.0);
-    for (HeldIsland* island : islands) set_approach(*island, system, to - from);
+    share(islands, [&](HeldIsland& island) { set_approach(island, system, to - from); });
     advance_to_midpoint(islands, system, to - from);
-    for (HeldIsland* island : islands)
-        if (!step_.frame.give_up()) solve(*island, system, from, to, book, trial);
+    solve(islands, system, from, to, book, trial);
     const bool given_up = step_.frame.give_up();  // then islands may be unsolved, and the booked work is discarded
     if (book.work && !given_up) book_forces(system, islands, to - from);
     midpoint_.take_back();
@@ -209,91 +206,6 @@ void HeldIslands::advance_to_midpoint(std::span<HeldIsland*> islands, GroupSyste
     midpoint_.update_contacts(midpoint_places_, touching_, h);
     for (HeldIsland* island : islands)
         for (std::size_t i = 0; island->turns && i < island->places.size(); ++i) island->contacts[i] = touching_[island->places[i]].contact;
-}
-
-void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, double to, WorkBook book, bool trial)
-{
-    world::World& world = step_.world;
-    world::HostTables& host = world.host();
-    held.rows.clear();
-    if (held.has_rows && system.rows())
-    {
-        system.rows()->begin_hold(system.context());
-        held.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
-    }
-    if (!trial)
-        for (std::size_t i = 0; i < held.contacts.size(); ++i)
-            if (contacts_.is_paradox(held.contacts[i]))
-                contacts_.report_paradox(held.contacts[i], *pair_of_contact_[held.places[i]], step_.frame.start_time + from);
-    held.motion.begin(system, host.bodies, host.shafts, held.members, held.roots, held.contacts, held.rows, book.work != nullptr,
-                      step_.workers);
-    Island island;
-    island.interruption = step_.frame.interruption;
-    island.h = to - from, island.time = step_.frame.start_time + from;
-    island.bodies = held.bodies, island.shafts = held.shafts;
-    island.size = least_gyration(host.bodies, held.bodies);
-    shaft_mobility_.resize(host.shafts.size());
-    for (const std::uint32_t root : held.shafts) shaft_mobility_[root] = mobility_of(root);
-    island.shaft_mobility = shaft_mobility_;
-    island.rows = held.rows, island.contacts = held.contacts, island.motion = &held.motion;
-
-    ComponentCall answer(step_, held.manager);
-    answer.context.time = island.time, answer.context.dt = island.h, answer.context.interruption = island.interruption;
-    if (trial) answer.context.events = nullptr;
-    answer.call.island = &island;
-    const double before = book.work ? held.motion.kinetic_energy() : 0.0;
-    step_.meter.enter(step_.meter.of_component(held.manager));
-    step_.meter.ran(world.component(held.manager).table, Phase::Solve);
-    answer.run(Phase::Solve);
-    step_.meter.leave();
-    if (book.work) book_contacts(held, held.motion.kinetic_energy() - before, book);
-    // The cost per row of a factorisation grows with the number of rows. For kFactored rows it is taken to cost one more sweep.
-    constexpr std::size_t kFactored = 400;
-    const std::size_t rows = 3 * held.contacts.size() + held.rows.size();
-    step_.report.swept_rows += rows * (static_cast<std::size_t>(1 + island.iterations) + rows / kFactored);
-    if (trial) return;
-    step_.report.worst_residual = std::max(step_.report.worst_residual, island.residual);
-    note_releases(held, from, to - from);
-    keep(held);
-    report_impacts(held, island.time);
-}
-
-/// Books the work of the manager. Contacts dissipate energy, so on bodies that nothing else drives their work must not be positive, apart
-/// from what position correction lifts. Energy that the method creates beyond that is not booked as work, so it remains visible as the
-/// unexplained part of the ledger (ContactEnergy::made).
-void HeldIslands::book_contacts(HeldIsland& island, double gained, WorkBook book)
-{
-    const Bodies& bodies = step_.world.host().bodies;
-    const double lifted = island.motion.count_corrections();
-    const double work = gained - island.motion.work_of_forces();
-    const bool driven = !island.rows.empty() || std::any_of(island.contacts.begin(), island.contacts.end(),
-                                                            [&](const Contact& c) {
-                                                                return bodies.motion[c.a.index] == Motion::Kinematic ||
-                                                                       bodies.motion[c.b.index] == Motion::Kinematic;
-                                                            });
-    const double made = driven ? 0.0 : std::max(0.0, work - lifted);
-    (*book.work)[island.manager] += book.sign * (work - made);
-    ContactEnergy& own = step_.contact_energy[island.manager];
-    own.made += book.sign * made, own.lifted += book.sign * lifted;
-}
-
-/// Reports the impulses of the joints, and moves their work from the manager's account to theirs.
-void HeldIslands::report_rows(const HeldIsland& island, GroupSystem& system, double h, WorkBook book)
-{
-    if (island.rows.empty()) return;
-    StepContext context = system.context();
-    context.time += h;
-    const double work = system.rows()->take_impulses(context, island.rows, h, system.row_book());
-    if (book.work) (*book.work)[island.manager] -= book.sign * work;
-}
-
-/// 1/(kg m^2): inverse inertia of the gear train whose root is this shaft.
-double HeldIslands::mobility_of(std::uint32_t root) const
-{
-    const Shafts& shafts = step_.world.host().shafts;
-    const ShaftTree* tree = step_.graph.tree_of(root);
-    const double inertia = tree ? tree->inertia : shafts.dynamic(root) ? shafts.inertia[root] : 0.0;
-    return inertia > 0 ? 1 / inertia : 0.0;
 }
 
 /// Books the work of each force component: its power at the mean velocities of the moves. For this the forces are evaluated once more, and

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "plab/island.h"
+#include "plab/shares.h"
 #include "simulation/contacts/contact_book.h"
 #include "simulation/contacts/kicked_bodies.h"
 #include "simulation/contacts/midpoint_contacts.h"
@@ -46,7 +47,7 @@ public:
 
     /// J: work of the forces along the distance that the bodies moved.
     double work_of_forces() const { return worked_; }
-    double kinetic_energy() const;
+    double kinetic_energy();
     /// J: work against the forces by displacements other than the moves, which is position correction. From then on these displacements
     /// count as part of the distance moved.
     double count_corrections();
@@ -62,6 +63,8 @@ public:
 
 private:
     void commit(double h, bool mean);
+    double commit_part(double h, bool mean, std::size_t begin, std::size_t end, double worked);
+    double correction_of(std::size_t member);
     Vec3 moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const;
 
     GroupSystem* system_ = nullptr;
@@ -78,6 +81,7 @@ private:
     std::vector<double> shaft_before_;
     std::vector<Mean> means_;
     std::vector<Vec3> started_;  ///< m, positions at the start
+    std::vector<double> sums_;   ///< working memory of sum_parts()
     struct Arms
     {
         Vec3 a, b;         ///< m, in the bodies' frames
@@ -136,11 +140,20 @@ private:
         std::vector<std::uint32_t> members,
             roots;                                  ///< indices into the system's lists
         std::vector<std::uint32_t> bodies, shafts;  ///< host rows
-        std::vector<Contact> contacts;
+        std::uint32_t first = 0, count = 0;         ///< its contacts, in contacts_of_islands_
+        std::span<Contact> contacts;
+        std::span<const std::uint32_t> places;  ///< of the contacts, in touching_
         std::vector<ConstraintRow> rows;
-        std::vector<std::uint32_t> places;  ///< of the contacts, in touching_
         HeldMotion motion;
+        double size = 0;    ///< m, smallest radius of gyration
+        double energy = 0;  ///< J, kinetic, when the manager begins
+        // What the manager did:
+        bool solved = false;
+        int iterations = 0;
+        double work = 0, made = 0, lifted = 0;  ///< J
     };
+    /// Contacts, or bodies, that a thread handles at once.
+    static constexpr std::size_t kPart = kKickedPart;
     std::uint32_t manager_of(const PairState& pair) const;
     bool is_current() const;
     void collect_contacts(double from, double h, bool trial);
@@ -148,12 +161,27 @@ private:
     void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law, bool trial);
     void make_islands(DisjointSets& islands);
     void share_contacts(double h);
+    std::uint32_t island_of(const Contact& contact) const;
     void set_approach(HeldIsland& island, const GroupSystem& system, double h);
     void run(std::span<HeldIsland*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from,
              double to, WorkBook book, bool trial);
-    void solve(HeldIsland& island, GroupSystem& system, double from, double to, WorkBook book, bool trial);
+    void solve(std::span<HeldIsland*> islands, GroupSystem& system, double from, double to, WorkBook book, bool trial);
+    void begin(HeldIsland& island, GroupSystem& system, bool books, bool trial);
+    void call_managers(std::span<HeldIsland*> islands, double from, double to, bool trial);
+    void call_manager(std::uint32_t manager, double from, double to, bool trial);
+    Island describe(HeldIsland& island, double from, double to);
     void advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h);
-    void book_contacts(HeldIsland& island, double gained, WorkBook book);
+    void divide_work(HeldIsland& island) const;
+    void book_contacts(const HeldIsland& island, WorkBook book);
+    void report_paradoxes(const HeldIsland& island, double time);
+    /// Calls job(island) for each, on several threads.
+    template <class Job>
+    void share(std::span<HeldIsland*> islands, const Job& job)
+    {
+        shares_.run(
+            &step_.workers, islands.size(), kPart, [&](std::size_t i) { return islands[i]->bodies.size() + islands[i]->contacts.size(); },
+            [&](std::size_t i) { job(*islands[i]); });
+    }
     void keep(const HeldIsland& island);
     void report_begin(const PairState& pair, const Contact& contact, double time) const;
     void report_impacts(const HeldIsland& island, double time);
@@ -178,6 +206,15 @@ private:
     std::size_t island_count_ = 0;
     MidpointContacts midpoint_;
     std::vector<HeldIsland*> plain_, jointed_;
+    Shares shares_;
+    std::vector<Contact> contacts_of_islands_;   ///< island by island, each in the order of touching_
+    std::vector<std::uint32_t> places_;          ///< parallel: in touching_
+    std::vector<std::uint8_t> paradoxes_;        ///< parallel: whether the contact has Painleve's paradox
+    std::vector<std::uint32_t> island_numbers_;  ///< parallel to touching_; kNoIndex: of no island
+    std::vector<std::uint32_t> ranks_;           ///< parallel to touching_: among the contacts of the island
+    std::vector<std::uint8_t> turning_;          ///< parallel to touching_
+    std::vector<Island> solved_;                 ///< what a manager is given
+    std::vector<HeldIsland*> solved_of_;         ///< parallel
     std::vector<std::uint32_t> midpoint_places_;
     std::vector<std::uint32_t> plain_groups_;
     std::vector<FoundContact> touching_;

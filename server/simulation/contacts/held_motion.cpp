@@ -17,8 +17,8 @@ void HeldMotion::begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std:
     worked_ = since_start_ = 0;
     shaft_before_.resize(roots.size());
     means_.assign(members.size() + roots.size(), Mean{});
-    started_.clear();
-    for (const std::uint32_t i : members) started_.push_back(bodies.position[system.bodies()[i]]);
+    started_.resize(members.size());
+    for (std::size_t k = 0; k < members.size(); ++k) started_[k] = bodies.position[system.bodies()[members[k]]];
     arms_.resize(contacts.size());
     for_parts(workers_, contacts.size(), kKickedPart,
               [&](std::size_t begin, std::size_t end)
@@ -32,27 +32,39 @@ void HeldMotion::begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std:
               });
 }
 
-double HeldMotion::kinetic_energy() const
+double HeldMotion::kinetic_energy()
 {
-    double sum = 0;
-    for (const std::uint32_t i : members_) sum += bodies_->kinetic_energy(system_->bodies()[i]);
-    return sum;
+    return sum_parts(workers_, members_.size(), kKickedPart, sums_,
+                     [&](std::size_t begin, std::size_t end)
+                     {
+                         double sum = 0;
+                         for (std::size_t k = begin; k < end; ++k) sum += bodies_->kinetic_energy(system_->bodies()[members_[k]]);
+                         return sum;
+                     });
 }
 
 double HeldMotion::count_corrections()
 {
-    double lifted = 0;
-    for (std::size_t k = 0; k < members_.size(); ++k)
-    {
-        const std::uint32_t b = system_->bodies()[members_[k]];
-        const Vec3 shift = bodies_->position[b] - started_[k] - means_[k].velocity;
-        // A displacement below the rounding error of the position is not a correction.
-        if (length(shift) <= 0x1p-48 * (length(started_[k]) + length(means_[k].velocity))) continue;
-        means_[k].velocity += shift;
-        lifted -= bodies_->mass[b] * dot(system_->acceleration(members_[k]), shift);
-    }
+    const double lifted = sum_parts(workers_, members_.size(), kKickedPart, sums_,
+                                    [&](std::size_t begin, std::size_t end)
+                                    {
+                                        double sum = 0;
+                                        for (std::size_t k = begin; k < end; ++k) sum -= correction_of(k);
+                                        return sum;
+                                    });
     worked_ -= lifted;
     return lifted;
+}
+
+/// J: work of the forces along the displacement of a member other than its moves.
+double HeldMotion::correction_of(std::size_t k)
+{
+    const std::uint32_t b = system_->bodies()[members_[k]];
+    const Vec3 shift = bodies_->position[b] - started_[k] - means_[k].velocity;
+    // A displacement below the rounding error of the position is not a correction.
+    if (length(shift) <= 0x1p-48 * (length(started_[k]) + length(means_[k].velocity))) return 0;
+    means_[k].velocity += shift;
+    return bodies_->mass[b] * dot(system_->acceleration(members_[k]), shift);
 }
 
 void HeldMotion::kick(double h)
@@ -71,18 +83,29 @@ void HeldMotion::commit(double h, bool mean)
 {
     since_start_ += h;
     if (!books_) return;
-    for (std::size_t k = 0; k < members_.size(); ++k)
-    {
-        const KickedBodies::Speeds speeds = kicked_.speeds(k, mean);
-        means_[k].velocity += speeds.velocity * h;
-        means_[k].momentum += speeds.momentum * h;
-        worked_ += kicked_.power(k, speeds) * h;
-    }
+    if (members_.size() <= kKickedPart)
+        worked_ = commit_part(h, mean, 0, members_.size(), worked_);
+    else
+        worked_ += sum_parts(workers_, members_.size(), kKickedPart, sums_,
+                             [&](std::size_t begin, std::size_t end) { return commit_part(h, mean, begin, end, 0); });
     for (std::size_t k = 0; k < roots_.size(); ++k)
     {
         const double speed = shafts_->speed[system_->roots()[roots_[k]]];
         means_[members_.size() + k].shaft += (mean ? 0.5 * (shaft_before_[k] + speed) : speed) * h;
     }
+}
+
+/// J: `worked` and what the forces do on some members.
+double HeldMotion::commit_part(double h, bool mean, std::size_t begin, std::size_t end, double worked)
+{
+    for (std::size_t k = begin; k < end; ++k)
+    {
+        const KickedBodies::Speeds speeds = kicked_.speeds(k, mean);
+        means_[k].velocity += speeds.velocity * h;
+        means_[k].momentum += speeds.momentum * h;
+        worked += kicked_.power(k, speeds) * h;
+    }
+    return worked;
 }
 
 void HeldMotion::move(double h)

@@ -1,6 +1,8 @@
 #include "simulation/contacts/paradox.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "simulation/contacts/contacts.h"
 
@@ -38,6 +40,20 @@ double pressing_share(const Bodies& bodies, const Contact& c, double h)
     double alone = 0, sliding = 0;
     for (const std::uint32_t b : both) add_couplings(bodies, b, c.point, c.normal, force, alone, sliding);
     return alone > 0 ? sliding / alone : 1;
+}
+
+bool may_jam(const Bodies& bodies, const Contact& c)
+{
+    constexpr double kBound = 3.9;  // less than 4 by more than rounding
+    const auto may = [&](std::uint32_t b)
+    {
+        if (!bodies.dynamic(b)) return false;
+        const Mat3& I = bodies.inverse_inertia_B[b];
+        const auto row = [&](int i) { return std::fabs(I(i, 0)) + std::fabs(I(i, 1)) + std::fabs(I(i, 2)); };
+        const double norm = std::max({row(0), row(1), row(2)});
+        return !(c.friction * c.friction * bodies.mass[b] * length_squared(c.point - bodies.position[b]) * norm < kBound);
+    };
+    return may(c.a.index) || may(c.b.index);
 }
 
 }  // namespace plab::simulation

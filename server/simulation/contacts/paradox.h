@@ -22,4 +22,10 @@ namespace plab::simulation
 /// of h (s), or if neither body can move.
 double pressing_share(const Bodies& bodies, const Contact& contact, double h);
 
+/// False if friction and levers are too small for the paradox, whatever the direction of sliding; cheaper than pressing_share().
+///
+/// With A = (r x n) . I^-1 (r x n) and B = (r x t) . I^-1 (r x t), a body contributes at least 1/m + A - mu sqrt(A B) to n . K j. As
+/// 1/m + A >= 2 sqrt(A / m), that is positive if mu^2 m B < 4, and B is at most |r|^2 times the norm of I^-1.
+bool may_jam(const Bodies& bodies, const Contact& contact);
+
 }  // namespace plab::simulation
