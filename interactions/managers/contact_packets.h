@@ -46,7 +46,7 @@ struct Packet
 };
 
 /// Packets that a thread takes at once: some microseconds of work in a sweep, so that taking it costs little.
-inline constexpr std::size_t kPart = 16;
+inline constexpr std::size_t kPart = 8;
 /// Islands of single lanes are too small to be divided.
 inline constexpr std::size_t kSmallIsland = 1 << 20;
 

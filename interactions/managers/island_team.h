@@ -31,9 +31,10 @@ public:
     IslandTeam(const IslandTeam&) {}
     IslandTeam& operator=(const IslandTeam&) { return *this; }
 
-    /// Calls solve(number, memory) once for each island, in memory that no other thread uses meanwhile. `host`: numbers of rows.
-    template <class Solve>
-    void advance(std::span<const Island> islands, const IslandSize& host, Workers* workers, const Solve& solve);
+    /// Calls solve(number, memory) once for each island, in memory that no other thread uses meanwhile. `host`: numbers of rows;
+    /// divides(number): whether threads can share the loops of that island.
+    template <class Divides, class Solve>
+    void advance(std::span<const Island> islands, const IslandSize& host, Workers* workers, const Divides& divides, const Solve& solve);
     /// Forgets what the memories hold.
     void clear() { slots_.clear(); }
 
@@ -73,13 +74,14 @@ typename IslandTeam<Memory>::Slot& IslandTeam<Memory>::take_slot()
 }
 
 template <class Memory>
-template <class Solve>
-void IslandTeam<Memory>::advance(std::span<const Island> islands, const IslandSize& host, Workers* workers, const Solve& solve)
+template <class Divides, class Solve>
+void IslandTeam<Memory>::advance(std::span<const Island> islands, const IslandSize& host, Workers* workers, const Divides& divides,
+                                 const Solve& solve)
 {
     constexpr std::size_t kWorth = 256;  // contact points
     make_room(islands, host, workers ? static_cast<std::size_t>(workers->threads()) : 1);
     shares_.run(
-        workers, islands.size(), kWorth, [&](std::size_t i) { return islands[i].contacts.size(); },
+        workers, islands.size(), kWorth, [&](std::size_t i) { return islands[i].contacts.size(); }, divides,
         [&](std::size_t i)
         {
             Slot& mine = take_slot();

@@ -84,18 +84,20 @@ void report(Island& island, const Verdict& verdict)
     island.converged = verdict.converged, island.fell_back = verdict.fell_back;
 }
 
-/// Calls solve(number, island, memory) for each island. An interrupted solve leaves its memory in an undefined state, so it is cleared.
-template <class Memory, class Solve>
+/// Calls solve(number, island, memory) for each island (island_team.h). An interrupted solve leaves its memory in an undefined state, so it is cleared.
+template <class Memory, class Divides, class Solve>
 void solve_all(const StepContext& context, const Bodies& bodies, const Shafts& shafts, std::span<Island> islands, IslandTeam<Memory>& team,
-               const Solve& solve)
+               const Divides& divides, const Solve& solve)
 {
-    team.advance(islands, {.bodies = bodies.size(), .shafts = shafts.size()}, context.workers,
+    team.advance(islands, {.bodies = bodies.size(), .shafts = shafts.size()}, context.workers, divides,
                  [&](std::size_t i, Memory& memory)
                  {
                      if (!islands[i].interrupted()) solve(i, islands[i], memory);
                  });
     if (context.interrupted()) team.clear();
 }
+
+bool always(std::size_t) { return true; }
 
 template <class Rows>
 void add_all(const StepContext& context, Row row, std::span<const Island> islands, Rows& rows)
@@ -182,7 +184,7 @@ void solve_all_sequentially(const StepContext& context, Row row, SequentialRows&
 {
     StepChoices choices;
     choices.slop = rows.slop[row], choices.correction_share = rows.overlap_share[row];
-    solve_all(context, bodies, shafts, islands, rows.memory[row],
+    solve_all(context, bodies, shafts, islands, rows.memory[row], always,
               [&](std::size_t, Island& island, StepMemory& memory)
               {
                   Sweeps method(whole(rows.max_iterations[row]), whole(rows.position_iterations[row]), rows.tolerance[row],
@@ -222,11 +224,12 @@ void DirectRows::describe(Schema& s)
 void solve_all_directly(const StepContext& context, Row row, DirectRows& rows, Bodies& bodies, Shafts& shafts, std::span<Island> islands)
 {
     const Solving how{rows.tolerance[row], whole(rows.max_steps[row]), whole(rows.max_iterations[row])};
-    solve_all(context, bodies, shafts, islands, rows.memory[row],
-              [&](std::size_t, Island& island, DirectRows::Memory& memory)
+    const auto is_swept = [&](std::size_t i) { return islands[i].contacts.size() > static_cast<std::size_t>(rows.max_contacts[row]); };
+    solve_all(context, bodies, shafts, islands, rows.memory[row], is_swept,
+              [&](std::size_t i, Island& island, DirectRows::Memory& memory)
               {
                   memory.step.problem.workers = context.workers;
-                  if (island.contacts.size() > static_cast<std::size_t>(rows.max_contacts[row]))
+                  if (is_swept(i))
                   {
                       Sweeps method(how.most_sweeps, how.most_sweeps, std::max(1e-6, how.tolerance), 1);
                       report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
@@ -269,7 +272,7 @@ void solve_all_softly(const StepContext& context, Row row, SoftStepRows& rows, B
     const SoftChoices choices{whole(rows.substeps[row]), whole(rows.relax_iterations[row]),
                               rows.hertz[row],           rows.damping_ratio[row],
                               rows.push_speed[row],      rows.tolerance[row]};
-    solve_all(context, bodies, shafts, islands, rows.memory[row],
+    solve_all(context, bodies, shafts, islands, rows.memory[row], always,
               [&](std::size_t, Island& island, SoftMemory& memory)
               {
                   memory.step.problem.workers = context.workers;
@@ -364,7 +367,7 @@ void solve_all_automatically(const StepContext& context, Row row, AutomaticRows&
     choices.clear();
     for (const Island& island : islands)
         choices.push_back(choose_method(island, bodies, static_cast<std::size_t>(rows.max_points[row]), rows.heavy[row]));
-    solve_all(context, bodies, shafts, islands, rows.memory[row],
+    solve_all(context, bodies, shafts, islands, rows.memory[row], [&](std::size_t i) { return !choices[i].direct; },
               [&](std::size_t i, Island& island, AutomaticRows::Memory& memory)
               { advance_by_choice(choices[i].direct, island, bodies, shafts, memory, context.workers); });
     for (std::size_t i = 0; i < islands.size(); ++i)

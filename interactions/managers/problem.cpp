@@ -143,11 +143,11 @@ void Problem::set_point(Point& p, const Contact& c, const Bodies& bodies) const
 std::uint8_t Problem::marks_of(const Point& p, const Contact& c, const Bodies& bodies) const
 {
     const auto is_carried = [&](std::uint32_t mover, Ref r) { return mover == kNoIndex && bodies.motion[r.index] != Motion::Static; };
-    int marks = 0;
-    if (c.approach > 0) marks |= c.restitution > 0 ? kMeets | kBounces : kMeets;
-    if (c.turning > 0) marks |= kTurns;
-    if (is_carried(p.a, c.a) || is_carried(p.b, c.b)) marks |= kCarried;
-    return static_cast<std::uint8_t>(marks);
+    int out = 0;
+    if (c.approach > 0) out |= c.restitution > 0 ? kMeets | kBounces : kMeets;
+    if (c.turning > 0) out |= kTurns;
+    if (is_carried(p.a, c.a) || is_carried(p.b, c.b)) out |= kCarried;
+    return static_cast<std::uint8_t>(out);
 }
 
 void Problem::add_line(const ConstraintRow& row, std::uint32_t index)

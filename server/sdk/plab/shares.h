@@ -12,15 +12,15 @@
 namespace plab
 {
 
-/// A job runs on one thread, unless it is so large that the others would have to wait for it: then it has all threads, to divide its own
-/// loops (parts.h). Its result must not depend on that; so the division may depend on the number of threads.
+/// A job runs on one thread. One that can divide its own loops (parts.h), and is so large that the other threads would have to wait for it,
+/// has all of them instead. Its result must not depend on that; so the division may depend on the number of threads.
 class Shares
 {
 public:
-    /// Calls job(i) once for each i < count. size(i): of a job, in any unit. Jobs whose sizes add up to `worth`, which should be some tens
-    /// of microseconds of work, are taken by a thread at once.
-    template <class Size, class Job>
-    void run(Workers* workers, std::size_t count, std::size_t worth, const Size& size, const Job& job)
+    /// Calls job(i) once for each i < count. size(i): of a job, in any unit; divides(i): whether it can divide its loops. Jobs whose sizes add
+    /// up to `worth`, which should be some tens of microseconds of work, are taken by a thread at once.
+    template <class Size, class Divides, class Job>
+    void run(Workers* workers, std::size_t count, std::size_t worth, const Size& size, const Divides& divides, const Job& job)
     {
         const std::size_t threads = workers ? static_cast<std::size_t>(workers->threads()) : 1;
         if (threads < 2 || count < 2)
@@ -29,18 +29,21 @@ public:
             return;
         }
         sort(count, size);
-        std::size_t left = 0, divided = 0;
+        std::size_t left = 0, kept = 0, taken = worth;
         for (std::size_t i = 0; i < count; ++i) left += size(i);
-        for (; divided < count && size(order_[divided]) > worth && size(order_[divided]) * threads > left; ++divided)
-            left -= size(order_[divided]), job(std::size_t{order_[divided]});
         begins_.clear();
-        for (std::size_t k = divided, taken = worth; k < count; ++k)
+        for (const std::uint32_t i : order_)
         {
-            if (taken >= worth) begins_.push_back(k), taken = 0;
-            taken += size(order_[k]) + 1;
+            if (size(i) > worth && size(i) * threads > left && divides(i))
+            {
+                left -= size(i), job(std::size_t{i});
+                continue;
+            }
+            if (taken >= worth) begins_.push_back(kept), taken = 0;
+            taken += size(i) + 1, order_[kept++] = i;
         }
         const std::size_t batches = begins_.size();
-        begins_.push_back(count);
+        begins_.push_back(kept);
         workers->run(batches,
                      [&](std::size_t b)
                      {

@@ -180,7 +180,7 @@ private:
     {
         shares_.run(
             &step_.workers, islands.size(), kPart, [&](std::size_t i) { return islands[i]->bodies.size() + islands[i]->contacts.size(); },
-            [&](std::size_t i) { job(*islands[i]); });
+            [](std::size_t) { return true; },            [&](std::size_t i) { job(*islands[i]); });
     }
     void keep(const HeldIsland& island);
     void report_begin(const PairState& pair, const Contact& contact, double time) const;

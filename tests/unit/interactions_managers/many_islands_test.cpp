@@ -163,7 +163,7 @@ TEST_CASE("shares: each job once; a large one has all threads, and a small one i
         for (int call = 1; call <= 200; ++call)
         {
             shares.run(
-                &pool, sizes.size(), 100, [&](std::size_t i) { return sizes[i]; },
+                &pool, sizes.size(), 100, [&](std::size_t i) { return sizes[i]; }, [](std::size_t i) { return i != 4; },
                 [&](std::size_t i)
                 {
                     ++done[i];
