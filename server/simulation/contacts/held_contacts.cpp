@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "simulation/contacts/held_islands.h"
+#include "simulation/contacts/paradox.h"
 
 namespace plab::simulation
 {
@@ -91,82 +92,105 @@ void HeldIslands::pass_on(PairState& pair, std::uint32_t known, std::span<const 
 
 // Contacts ------------------------------------------------------------------------------------------------------------
 
-void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law, bool trial)
-{
-    const world::HostTables& host = step_.world.host();
-    const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
-    const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
-    f.contact.friction = (own ? own : &law)->friction, f.contact.restitution = (own ? own : &law)->restitution;
-    KnownContact& known = contacts_.cache().contact_of(pair, f.contact.feature);
-    f.contact.id = known.id, f.contact.impulse = known.warm_start(trial);
-    f.contact.depth -= known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
-    f.contact.resting = true;
-}
-
 /// Collects the contacts of the held groups at the present state. Those of detectors that persist are known if nothing has moved since the
 /// last detection. Contacts of the other detectors are detected anew, because they depend on which pairs have come to rest in the meantime:
 /// this way the result is a function of the state alone, whatever happened before.
 void HeldIslands::collect_contacts(double from, double h, bool trial)
 {
-    touching_.clear(), pair_of_contact_.clear();
+    touching_.clear();
+    run_count_ = 0;
     const auto& detectors = contacts_.detectors();
-    std::size_t near = 0;
-    const auto pair_of = [&](const FoundContact& f)
-    { return contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world, near); };
-    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return !d.persists(); }),
-               persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return d.persists(); });
+    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); }),
+               persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); });
     const bool known = persists && from == 0 && is_current();
     if (!known || locates)
     {
         contacts_.touching_pairs_of(held_, touching_, h);
         contacts_.warm_start(touching_, trial);
     }
-    if (!known)
-    {
-        for (const FoundContact& f : touching_) pair_of_contact_.push_back(pair_of(f));
-        return;
-    }
-    std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
-    for (const FoundContact& f : touching_) pair_of_contact_.push_back(pair_of(f));
-    add_known_contacts(trial);
+    if (known) std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
+    share_touching(h);
+    if (known) share_known(h, trial);
 }
 
-/// Adds what the last detection found of persistent pairs. Both lists are sorted by detector, a and b.
-void HeldIslands::add_known_contacts(bool trial)
+void HeldIslands::share_touching(double h)
 {
-    std::size_t at = 0;
+    std::size_t near = 0;
+    for (std::size_t i = 0, end = 0; i < touching_.size(); i = end)
+    {
+        for (end = i; end < touching_.size() && same_pair(touching_[end], touching_[i]);) ++end;
+        HeldIsland* const island = begin_run(touching_[i], contacts_.find_pair(touching_[i], near));
+        if (!island) continue;
+        for (std::size_t k = i; k < end; ++k)
+            island->contacts.push_back(touching_[k].contact), island->slots.push_back(touching_[k].slot);
+        end_run(*island, h);
+    }
+}
+
+/// Shares out what the last detection found of persistent pairs. Both lists are sorted by detector, a and b.
+void HeldIslands::share_known(double h, bool trial)
+{
+    std::vector<FoundContact>& found = contacts_.found();
     std::uint32_t law_detector = kNoIndex;
     SurfaceLaw law;
+    std::size_t at = 0;
     for (PairState& pair : contacts_.cache().pairs())
     {
-        at = contacts_.first_of_pair(pair, at);
-        for (; at < contacts_.found().size() && contacts_.is_of_pair(contacts_.found()[at], pair); ++at)
-        {
-            if (!pair.resting || !contacts_.detectors()[contacts_.found()[at].detector].persists()) continue;
-            FoundContact& f = touching_.emplace_back(contacts_.found()[at]);
-            if (f.detector != law_detector) law = contacts_.response_law(f.detector), law_detector = f.detector;
-            fill(f, pair, law, trial);
-            pair_of_contact_.push_back(&pair);
-        }
+        const std::size_t begin = contacts_.first_of_pair(pair, at);
+        for (at = begin; at < found.size() && contacts_.is_of_pair(found[at], pair);) ++at;
+        if (at == begin || !pair.resting || !contacts_.detectors()[found[begin].detector].persists()) continue;
+        HeldIsland* const island = begin_run(found[begin], &pair);
+        if (!island) continue;
+        if (found[begin].detector != law_detector)
+            law_detector = found[begin].detector, law = contacts_.response_law(law_detector);
+        add_known(*island, std::span(found).subspan(begin, at - begin), pair, law, trial);
+        end_run(*island, h);
     }
 }
 
-void HeldIslands::share_contacts(double h)
+void HeldIslands::add_known(HeldIsland& island, std::span<FoundContact> found, PairState& pair, const SurfaceLaw& law, bool trial)
+{
+    const world::HostTables& host = step_.world.host();
+    const std::uint32_t ma = host.bodies.material[pair.a.index], mb = host.bodies.material[pair.b.index];
+    const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
+    const SurfaceLaw& valid = own ? *own : law;
+    for (FoundContact& f : found)
+    {
+        KnownContact& known = contacts_.cache().contact_of(pair, f);
+        Contact& c = island.contacts.emplace_back(f.contact);
+        c.friction = valid.friction, c.restitution = valid.restitution;
+        c.id = known.id, c.impulse = known.warm_start(trial);
+        c.depth -= known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
+        c.resting = true;
+        island.slots.push_back(f.slot);
+    }
+}
+
+/// The island to which the contacts of a pair belong, with a run for them; null if it is not held in this advance.
+HeldIslands::HeldIsland* HeldIslands::begin_run(const FoundContact& first, PairState* pair)
 {
     const Bodies& bodies = step_.world.host().bodies;
-    for (std::uint32_t i = 0; i < touching_.size(); ++i)
+    const std::uint32_t order = run_count_++;
+    for (const Ref r : {first.contact.a, first.contact.b})
     {
-        const Contact& c = touching_[i].contact;
-        std::uint32_t number = kNoIndex;
-        for (const Ref r : {c.a, c.b})
-            if (bodies.dynamic(r.index) && step_.groups.of(r) != kNoIndex && number == kNoIndex)
-                number = island_of_group_[step_.groups.of(r)];
+        if (!bodies.dynamic(r.index) || step_.groups.of(r) == kNoIndex) continue;
+        const std::uint32_t number = island_of_group_[step_.groups.of(r)];
         if (number == kNoIndex) continue;
         HeldIsland& island = *islands_[number];
-        island.turns = island.turns || (!island.has_rows && midpoint_.turns(c, h));
-        island.contacts.push_back(c);
-        island.places.push_back(i);
+        island.runs.push_back({pair, first.detector, static_cast<std::uint32_t>(island.contacts.size()), 0, order});
+        return &island;
     }
+    return nullptr;
+}
+
+void HeldIslands::end_run(HeldIsland& island, double h)
+{
+    Run& run = island.runs.back();
+    run.end = static_cast<std::uint32_t>(island.contacts.size());
+    const std::span<const Contact> own = island.of(run);
+    island.driven = island.driven || midpoint_.is_driven(own.front());
+    if (island.turns || island.has_rows) return;
+    island.turns = std::any_of(own.begin(), own.end(), [&](const Contact& c) { return midpoint_.turns(c, h); });
 }
 
 /// Sets Contact::approach, the closing speed of impacts. A contact counts as an impact if it had no impulse in the last step and closes
@@ -183,55 +207,77 @@ void HeldIslands::set_approach(HeldIsland& island, const GroupSystem& system, do
         const double speed = contacts_.normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
         const double share = c.impulse == Vec3{} ? 0.5 : 2;
         c.approach = speed < -std::max(least, share * given) ? -speed : 0.0;
+        island.meets = island.meets || c.approach > 0;
     }
     for (const std::uint32_t b : island.bodies) given_speed_[b] = 0;
 }
 
-void HeldIslands::keep(const HeldIsland& island)
+void HeldIslands::report_paradoxes(HeldIsland& island, double time)
 {
-    for (std::size_t i = 0; i < island.contacts.size(); ++i)
+    const Bodies& bodies = step_.world.host().bodies;
+    wedging_.resize(bodies.size(), 0.0);
+    for (const std::uint32_t b : island.bodies) wedging_[b] = wedging(bodies, b);
+    for (const Run& run : island.runs)
+        for (const Contact& c : island.of(run))
+        {
+            const double reach = std::max(wedging_[c.a.index] * length_squared(c.point - bodies.position[c.a.index]),
+                                          wedging_[c.b.index] * length_squared(c.point - bodies.position[c.b.index]));
+            if (!excludes_paradox(c.friction, reach) && contacts_.is_paradox(c)) contacts_.report_paradox(c, *run.pair, time);
+        }
+    for (const std::uint32_t b : island.bodies) wedging_[b] = 0;
+}
+
+/// Notes releases and keeps the impulses for the next step.
+void HeldIslands::keep(HeldIsland& island, double from, double h)
+{
+    for (const Run& run : island.runs)
     {
-        const Contact& c = island.contacts[i];
-        PairState& pair = *pair_of_contact_[island.places[i]];
+        const std::span<Contact> own = island.of(run);
+        if (is_released(island, run, from, h))
+            for (Contact& c : own) c.impulse = {};
         // The impulse of an impact is not an estimate of how hard the contact will press in the next step.
-        contacts_.cache().contact_of(pair, c.feature).impulse = c.approach > 0 ? Vec3{} : c.impulse;
-        pair.normal = c.normal;
+        for (std::uint32_t i = run.first; i < run.end; ++i)
+            kept(island, run, i).impulse = island.contacts[i].approach > 0 ? Vec3{} : island.contacts[i].impulse;
+        run.pair->normal = own.back().normal;
     }
 }
 
-/// Finds pairs that pressed in the last step and whose points all separate now.
-void HeldIslands::note_releases(HeldIsland& island, double from, double h) const
+KnownContact& HeldIslands::kept(const HeldIsland& island, const Run& run, std::uint32_t contact)
 {
-    for (std::size_t i = 0, end = 0; i < island.contacts.size(); i = end)
+    return contacts_.cache().contact_of(*run.pair, island.contacts[contact].feature, island.slots[contact]);
+}
+
+/// Whether a pair pressed in the last step and does so no more; notes its release if all its points separate.
+bool HeldIslands::is_released(HeldIsland& island, const Run& run, double from, double h)
+{
+    ContactBook::Pressing pressing = contacts_.pressing_of(*run.pair);
+    bool is_hit = false;
+    for (std::uint32_t i = run.first; i < run.end; ++i)
     {
-        PairState& pair = *pair_of_contact_[island.places[i]];
-        ContactBook::Pressing pressing;
-        bool is_hit = false;
-        for (end = i; end < island.contacts.size() && pair_of_contact_[island.places[end]] == &pair; ++end)
-        {
-            Contact c = island.contacts[end];
-            c.depth = touching_[island.places[end]].contact.depth;
-            contacts_.add_point(pressing, pair, c, island.motion.separation_speed(end), h);
-            is_hit = is_hit || c.approach > 0;
-        }
-        if (is_hit) pressing.now = HUGE_VAL;  // a pair with an impact is not released
-        if (!contacts_.note_release(pair, island.contacts[i], pressing, from, h)) continue;
-        for (std::size_t k = i; k < end; ++k) island.contacts[k].impulse = {};
+        pressing.add_impulse(island.contacts[i], kept(island, run, i).impulse);
+        is_hit = is_hit || island.contacts[i].approach > 0;
     }
+    if (is_hit) pressing.now = HUGE_VAL;  // a pair with an impact is not released
+    if (!contacts_.stops_pressing(*run.pair, pressing)) return false;
+    for (std::uint32_t i = run.first; i < run.end; ++i)
+        pressing.add_speed(island.contacts[i], kept(island, run, i).impulse, island.motion.start_depth(i),
+                           island.motion.separation_speed(i), h);
+    contacts_.note_release(*run.pair, island.contacts[run.first], pressing, from, h);
+    return true;
 }
 
 void HeldIslands::report_impacts(const HeldIsland& island, double time)
 {
-    for (std::size_t i = 0; i < island.contacts.size(); ++i)
-    {
-        const Contact& c = island.contacts[i];
-        if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
-        PairState& pair = *pair_of_contact_[island.places[i]];
-        if (pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, touching_[island.places[i]].contact, time);
-        Event e = contacts_.contact_event("contact.impact", pair, time, c, c.impulse);
-        e.contact->depth = touching_[island.places[i]].contact.depth;
-        step_.emit(std::move(e));
-    }
+    for (const Run& run : island.runs)
+        for (std::uint32_t i = run.first; i < run.end; ++i)
+        {
+            Contact c = island.contacts[i];
+            if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
+            c.depth = island.motion.start_depth(i);
+            if (PairState& pair = *run.pair; pair.ahead)
+                pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, c, time);
+            step_.emit(contacts_.contact_event("contact.impact", *run.pair, time, c, c.impulse));
+        }
 }
 
 }  // namespace plab::simulation

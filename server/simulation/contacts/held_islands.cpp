@@ -1,6 +1,7 @@
 #include "simulation/contacts/held_islands.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "simulation/motion/component_call.h"
 
@@ -117,8 +118,8 @@ void HeldIslands::make_islands(DisjointSets& islands)
             number = static_cast<std::uint32_t>(island_count_++);
             if (islands_.size() < island_count_) islands_.push_back(std::make_unique<HeldIsland>());
             HeldIsland& fresh = *islands_[number];
-            fresh.manager = manager_of_island_[root], fresh.has_rows = fresh.turns = false;
-            fresh.groups.clear(), fresh.contacts.clear(), fresh.places.clear();
+            fresh.manager = manager_of_island_[root], fresh.has_rows = false;
+            fresh.clear();
         }
         island_of_group_[g] = number;
         numbered_.push_back(root), numbered_.push_back(g);
@@ -136,7 +137,6 @@ void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets&
     if (!(to > from)) return;
     make_islands(islands);
     collect_contacts(from, to - from, trial);
-    share_contacts(to - from);
     plain_.clear(), jointed_.clear(), plain_groups_.clear();
     for (std::size_t i = 0; i < island_count_; ++i)
     {
@@ -161,10 +161,12 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
     system.hold_rows(true);
     system.begin(from, to, book, trial ? nullptr : &step_);
     for (HeldIsland* island : islands) island->members.clear(), island->roots.clear(), island->bodies.clear(), island->shafts.clear();
+    member_of_body_.resize(step_.world.host().bodies.size());
     for (std::uint32_t i = 0; i < system.bodies().size(); ++i)
     {
         const std::uint32_t b = system.bodies()[i], number = island_of_group_[step_.groups.group_of_body[b]];
         if (number == kNoIndex) continue;  // observed only
+        member_of_body_[b] = static_cast<std::uint32_t>(islands_[number]->members.size());
         islands_[number]->members.push_back(i), islands_[number]->bodies.push_back(b);
     }
     for (std::uint32_t i = 0; i < system.roots().size(); ++i)
@@ -194,21 +196,25 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
 /// islands with kinematic bodies.
 void HeldIslands::advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h)
 {
-    const auto stays = [this](const Contact& c) { return c.approach > 0 || midpoint_.is_driven(c); };
-    midpoint_places_.clear();
+    turning_.clear(), at_midpoint_.clear();
     for (HeldIsland* island : islands)
     {
-        island->turns = island->turns && std::none_of(island->contacts.begin(), island->contacts.end(), stays);
+        island->turns = island->turns && !island->meets && !island->driven;
         if (!island->turns) continue;
         midpoint_.advance_to_midpoint(system, island->members, h);
-        midpoint_places_.insert(midpoint_places_.end(), island->places.begin(), island->places.end());
+        for (const Run& run : island->runs) turning_.push_back({island, &run});
     }
-    if (midpoint_places_.empty()) return;
+    if (turning_.empty()) return;
     system.evaluate(0, 0);
-    std::sort(midpoint_places_.begin(), midpoint_places_.end());
-    midpoint_.update_contacts(midpoint_places_, touching_, h);
-    for (HeldIsland* island : islands)
-        for (std::size_t i = 0; island->turns && i < island->places.size(); ++i) island->contacts[i] = touching_[island->places[i]].contact;
+    std::sort(turning_.begin(), turning_.end(), [](const TurningRun& x, const TurningRun& y) { return x.run->order < y.run->order; });
+    for (const TurningRun& t : turning_)
+        for (const Contact& c : t.island->of(*t.run)) at_midpoint_.emplace_back(c, t.run->detector);
+    midpoint_places_.resize(at_midpoint_.size());
+    std::iota(midpoint_places_.begin(), midpoint_places_.end(), 0u);
+    midpoint_.update_contacts(midpoint_places_, at_midpoint_, h);
+    std::size_t at = 0;
+    for (const TurningRun& t : turning_)
+        for (Contact& c : t.island->of(*t.run)) c = at_midpoint_[at++].contact;
 }
 
 void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, double to, WorkBook book, bool trial)
@@ -221,12 +227,9 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
         system.rows()->begin_hold(system.context());
         held.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
     }
-    if (!trial)
-        for (std::size_t i = 0; i < held.contacts.size(); ++i)
-            if (contacts_.is_paradox(held.contacts[i]))
-                contacts_.report_paradox(held.contacts[i], *pair_of_contact_[held.places[i]], step_.frame.start_time + from);
-    held.motion.begin(system, host.bodies, host.shafts, held.members, held.roots, held.contacts, held.rows, book.work != nullptr,
-                      step_.workers);
+    if (!trial) report_paradoxes(held, step_.frame.start_time + from);
+    held.motion.begin(system, host.bodies, host.shafts, held.members, member_of_body_, held.roots, held.contacts, held.rows,
+                      book.work != nullptr, step_.workers);
     Island island;
     island.interruption = step_.frame.interruption;
     island.h = to - from, island.time = step_.frame.start_time + from;
@@ -253,9 +256,8 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
     step_.report.swept_rows += rows * (static_cast<std::size_t>(1 + island.iterations) + rows / kFactored);
     if (trial) return;
     step_.report.worst_residual = std::max(step_.report.worst_residual, island.residual);
-    note_releases(held, from, to - from);
-    keep(held);
-    report_impacts(held, island.time);
+    keep(held, from, to - from);
+    if (held.meets) report_impacts(held, island.time);
 }
 
 /// Books the work of the manager. Contacts dissipate energy, so on bodies that nothing else drives their work must not be positive, apart
@@ -263,15 +265,9 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
 /// unexplained part of the ledger (ContactEnergy::made).
 void HeldIslands::book_contacts(HeldIsland& island, double gained, WorkBook book)
 {
-    const Bodies& bodies = step_.world.host().bodies;
     const double lifted = island.motion.count_corrections();
     const double work = gained - island.motion.work_of_forces();
-    const bool driven = !island.rows.empty() || std::any_of(island.contacts.begin(), island.contacts.end(),
-                                                            [&](const Contact& c) {
-                                                                return bodies.motion[c.a.index] == Motion::Kinematic ||
-                                                                       bodies.motion[c.b.index] == Motion::Kinematic;
-                                                            });
-    const double made = driven ? 0.0 : std::max(0.0, work - lifted);
+    const double made = island.driven || !island.rows.empty() ? 0.0 : std::max(0.0, work - lifted);
     (*book.work)[island.manager] += book.sign * (work - made);
     ContactEnergy& own = step_.contact_energy[island.manager];
     own.made += book.sign * made, own.lifted += book.sign * lifted;

@@ -32,15 +32,17 @@ namespace plab::simulation
 class HeldMotion final : public IslandMotion
 {
 public:
-    /// `members`: indices into system.bodies().
+    /// `members`: indices into system.bodies(); `member_of_body`: by host row, the place in it; of other bodies any number.
     void begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std::span<const std::uint32_t> members,
-               std::span<const std::uint32_t> roots, std::span<Contact> contacts, std::span<ConstraintRow> rows, bool books,
-               Workers& workers);
+               std::span<const std::uint32_t> member_of_body, std::span<const std::uint32_t> roots, std::span<Contact> contacts,
+               std::span<ConstraintRow> rows, bool books, Workers& workers);
     void kick(double h) override;
     void move(double h) override;
     void move_mean(double h) override;
     /// m/s: separation speed of a contact's two material points at their present positions.
     double separation_speed(std::size_t contact) const;
+    /// m: of a contact, at the start.
+    double start_depth(std::size_t contact) const { return arms_.empty() ? contacts_[contact].depth : arms_[contact].depth; }
     void refresh_rows() override;
     void refresh_depths() override;
 
@@ -62,12 +64,14 @@ public:
 
 private:
     void commit(double h, bool mean);
+    Vec3 arm(std::uint32_t body, const Vec3& point) const;
+    void find_arms();
     Vec3 moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const;
 
     GroupSystem* system_ = nullptr;
     Bodies* bodies_ = nullptr;
     Shafts* shafts_ = nullptr;
-    std::span<const std::uint32_t> members_;
+    std::span<const std::uint32_t> members_, member_of_body_;
     std::span<const std::uint32_t> roots_;  ///< indices into system.roots()
     std::span<Contact> contacts_;
     std::span<ConstraintRow> rows_;
@@ -77,14 +81,14 @@ private:
     KickedBodies kicked_;
     std::vector<double> shaft_before_;
     std::vector<Mean> means_;
-    std::vector<Vec3> started_;  ///< m, positions at the start
+    std::vector<Vec3> started_;         ///< m, positions at the start
+    std::vector<Quat> started_turned_;  ///< orientations at the start
     struct Arms
     {
         Vec3 a, b;         ///< m, in the bodies' frames
-        Vec3 point;        ///< W, at the start
         double depth = 0;  ///< m, at the start
     };
-    std::vector<Arms> arms_;
+    std::vector<Arms> arms_;  ///< of the contacts; empty until a manager asks for their depths
 };
 
 class HeldIslands
@@ -131,33 +135,56 @@ private:
     {
         std::uint32_t manager = kNoIndex;  ///< component
         bool has_rows = false;
-        bool turns = false;  ///< some body moves along a curved surface
+        bool turns = false;   ///< some body moves along a curved surface
+        bool driven = false;  ///< some contact is one of a kinematic body
+        bool meets = false;   ///< some contact is an impact
         std::vector<std::uint32_t> groups;
         std::vector<std::uint32_t> members,
             roots;                                  ///< indices into the system's lists
         std::vector<std::uint32_t> bodies, shafts;  ///< host rows
         std::vector<Contact> contacts;
         std::vector<ConstraintRow> rows;
-        std::vector<std::uint32_t> places;  ///< of the contacts, in touching_
+        /// The contacts of a pair, which follow one another.
+        struct Run
+        {
+            PairState* pair = nullptr;
+            std::uint32_t detector = 0;
+            std::uint32_t first = 0, end = 0;  ///< in `contacts`
+            std::uint32_t order = 0;           ///< number of the pair among those of all islands
+        };
+        std::vector<Run> runs;
+        std::vector<std::uint32_t> slots;  ///< of each contact: FoundContact::slot
         HeldMotion motion;
+
+        void clear()
+        {
+            turns = driven = meets = false;
+            groups.clear(), contacts.clear(), runs.clear(), slots.clear();
+        }
+        std::span<Contact> of(const Run& run) { return std::span(contacts).subspan(run.first, run.end - run.first); }
     };
+    using Run = HeldIsland::Run;
     std::uint32_t manager_of(const PairState& pair) const;
     bool is_current() const;
     void collect_contacts(double from, double h, bool trial);
-    void add_known_contacts(bool trial);
-    void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law, bool trial);
+    void share_touching(double h);
+    void share_known(double h, bool trial);
+    HeldIsland* begin_run(const FoundContact& first, PairState* pair);
+    void end_run(HeldIsland& island, double h);
+    void add_known(HeldIsland& island, std::span<FoundContact> found, PairState& pair, const SurfaceLaw& law, bool trial);
     void make_islands(DisjointSets& islands);
-    void share_contacts(double h);
     void set_approach(HeldIsland& island, const GroupSystem& system, double h);
+    void report_paradoxes(HeldIsland& island, double time);
     void run(std::span<HeldIsland*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from,
              double to, WorkBook book, bool trial);
     void solve(HeldIsland& island, GroupSystem& system, double from, double to, WorkBook book, bool trial);
     void advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h);
     void book_contacts(HeldIsland& island, double gained, WorkBook book);
-    void keep(const HeldIsland& island);
+    void keep(HeldIsland& island, double from, double h);
+    KnownContact& kept(const HeldIsland& island, const Run& run, std::uint32_t contact);
+    bool is_released(HeldIsland& island, const Run& run, double from, double h);
     void report_begin(const PairState& pair, const Contact& contact, double time) const;
     void report_impacts(const HeldIsland& island, double time);
-    void note_releases(HeldIsland& island, double from, double h) const;
     void find_yielding_rows();
     static void report_rows(const HeldIsland& island, GroupSystem& system, double h, WorkBook book);
     double mobility_of(std::uint32_t root) const;
@@ -178,10 +205,20 @@ private:
     std::size_t island_count_ = 0;
     MidpointContacts midpoint_;
     std::vector<HeldIsland*> plain_, jointed_;
-    std::vector<std::uint32_t> midpoint_places_;
+    /// A pair of an island that is advanced to the midpoint.
+    struct TurningRun
+    {
+        HeldIsland* island = nullptr;
+        const Run* run = nullptr;
+    };
+    std::vector<TurningRun> turning_;
+    std::vector<FoundContact> at_midpoint_;      ///< contacts of turning_
+    std::vector<std::uint32_t> midpoint_places_;  ///< of at_midpoint_
     std::vector<std::uint32_t> plain_groups_;
-    std::vector<FoundContact> touching_;
-    std::vector<PairState*> pair_of_contact_;
+    std::vector<FoundContact> touching_;         ///< detected for this advance
+    std::uint32_t run_count_ = 0;                ///< pairs in all islands
+    std::vector<std::uint32_t> member_of_body_;  ///< by host row, for HeldMotion::begin
+    std::vector<double> wedging_;                ///< 1/m^2, by host row, of the members of one island; else 0 (paradox.h)
     std::vector<PairState> fresh_;
     std::vector<std::size_t> first_found_;  ///< parallel to fresh_
     std::vector<double> shaft_mobility_;

@@ -1,6 +1,8 @@
 #include "simulation/contacts/paradox.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "simulation/contacts/contacts.h"
 
@@ -38,6 +40,16 @@ double pressing_share(const Bodies& bodies, const Contact& c, double h)
     double alone = 0, sliding = 0;
     for (const std::uint32_t b : both) add_couplings(bodies, b, c.point, c.normal, force, alone, sliding);
     return alone > 0 ? sliding / alone : 1;
+}
+
+double wedging(const Bodies& bodies, std::uint32_t body)
+{
+    if (!bodies.dynamic(body)) return 0;
+    // No eigenvalue is larger than the largest sum of a row.
+    const Mat3& A = bodies.inverse_inertia_B[body];
+    double most = 0;
+    for (int i = 0; i < 3; ++i) most = std::max(most, std::fabs(A(i, 0)) + std::fabs(A(i, 1)) + std::fabs(A(i, 2)));
+    return bodies.mass[body] * most;
 }
 
 }  // namespace plab::simulation
