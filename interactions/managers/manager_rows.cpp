@@ -84,7 +84,8 @@ void report(Island& island, const Verdict& verdict)
     island.converged = verdict.converged, island.fell_back = verdict.fell_back;
 }
 
-/// Calls solve(number, island, memory) for each island (island_team.h). An interrupted solve leaves its memory in an undefined state, so it is cleared.
+/// Calls solve(number, island, memory) for each island (island_team.h). An interrupted solve leaves its memory in an undefined state, so it
+/// is cleared.
 template <class Memory, class Divides, class Solve>
 void solve_all(const StepContext& context, const Bodies& bodies, const Shafts& shafts, std::span<Island> islands, IslandTeam<Memory>& team,
                const Divides& divides, const Solve& solve)
@@ -367,9 +368,10 @@ void solve_all_automatically(const StepContext& context, Row row, AutomaticRows&
     choices.clear();
     for (const Island& island : islands)
         choices.push_back(choose_method(island, bodies, static_cast<std::size_t>(rows.max_points[row]), rows.heavy[row]));
-    solve_all(context, bodies, shafts, islands, rows.memory[row], [&](std::size_t i) { return !choices[i].direct; },
-              [&](std::size_t i, Island& island, AutomaticRows::Memory& memory)
-              { advance_by_choice(choices[i].direct, island, bodies, shafts, memory, context.workers); });
+    solve_all(
+        context, bodies, shafts, islands, rows.memory[row], [&](std::size_t i) { return !choices[i].direct; },
+        [&](std::size_t i, Island& island, AutomaticRows::Memory& memory)
+        { advance_by_choice(choices[i].direct, island, bodies, shafts, memory, context.workers); });
     for (std::size_t i = 0; i < islands.size(); ++i)
     {
         note_method(context, row, rows, choices[i]);

@@ -36,7 +36,8 @@ struct SequentialRows
 
     void describe(Schema& schema);
 };
-void solve_all_sequentially(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts, std::span<Island> islands);
+void solve_all_sequentially(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts,
+                            std::span<Island> islands);
 
 struct DirectRows
 {
@@ -98,7 +99,8 @@ struct AutomaticRows
 
     void describe(Schema& schema);
 };
-void solve_all_automatically(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Shafts& shafts, std::span<Island> islands);
+void solve_all_automatically(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Shafts& shafts,
+                             std::span<Island> islands);
 
 /// The same for a single island.
 inline void solve_sequential(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts, Island& island)

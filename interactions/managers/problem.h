@@ -82,8 +82,8 @@ public:
     void apply_same_impulses();
     /// Writes the velocities and the sums of the impulses to the tables.
     void write_speeds(Bodies& bodies, Shafts& shafts);
-    /// The same with the sums that follow from the movers' velocities, which sweeps have changed impulse by impulse: m (v - v0), I (w - w0).
-    /// They equal those of apply_impulses() but for rounding, without a walk over all points. Returns J: the kinetic energy.
+    /// The same with the sums that follow from the movers' velocities, which sweeps have changed impulse by impulse: m (v - v0), I (w -
+    /// w0). They equal those of apply_impulses() but for rounding, without a walk over all points. Returns J: the kinetic energy.
     double write_swept_speeds(Bodies& bodies, Shafts& shafts);
 
     Vec3 relative_velocity(const Point& p) const;  ///< u, m/s

@@ -17,8 +17,8 @@ namespace plab
 class Shares
 {
 public:
-    /// Calls job(i) once for each i < count. size(i): of a job, in any unit; divides(i): whether it can divide its loops. Jobs whose sizes add
-    /// up to `worth`, which should be some tens of microseconds of work, are taken by a thread at once.
+    /// Calls job(i) once for each i < count. size(i): of a job, in any unit; divides(i): whether it can divide its loops. Jobs whose sizes
+    /// add up to `worth`, which should be some tens of microseconds of work, are taken by a thread at once.
     template <class Size, class Divides, class Job>
     void run(Workers* workers, std::size_t count, std::size_t worth, const Size& size, const Divides& divides, const Job& job)
     {

@@ -18,6 +18,24 @@ namespace
 /// Largest extra margin with which a persistent pair is detected, as a fraction of the smaller body's radius.
 constexpr double kMostShare = 0.1;
 
+/// Keeps the contacts for which `counts` is true.
+template <class Counts>
+class SelectingCollector final : public ContactCollector
+{
+public:
+    SelectingCollector(const world::World& world, std::vector<FoundContact>& out, const Counts& counts)
+        : ContactCollector(world, out), counts_(counts)
+    {
+    }
+    void add(const Contact& contact) override
+    {
+        if (counts_(contact)) ContactCollector::add(contact);
+    }
+
+private:
+    const Counts& counts_;
+};
+
 /// m: radius of the most strongly curved shape of a body, negative for surfaces that are touched from inside; infinite if it has none.
 double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
 {
@@ -138,37 +156,49 @@ void ContactBook::query(const Detector& detector, ContactSink& sink, const Index
     ComponentCall question(step_, *step_.world.tables()[detector.table], detector.row);
     question.call.contacts = &sink;
     step_.report.looked_at += active ? active->members().size() : step_.world.host().bodies.size();
-    if (active)
-        question.context.active_bodies = active->flags(), question.context.shortlists = shortlists_of(index, *active);
-    else
+    // A list of the active participants pays only where the detector would go through many others. Where pairs are named it need not.
+    constexpr std::size_t kFew = 8;
+    if (!active)
         seen_in_[index] = step_.serial;
+    else if (question.context.active_bodies = active->flags();
+             !sink.only_persistent() && kFew * active->members().size() < active->flags().size())
+        question.context.shortlists = shortlists_of(index, *active);
     const CostScope scope(step_.meter, step_.meter.of_component(detector.component));
     step_.meter.ran(detector.table, Phase::Detect);
     if (const auto done = question.run(*detector.command); !done)
         question.context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
 }
 
-void ContactBook::detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
-                         std::vector<FoundContact>& out, double margin)
+/// Asks for what the sink collects. Returns whether that is sorted.
+bool ContactBook::ask(const Detector& detector, ContactCollector& sink, std::span<const PersistentPair> persistent, bool only_persistent)
 {
-    ContactCollector sink(step_.world, out);
-    sink.begin_query(index, persistent, only_persistent, margin);
-    const bool some = only_persistent && seen_in_[index] == step_.serial;
+    const auto index = static_cast<std::size_t>(&detector - detectors_.data());
     asked_.begin(step_.world.host().bodies.size());
+    const bool some = only_persistent && seen_in_[index] == step_.serial;
     if (some)
         for (const PersistentPair& p : persistent) asked_.add(p.a.index), asked_.add(p.b.index);
     query(detector, sink, some ? &asked_ : nullptr);
     step_.report.further_pairs += sink.further_pairs();
+    return sink.in_order();
+}
+
+bool ContactBook::detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
+                         std::vector<FoundContact>& out, double margin)
+{
+    ContactCollector sink(step_.world, out);
+    sink.begin_query(index, persistent, only_persistent, margin);
+    return ask(detector, sink, persistent, only_persistent);
 }
 
 void ContactBook::detect_all(std::vector<FoundContact>& out)
 {
     out.clear();
+    bool in_order = true;
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         if (detectors_[d].by_rows && detectors_[d].persists())
         {
-            detect_with_gaps(d, out);
+            in_order = detect_with_gaps(d, out) && in_order;
             continue;
         }
         persistent_.clear();
@@ -177,28 +207,30 @@ void ContactBook::detect_all(std::vector<FoundContact>& out)
             if (p.resting && p.detector == detectors_[d].component)
                 persistent_.push_back({p.a, p.b, {}}), margin = std::max(margin, persistence_margin(p));
         const std::size_t first = out.size();
-        detect(detectors_[d], d, persistent_, false, out, margin);
+        in_order = detect(detectors_[d], d, persistent_, false, out, margin) && in_order;
         // A detection pass has one margin, the largest of all persistent pairs. Gaps count for persistent pairs only, each up to its own
         // margin, so the others are dropped again.
+        std::size_t near = 0;
         const auto far = [&](const FoundContact& f)
         {
             if (f.contact.depth > 0) return false;
-            const PairState* pair = find_pair(f);
+            const PairState* pair = find_pair(f, near);
             return !pair || !pair->resting || f.contact.depth <= -persistence_margin(*pair);
         };
         out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
     }
-    sort_contacts(out, step_.world);
+    if (!in_order) sort_contacts(out, step_.world);
 }
 
 /// Contacts of a detector whose pairs are persistent as soon as they touch. Includes gaps up to the persistence margin, gaps that may close
-/// within the step (speculative contacts), and, for pairs that pressed, gaps that curvature opens.
-void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out)
+/// within the step (speculative contacts), and, for pairs that pressed, gaps that curvature opens. Returns whether they are sorted.
+bool ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out)
 {
     const Detector& detector = detectors_[index];
     const Bodies& bodies = step_.world.host().bodies;
     double margin = 0, fastest = 0;
-    for (std::uint32_t b = 0; b < bodies.size(); ++b) fastest = std::max(fastest, length(bodies.velocity[b]));
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) fastest = std::max(fastest, length_squared(bodies.velocity[b]));
+    fastest = std::sqrt(fastest);
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
     {
         if (!bodies.dynamic(b) || !std::isfinite(radius_of_body_[b])) continue;
@@ -208,8 +240,6 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
     }
     const double acceleration = detector.speculation_acceleration.value_or(0);
     if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, step_.frame.step));
-    const std::size_t first = out.size();
-    detect(detector, index, {}, false, out, margin);
     // Use the detected normal, not the stored one: this detection serves the next step as well, and it has to give the same result in a
     // step that starts from a snapshot, where the stored normal may differ.
     std::size_t near = 0;
@@ -220,24 +250,30 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
         if (!pair || !pressed(*pair) || !std::isfinite(radius)) return base;
         return sliding_margin(bodies, c.a, c.b, c.normal, curves_of(c.a, c.b), base, radius, step_.frame.step);
     };
-    const auto far = [&](const FoundContact& f)
+    const auto counts = [&](const Contact& c)
     {
-        if (f.contact.depth > 0 || f.contact.depth > -margin_of(f.contact)) return false;
-        return !detector.speculates || !may_close(bodies, radius_of_body_, f.contact, acceleration, step_.frame.step);
+        if (c.depth > 0 || c.depth > -persistence_margin(c.a, c.b) || c.depth > -margin_of(c)) return true;
+        return detector.speculates && may_close(bodies, radius_of_body_, c, acceleration, step_.frame.step);
     };
-    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
+    SelectingCollector sink(step_.world, out, counts);
+    sink.begin_query(index, {}, false, margin);
+    return ask(detector, sink, {}, false);
 }
-
-KnownContact& ContactBook::known_contact(const FoundContact& f) { return cache_.contact_of(*find_pair(f), f.contact.feature); }
 
 void ContactBook::warm_start(std::span<FoundContact> contacts, bool trial)
 {
-    for (FoundContact& f : contacts) f.contact.impulse = known_contact(f).warm_start(trial);
+    std::size_t near = 0;
+    for (FoundContact& f : contacts) f.contact.impulse = cache_.contact_of(*find_pair(f, near), f).warm_start(trial);
 }
 
 PairState* ContactBook::find_pair(const FoundContact& f)
 {
     return cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, step_.world);
+}
+
+PairState* ContactBook::find_pair(const FoundContact& f, std::size_t& near)
+{
+    return cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, step_.world, near);
 }
 
 /// m: gaps of a persistent pair up to this may close within h (s). Corners that rotate towards the other body become contacts before they
@@ -267,6 +303,7 @@ void ContactBook::drop_far(std::vector<FoundContact>& out, double h) const
 void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h)
 {
     resting_.find(groups, places_);
+    bool in_order = out.empty();
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         persistent_.clear();
@@ -278,14 +315,15 @@ void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::
             persistent_.push_back({p.a, p.b, {}});
             margin = std::max({margin, persistence_margin(p), gap_margin(p, h)});
         }
-        if (!persistent_.empty()) detect(detectors_[d], d, persistent_, true, out, margin);
+        if (!persistent_.empty()) in_order = detect(detectors_[d], d, persistent_, true, out, margin) && in_order;
     }
     drop_far(out, h);
-    sort_contacts(out, step_.world);
+    if (!in_order) sort_contacts(out, step_.world);
+    std::size_t near = 0;
     for (FoundContact& f : out)
     {
         f.contact.resting = true;
-        const KnownContact& known = known_contact(f);
+        const KnownContact& known = cache_.contact_of(*find_pair(f, near), f);
         f.contact.id = known.id, f.contact.impulse = known.impulse;
         f.contact.depth -= known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
         fill_material(f);

@@ -66,8 +66,13 @@ struct Detector
 /// A contact as found now, with the index of its detector.
 struct FoundContact
 {
+    FoundContact() = default;
+    FoundContact(const Contact& at, std::uint32_t by) : contact(at), detector(by) {}
+
     Contact contact;
     std::uint32_t detector = 0;
+    /// Where its pair kept it last: a place in PairState::contacts, at which contact_of() looks first.
+    std::uint32_t slot = 0;
 };
 
 inline bool same_pair(const FoundContact& x, const FoundContact& y)
@@ -175,8 +180,19 @@ public:
     const std::vector<PairState>& pairs() const { return pairs_; }
     /// Of each of pairs(), in the same order.
     std::span<const PairKey> keys() const { return keys_; }
-    /// The known contact of a feature of the pair; added with a new id if the feature is new.
-    KnownContact& contact_of(PairState& pair, std::uint32_t feature);
+    /// The known contact of a feature of the pair; added with a new id if the feature is new. `slot`: where it may be.
+    KnownContact& contact_of(PairState& pair, std::uint32_t feature, std::uint32_t slot = 0)
+    {
+        if (slot < pair.count && pair.contacts[slot].feature == feature) return pair.contacts[slot];
+        return search_contact(pair, feature);
+    }
+    /// The same; `found` notes the place.
+    KnownContact& contact_of(PairState& pair, FoundContact& found)
+    {
+        KnownContact& known = contact_of(pair, found.contact.feature, found.slot);
+        found.slot = static_cast<std::uint32_t>(&known - pair.contacts.begin());
+        return known;
+    }
     /// Null if the pair or the feature is not known.
     const KnownContact* find_contact(std::uint32_t detector, Ref a, Ref b, std::uint32_t feature, const world::World& world);
     /// To be called after a structural change: drops pairs whose detector or bodies are gone, and sorts the rest again.
@@ -206,6 +222,7 @@ public:
 
 private:
     std::size_t place_of(const PairKey& key) const;
+    KnownContact& search_contact(PairState& pair, std::uint32_t feature);
     bool is_at(std::size_t place, const PairKey& key) const { return place < keys_.size() && keys_[place] == key; }
     void sort(const world::World& world);
     void shrink(std::size_t size);
@@ -234,8 +251,17 @@ void ContactCache::drop_if(Ends ends)
 /// Detectors of a scene, in id order.
 std::vector<Detector> find_detectors(const world::World& world, const Schedule& schedule);
 
+/// Whether x comes before y in the order of contacts: by detector, bodies in id order, and feature.
+inline bool precedes(const FoundContact& x, const FoundContact& y, const world::World& world)
+{
+    if (same_pair(x, y)) return x.contact.feature < y.contact.feature;
+    if (x.detector != y.detector) return x.detector < y.detector;
+    const std::uint32_t xa = world.rank(x.contact.a), ya = world.rank(y.contact.a);
+    return xa != ya ? xa < ya : world.rank(x.contact.b) < world.rank(y.contact.b);
+}
+
 /// Collects what one detector finds.
-class ContactCollector final : public ContactSink
+class ContactCollector : public ContactSink
 {
 public:
     ContactCollector(const world::World& world, std::vector<FoundContact>& out) : world_(&world), out_(&out) {}
@@ -246,10 +272,16 @@ public:
     std::span<const PersistentPair> persistent() const override { return persistent_; }
     bool only_persistent() const override { return only_persistent_; }
     double margin() const override { return margin_; }
-    void add(const Contact& contact) override { out_->push_back(FoundContact{contact, detector_}); }
+    void add(const Contact& contact) override
+    {
+        const FoundContact& last = out_->emplace_back(contact, detector_);
+        if (out_->size() > 1 && simulation::precedes(last, *(&last - 1), *world_)) in_order_ = false;
+    }
     bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
     void took(double further_pairs) override { further_pairs_ += further_pairs; }
     double further_pairs() const { return further_pairs_; }
+    /// Whether what was added is sorted, also behind what was there before.
+    bool in_order() const { return in_order_; }
 
 private:
     const world::World* world_;
@@ -259,6 +291,7 @@ private:
     std::span<const PersistentPair> persistent_;
     bool only_persistent_ = false;
     double margin_ = 0;
+    bool in_order_ = true;
 };
 
 /// Collects the pairs that may meet, given each body's motion margin, by which its AABB is expanded.
@@ -285,7 +318,7 @@ private:
     std::vector<Pair>* out_;
 };
 
-/// Sorts by detector, bodies in id order, and feature, so that the order in which a library reports contacts does not affect the state.
+/// Sorts by precedes(), so that the order in which a library reports contacts does not affect the state.
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world);
 
 /// N s: sum of the normal impulses of a pair in the last advance.

@@ -1,6 +1,7 @@
 #include "simulation/contacts/held_islands.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace plab::simulation
 {
@@ -115,8 +116,8 @@ void HeldIslands::make_islands(DisjointSets& islands)
             number = static_cast<std::uint32_t>(island_count_++);
             if (islands_.size() < island_count_) islands_.push_back(std::make_unique<HeldIsland>());
             HeldIsland& fresh = *islands_[number];
-            fresh.manager = manager_of_island_[root], fresh.has_rows = fresh.turns = false;
-            fresh.groups.clear(), fresh.count = 0;
+            fresh.manager = manager_of_island_[root], fresh.has_rows = false;
+            fresh.clear();
         }
         island_of_group_[g] = number;
         numbered_.push_back(root), numbered_.push_back(g);
@@ -134,7 +135,6 @@ void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets&
     if (!(to > from)) return;
     make_islands(islands);
     collect_contacts(from, to - from, trial);
-    share_contacts(to - from);
     plain_.clear(), jointed_.clear(), plain_groups_.clear();
     for (std::size_t i = 0; i < island_count_; ++i)
     {
@@ -159,10 +159,12 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
     system.hold_rows(true);
     system.begin(from, to, book, trial ? nullptr : &step_);
     for (HeldIsland* island : islands) island->members.clear(), island->roots.clear(), island->bodies.clear(), island->shafts.clear();
+    member_of_body_.resize(step_.world.host().bodies.size());
     for (std::uint32_t i = 0; i < system.bodies().size(); ++i)
     {
         const std::uint32_t b = system.bodies()[i], number = island_of_group_[step_.groups.group_of_body[b]];
         if (number == kNoIndex) continue;  // observed only
+        member_of_body_[b] = static_cast<std::uint32_t>(islands_[number]->members.size());
         islands_[number]->members.push_back(i), islands_[number]->bodies.push_back(b);
     }
     for (std::uint32_t i = 0; i < system.roots().size(); ++i)
@@ -191,21 +193,25 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
 /// islands with kinematic bodies.
 void HeldIslands::advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h)
 {
-    const auto stays = [this](const Contact& c) { return c.approach > 0 || midpoint_.is_driven(c); };
-    midpoint_places_.clear();
+    turning_.clear(), at_midpoint_.clear();
     for (HeldIsland* island : islands)
     {
-        island->turns = island->turns && std::none_of(island->contacts.begin(), island->contacts.end(), stays);
+        island->turns = island->turns && !island->meets && !island->driven;
         if (!island->turns) continue;
         midpoint_.advance_to_midpoint(system, island->members, h);
-        midpoint_places_.insert(midpoint_places_.end(), island->places.begin(), island->places.end());
+        for (const Run& run : island->runs) turning_.push_back({island, &run});
     }
-    if (midpoint_places_.empty()) return;
+    if (turning_.empty()) return;
     system.evaluate(0, 0);
-    std::sort(midpoint_places_.begin(), midpoint_places_.end());
-    midpoint_.update_contacts(midpoint_places_, touching_, h);
-    for (HeldIsland* island : islands)
-        for (std::size_t i = 0; island->turns && i < island->places.size(); ++i) island->contacts[i] = touching_[island->places[i]].contact;
+    std::sort(turning_.begin(), turning_.end(), [](const RunOf& x, const RunOf& y) { return x.run->order < y.run->order; });
+    for (const RunOf& t : turning_)
+        for (const Contact& c : t.island->of(*t.run)) at_midpoint_.emplace_back(c, t.run->found->detector);
+    midpoint_places_.resize(at_midpoint_.size());
+    std::iota(midpoint_places_.begin(), midpoint_places_.end(), 0u);
+    midpoint_.update_contacts(midpoint_places_, at_midpoint_, h);
+    std::size_t at = 0;
+    for (const RunOf& t : turning_)
+        for (Contact& c : t.island->of(*t.run)) c = at_midpoint_[at++].contact;
 }
 
 /// Books the work of each force component: its power at the mean velocities of the moves. For this the forces are evaluated once more, and

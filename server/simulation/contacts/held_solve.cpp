@@ -1,4 +1,4 @@
-// What managers make of the islands, and what is booked and reported of it.
+// What managers make of the islands, and what is booked, kept and reported of it.
 #include <algorithm>
 
 #include "simulation/contacts/held_islands.h"
@@ -18,12 +18,17 @@ void HeldIslands::solve(std::span<HeldIsland*> islands, GroupSystem& system, dou
         system.rows()->begin_hold(system.context());
         island->rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
     }
+    wedging_.resize(step_.world.host().bodies.size(), 0.0);
     share(islands, [&](HeldIsland& island) { begin(island, system, books, trial); });
     if (!trial)
         for (const HeldIsland* island : islands) report_paradoxes(*island, step_.frame.start_time + from);
-    if (step_.frame.give_up()) return;
     call_managers(islands, from, to, trial);
-    if (books) share(islands, [&](HeldIsland& island) { divide_work(island); });
+    share(islands,
+          [&](HeldIsland& island)
+          {
+              if (books) divide_work(island);
+              if (!trial) keep(island, to - from);
+          });
     for (HeldIsland* island : islands)
     {
         if (books) book_contacts(*island, book);
@@ -33,23 +38,17 @@ void HeldIslands::solve(std::span<HeldIsland*> islands, GroupSystem& system, dou
         step_.report.swept_rows += rows * (static_cast<std::size_t>(1 + island->iterations) + rows / kFactored);
         if (trial) continue;
         note_releases(*island, from, to - from);
-        keep(*island);
-        report_impacts(*island, step_.frame.start_time + from);
+        if (island->meets) report_impacts(*island, step_.frame.start_time + from);
     }
 }
 
-/// What is done for each island before its manager is called.
+/// What is done for an island before its manager is called.
 void HeldIslands::begin(HeldIsland& island, GroupSystem& system, bool books, bool trial)
 {
     world::HostTables& host = step_.world.host();
-    const auto is_paradox = [&](const Contact& c) { return may_jam(host.bodies, c) && contacts_.is_paradox(c); };
-    if (!trial)
-        for_parts(&step_.workers, island.contacts.size(), kPart,
-                  [&](std::size_t first, std::size_t end)
-                  {
-                      for (std::size_t i = first; i < end; ++i) paradoxes_[island.first + i] = is_paradox(island.contacts[i]) ? 1 : 0;
-                  });
-    island.motion.begin(system, host.bodies, host.shafts, island.members, island.roots, island.contacts, island.rows, books, step_.workers);
+    if (!trial) find_paradoxes(island);
+    island.motion.begin(system, host.bodies, host.shafts, island.members, member_of_body_, island.roots, island.contacts, island.rows,
+                        books, step_.workers);
     island.energy = books ? island.motion.kinetic_energy() : 0.0;
 }
 
@@ -103,16 +102,12 @@ void HeldIslands::call_manager(std::uint32_t manager, double from, double to, bo
 /// Finds the work of the manager. Contacts dissipate energy, so on bodies that nothing else drives their work must not be positive, apart
 /// from what position correction lifts. Energy that the method creates beyond that is not booked as work, so it remains visible as the
 /// unexplained part of the ledger (ContactEnergy::made).
-void HeldIslands::divide_work(HeldIsland& island) const
+void HeldIslands::divide_work(HeldIsland& island)
 {
-    const Bodies& bodies = step_.world.host().bodies;
     const double gained = island.motion.kinetic_energy() - island.energy;
     island.lifted = island.motion.count_corrections();
     const double work = gained - island.motion.work_of_forces();
-    const auto driven = [&](const Contact& c)
-    { return bodies.motion[c.a.index] == Motion::Kinematic || bodies.motion[c.b.index] == Motion::Kinematic; };
-    const bool any = !island.rows.empty() || std::any_of(island.contacts.begin(), island.contacts.end(), driven);
-    island.made = any ? 0.0 : std::max(0.0, work - island.lifted);
+    island.made = island.driven || !island.rows.empty() ? 0.0 : std::max(0.0, work - island.lifted);
     island.work = work - island.made;
 }
 
@@ -140,6 +135,114 @@ double HeldIslands::mobility_of(std::uint32_t root) const
     const ShaftTree* tree = step_.graph.tree_of(root);
     const double inertia = tree ? tree->inertia : shafts.dynamic(root) ? shafts.inertia[root] : 0.0;
     return inertia > 0 ? 1 / inertia : 0.0;
+}
+
+void HeldIslands::find_paradoxes(HeldIsland& island)
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    for_parts(&step_.workers, island.bodies.size(), kPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t k = begin; k < end; ++k) wedging_[island.bodies[k]] = wedging(bodies, island.bodies[k]);
+              });
+    island.jams.resize(island.contacts.size());
+    for_parts(&step_.workers, island.contacts.size(), kPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i)
+                  {
+                      const Contact& c = island.contacts[i];
+                      const double reach = std::max(wedging_[c.a.index] * length_squared(c.point - bodies.position[c.a.index]),
+                                                    wedging_[c.b.index] * length_squared(c.point - bodies.position[c.b.index]));
+                      island.jams[i] = !excludes_paradox(c.friction, reach) && contacts_.is_paradox(c) ? 1 : 0;
+                  }
+              });
+    for (const std::uint32_t b : island.bodies) wedging_[b] = 0;
+}
+
+void HeldIslands::report_paradoxes(const HeldIsland& island, double time)
+{
+    for (const Run& run : island.runs)
+        for (std::uint32_t i = run.first; i < run.end; ++i)
+            if (island.jams[i] != 0) contacts_.report_paradox(island.contacts[i], *run.pair, time);
+}
+
+/// Finds releases, and keeps the impulses for the next step.
+void HeldIslands::keep(HeldIsland& island, double h)
+{
+    island.pressings.resize(island.runs.size());
+    const auto keep_run = [&](std::size_t k)
+    {
+        Run& run = island.runs[k];
+        const std::span<Contact> own = island.of(run);
+        run.released = is_released(island, run, h, island.pressings[k]);
+        if (run.released)
+            for (Contact& c : own) c.impulse = {};
+        // The impulse of an impact is not an estimate of how hard the contact will press in the next step.
+        for (std::uint32_t i = run.first; i < run.end; ++i)
+            if (KnownContact* const known = kept(island, run, i))
+                known->impulse = island.contacts[i].approach > 0 ? Vec3{} : island.contacts[i].impulse;
+        run.pair->normal = own.back().normal;
+    };
+    for_parts(&step_.workers, island.runs.size(), kRunPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t k = begin; k < end; ++k) keep_run(k);
+              });
+}
+
+/// Where the pair keeps a contact. Null if it has more of them than it can keep.
+KnownContact* HeldIslands::kept(const HeldIsland& island, const Run& run, std::uint32_t contact)
+{
+    const std::span<KnownContact> all = run.pair->all();
+    const std::uint32_t slot = island.slots[contact], feature = island.contacts[contact].feature;
+    if (slot < all.size() && all[slot].feature == feature) return &all[slot];
+    const auto found = std::find_if(all.begin(), all.end(), [&](const KnownContact& k) { return k.feature == feature; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+/// Whether a pair pressed in the last step and does so no more.
+bool HeldIslands::is_released(HeldIsland& island, const Run& run, double h, ContactBook::Pressing& out)
+{
+    const auto impulse_before = [&](std::uint32_t i)
+    {
+        const KnownContact* known = kept(island, run, i);
+        return known ? known->impulse : Vec3{};
+    };
+    ContactBook::Pressing pressing = contacts_.pressing_of(*run.pair);
+    bool is_hit = false;
+    for (std::uint32_t i = run.first; i < run.end; ++i)
+    {
+        pressing.add_impulse(island.contacts[i], impulse_before(i));
+        is_hit = is_hit || island.contacts[i].approach > 0;
+    }
+    if (is_hit) pressing.now = HUGE_VAL;  // a pair with an impact is not released
+    if (!contacts_.stops_pressing(*run.pair, pressing)) return false;
+    for (std::uint32_t i = run.first; i < run.end; ++i)
+        pressing.add_speed(island.contacts[i], impulse_before(i), island.motion.start_depth(i), island.motion.separation_speed(i), h);
+    out = pressing;
+    return true;
+}
+
+/// Notes the releases of pairs whose points all separate.
+void HeldIslands::note_releases(const HeldIsland& island, double from, double h)
+{
+    for (std::size_t k = 0; k < island.runs.size(); ++k)
+        if (const Run& run = island.runs[k]; run.released)
+            contacts_.note_release(*run.pair, island.contacts[run.first], island.pressings[k], from, h);
+}
+
+void HeldIslands::report_impacts(const HeldIsland& island, double time)
+{
+    for (const Run& run : island.runs)
+        for (std::uint32_t i = run.first; i < run.end; ++i)
+        {
+            Contact c = island.contacts[i];
+            if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
+            c.depth = island.motion.start_depth(i);
+            if (PairState& pair = *run.pair; pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, c, time);
+            step_.emit(contacts_.contact_event("contact.impact", *run.pair, time, c, c.impulse));
+        }
 }
 
 }  // namespace plab::simulation

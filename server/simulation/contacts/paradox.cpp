@@ -42,18 +42,14 @@ double pressing_share(const Bodies& bodies, const Contact& c, double h)
     return alone > 0 ? sliding / alone : 1;
 }
 
-bool may_jam(const Bodies& bodies, const Contact& c)
+double wedging(const Bodies& bodies, std::uint32_t body)
 {
-    constexpr double kBound = 3.9;  // less than 4 by more than rounding
-    const auto may = [&](std::uint32_t b)
-    {
-        if (!bodies.dynamic(b)) return false;
-        const Mat3& I = bodies.inverse_inertia_B[b];
-        const auto row = [&](int i) { return std::fabs(I(i, 0)) + std::fabs(I(i, 1)) + std::fabs(I(i, 2)); };
-        const double norm = std::max({row(0), row(1), row(2)});
-        return !(c.friction * c.friction * bodies.mass[b] * length_squared(c.point - bodies.position[b]) * norm < kBound);
-    };
-    return may(c.a.index) || may(c.b.index);
+    if (!bodies.dynamic(body)) return 0;
+    // No eigenvalue is larger than the largest sum of a row.
+    const Mat3& A = bodies.inverse_inertia_B[body];
+    double most = 0;
+    for (int i = 0; i < 3; ++i) most = std::max(most, std::fabs(A(i, 0)) + std::fabs(A(i, 1)) + std::fabs(A(i, 2)));
+    return bodies.mass[body] * most;
 }
 
 }  // namespace plab::simulation

@@ -10,6 +10,13 @@
 /// theta: 1 + 3 cos^2 - 3 mu sin cos <= 0, which is impossible for mu < 4/3.
 ///
 /// Source: Champneys, Varkonyi, The Painleve paradox in contact mechanics, IMA J. Appl. Math. 81 (2016), section 2.
+///
+/// The paradox is impossible where friction times lever arm is small. For each body, with r from its centre of mass to the contact,
+/// x = (r x n) . I^-1 (r x n) and y = (r x s) . I^-1 (r x s),
+///
+///   K_nn - mu K_nt . s  >=  1/m + x - mu sqrt(x y)  >=  sqrt(x) (2 / sqrt(m) - mu sqrt(y))
+///
+/// which is positive if mu^2 y m < 4, and y is at most |r|^2 times the largest eigenvalue of I^-1. A cube has no paradox with mu < 0.94.
 #pragma once
 
 #include "plab/collision.h"
@@ -22,10 +29,10 @@ namespace plab::simulation
 /// of h (s), or if neither body can move.
 double pressing_share(const Bodies& bodies, const Contact& contact, double h);
 
-/// False if friction and levers are too small for the paradox, whatever the direction of sliding; cheaper than pressing_share().
-///
-/// With A = (r x n) . I^-1 (r x n) and B = (r x t) . I^-1 (r x t), a body contributes at least 1/m + A - mu sqrt(A B) to n . K j. As
-/// 1/m + A >= 2 sqrt(A / m), that is positive if mu^2 m B < 4, and B is at most |r|^2 times the norm of I^-1.
-bool may_jam(const Bodies& bodies, const Contact& contact);
+/// 1/m^2: mass times (a bound of) the largest eigenvalue of the inverse inertia of a body; 0 unless it is dynamic.
+double wedging(const Bodies& bodies, std::uint32_t body);
+/// Whether pressing_share() is positive for certain, whatever the velocities. `reach`: wedging() times the square of the distance of the
+/// contact from the centre of mass, the larger one of the two bodies.
+inline bool excludes_paradox(double friction, double reach) { return friction * friction * reach < 3.99; }
 
 }  // namespace plab::simulation

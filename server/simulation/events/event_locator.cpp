@@ -115,6 +115,8 @@ void EventLocator::consider(const std::vector<FoundContact>& found, std::size_t 
 
 void EventLocator::collect(const std::vector<FoundContact>& found)
 {
+    const auto& detectors = contacts_.detectors();
+    if (std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); })) return;
     note_live();
     for (std::size_t i = 0; i < found.size();)
     {
@@ -391,7 +393,7 @@ void EventLocator::run(std::vector<FoundContact>& found)
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
     versions_.assign(step_.groups.all.size(), 0);
     met_.assign(step_.world.host().bodies.size(), {});
-    note_resting_groups();
+    if (std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); })) note_resting_groups();
     if (any_certifies_) begin_motion_bounds(), find_near(false);
     if (!all_certify_) contacts_.detect_all(found), collect(found);
     std::uint32_t slot = 0;
