@@ -326,6 +326,18 @@ void Problem::apply_same_impulses()
     for_each(movers.size(), [&](std::size_t i) { apply_sums(i); });
 }
 
+void Problem::sum_by_velocity(std::size_t i)
+{
+    const Anchor& anchor = anchors[i];
+    sums[i].push = (movers[i].v - anchor.v) * anchor.mass;
+    sums[i].turn = anchor.inertia * (movers[i].w - anchor.w);
+}
+
+void Problem::sum_by_velocities()
+{
+    for_each(movers.size(), [&](std::size_t i) { sum_by_velocity(i); });
+}
+
 void Problem::write_speed(std::size_t i, Bodies& bodies, Shafts& shafts)
 {
     Anchor& m = anchors[i];
@@ -352,11 +364,9 @@ double Problem::write_swept_speeds(Bodies& bodies, Shafts& shafts)
     return 0.5 * sum_over_movers(
                      [&](std::size_t i)
                      {
-                         const Anchor& anchor = anchors[i];
-                         sums[i].push = (movers[i].v - anchor.v) * anchor.mass;
-                         sums[i].turn = anchor.inertia * (movers[i].w - anchor.w);
+                         sum_by_velocity(i);
                          write_speed(i, bodies, shafts);
-                         return twice_energy(anchor, movers[i].v, movers[i].w);
+                         return twice_energy(anchors[i], movers[i].v, movers[i].w);
                      });
 }
 

@@ -82,8 +82,10 @@ public:
     void apply_same_impulses();
     /// Writes the velocities and the sums of the impulses to the tables.
     void write_speeds(Bodies& bodies, Shafts& shafts);
-    /// The same with the sums that follow from the movers' velocities, which sweeps have changed impulse by impulse: m (v - v0), I (w -
-    /// w0). They equal those of apply_impulses() but for rounding, without a walk over all points. Returns J: the kinetic energy.
+    /// Takes the sums from the movers' velocities, which sweeps have changed impulse by impulse: m (v - v0), I (w - w0). They equal those
+    /// of apply_impulses() but for rounding, without a walk over all points.
+    void sum_by_velocities();
+    /// Does that, then writes. Returns J: the kinetic energy.
     double write_swept_speeds(Bodies& bodies, Shafts& shafts);
 
     Vec3 relative_velocity(const Point& p) const;  ///< u, m/s
@@ -150,6 +152,7 @@ private:
     void read_speed(std::size_t mover, const Bodies& bodies, const Shafts& shafts);
     void turn_mover(std::size_t mover, const Bodies& bodies);
     void apply_sums(std::size_t mover);
+    void sum_by_velocity(std::size_t mover);
     void write_speed(std::size_t mover, Bodies& bodies, Shafts& shafts);
     void set_mobility(Point& p) const;
     void set_mobility(Line& line) const;

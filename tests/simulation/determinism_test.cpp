@@ -204,7 +204,7 @@ std::string towers(const char* manager, int side)
         for (int k = 0; k < 1 + i * i % 11; ++k)
             out += "<component id=\"b" + std::to_string(n++) + "\" type=\"State/RigidBody\" shape=\"s\" mass=\"1\" position=\"" +
                    std::to_string(i % side + 0.003 * (k % 7)) + " " + std::to_string(i / side + 0.003 * (k % 5)) + " " +
-                   std::to_string(0.1 + 0.199 * k) + "\" velocity=\"0.3 0 0\"/>";
+                   std::to_string(0.1 + 0.199 * k) + "\" linear_velocity=\"0.3 0 0\"/>";
     return out;
 }
 

@@ -146,7 +146,7 @@ TEST_CASE("a warm step of many islands allocates nothing, with 1, 2 and 4 thread
         for (int k = 0; k < 2 + i % 7; ++k)
             body += "<component id=\"b" + std::to_string(i) + "_" + std::to_string(k) +
                     "\" type=\"State/RigidBody\" mass=\"1\" shape=\"cube\" position=\"" + std::to_string(3 * i) + " 0 " +
-                    std::to_string(0.2 + 0.4 * k) + "\" velocity=\"0 " + std::to_string(i % 5) + " 0\"/>";
+                    std::to_string(0.2 + 0.4 * k) + "\" linear_velocity=\"0 " + std::to_string(i % 5) + " 0\"/>";
     for (const int threads : {1, 2, 4})
     {
         CAPTURE(threads);

@@ -220,14 +220,24 @@ void HeldIslands::book_forces(GroupSystem& system, std::span<HeldIsland*> island
 {
     world::HostTables& host = step_.world.host();
     Bodies& bodies = host.bodies;
-    kept_positions_.clear(), kept_orientations_.clear(), kept_velocities_.clear(), kept_spins_.clear(), kept_momenta_.clear();
-    kept_speeds_.clear(), kept_angles_.clear();
-    for (const std::uint32_t b : system.bodies())
+    const std::size_t count = system.bodies().size();
+    kept_positions_.resize(count), kept_orientations_.resize(count), kept_velocities_.resize(count), kept_spins_.resize(count);
+    kept_momenta_.resize(count), kept_speeds_.clear(), kept_angles_.clear();
+    const auto for_bodies = [&](const auto& one)
     {
-        kept_positions_.push_back(bodies.position[b]), kept_orientations_.push_back(bodies.orientation[b]);
-        kept_velocities_.push_back(bodies.velocity[b]), kept_spins_.push_back(bodies.angular_velocity[b]);
-        kept_momenta_.push_back(bodies.angular_momentum[b]);
-    }
+        for_parts(&step_.workers, count, kPart,
+                  [&](std::size_t begin, std::size_t end)
+                  {
+                      for (std::size_t i = begin; i < end; ++i) one(i, system.bodies()[i]);
+                  });
+    };
+    for_bodies(
+        [&](std::size_t i, std::uint32_t b)
+        {
+            kept_positions_[i] = bodies.position[b], kept_orientations_[i] = bodies.orientation[b];
+            kept_velocities_[i] = bodies.velocity[b], kept_spins_[i] = bodies.angular_velocity[b];
+            kept_momenta_[i] = bodies.angular_momentum[b];
+        });
     for (const std::uint32_t s : system.roots()) kept_speeds_.push_back(host.shafts.speed[s]), kept_angles_.push_back(host.shafts.angle[s]);
     const std::span<double> speeds = system.speeds();
     const auto put = [&](std::size_t at, const Vec3& v) { speeds[at] = v.x, speeds[at + 1] = v.y, speeds[at + 2] = v.z; };
@@ -243,13 +253,13 @@ void HeldIslands::book_forces(GroupSystem& system, std::span<HeldIsland*> island
             speeds[6 * system.body_count() + island->roots[k]] = means[island->members.size() + k].shaft / h;
     }
     system.evaluate(0, 1);
-    for (std::size_t i = 0; i < system.bodies().size(); ++i)
-    {
-        const std::uint32_t b = system.bodies()[i];
-        bodies.position[b] = kept_positions_[i], bodies.orientation[b] = kept_orientations_[i];
-        bodies.velocity[b] = kept_velocities_[i], bodies.angular_velocity[b] = kept_spins_[i];
-        bodies.angular_momentum[b] = kept_momenta_[i];
-    }
+    for_bodies(
+        [&](std::size_t i, std::uint32_t b)
+        {
+            bodies.position[b] = kept_positions_[i], bodies.orientation[b] = kept_orientations_[i];
+            bodies.velocity[b] = kept_velocities_[i], bodies.angular_velocity[b] = kept_spins_[i];
+            bodies.angular_momentum[b] = kept_momenta_[i];
+        });
     for (std::size_t i = 0; i < system.roots().size(); ++i)
         host.shafts.speed[system.roots()[i]] = kept_speeds_[i], host.shafts.angle[system.roots()[i]] = kept_angles_[i];
 }
