@@ -189,7 +189,11 @@ template <int W>
 void PacketList<W>::scale_impulses(double share)
 {
     const Lanes<W> s = Lanes<W>{} + share;
-    for (PacketPoint<W>& p : points_) p.impulse = scaled(p.impulse, s);
+    for_parts(workers_, points_.size(), W == 1 ? kSmallIsland : kPointPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i) points_[i].impulse = scaled(points_[i].impulse, s);
+              });
 }
 
 template class PacketList<1>;

@@ -47,6 +47,8 @@ struct Packet
 
 /// Packets that a thread takes at once: some microseconds of work in a sweep, so that taking it costs little.
 inline constexpr std::size_t kPart = 8;
+/// Packed points that a thread takes at once in a loop over them alone.
+inline constexpr std::size_t kPointPart = 128;
 /// Islands of single lanes are too small to be divided.
 inline constexpr std::size_t kSmallIsland = 1 << 20;
 

@@ -286,7 +286,7 @@ void Problem::clear_impulses()
 
 void Problem::scale_impulses(double share)
 {
-    for (Point& p : points) p.impulse *= share;
+    for_each(points.size(), [&](std::size_t i) { points[i].impulse *= share; });
     for (Line& line : lines) line.impulse *= share;
 }
 
