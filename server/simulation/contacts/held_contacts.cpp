@@ -31,7 +31,7 @@ void HeldIslands::begin_step()
     const bool any_persists = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(),
                                           [](const Detector& d) { return d.by_rows && d.persists(); });
     if (!any_persists || is_current()) return;
-    contacts_.detect_all(contacts_.found());
+    contacts_.detect_all();
     adopt(contacts_.found(), step_.frame.start_time);
     note_state();
 }
@@ -39,26 +39,25 @@ void HeldIslands::begin_step()
 void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
 {
     fresh_.clear(), first_found_.clear();
-    std::size_t near = 0;
-    for (std::size_t i = 0; i < found.size();)
+    const std::span<const PairKey> keys = contacts_.cache().keys();
+    std::size_t at = 0;
+    for (const FoundRun& run : contacts_.runs())
     {
-        const FoundContact& first = found[i];
-        double deepest = first.contact.depth;
-        std::size_t end = i;
-        for (; end < found.size() && same_pair(found[end], first); ++end) deepest = std::max(deepest, found[end].contact.depth);
+        while (at < keys.size() && keys[at] < run.key) ++at;
+        if (at < keys.size() && keys[at] == run.key) continue;
+        const FoundContact& first = found[run.first];
         const Detector& d = contacts_.detectors()[first.detector];
-        if (d.by_rows && d.persists() && !contacts_.cache().find(d.component, first.contact.a, first.contact.b, step_.world, near))
-        {
-            PairState& pair = fresh_.emplace_back();
-            pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = step_.frame.tick;
-            pair.resting = true, pair.normal = first.contact.normal;
-            pair.ahead = deepest <= -contacts_.persistence_margin(pair);
-            if (pair.ahead && !d.speculates)
-                fresh_.pop_back();
-            else
-                first_found_.push_back(i);
-        }
-        i = end;
+        if (!d.by_rows || !d.persists()) continue;
+        double deepest = first.contact.depth;
+        for (std::uint32_t i = run.first; i < run.end; ++i) deepest = std::max(deepest, found[i].contact.depth);
+        PairState& pair = fresh_.emplace_back();
+        pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = step_.frame.tick;
+        pair.resting = true, pair.normal = first.contact.normal;
+        pair.ahead = deepest <= -contacts_.persistence_margin(pair);
+        if (pair.ahead && !d.speculates)
+            fresh_.pop_back();
+        else
+            first_found_.push_back(run.first);
     }
     if (fresh_.empty()) return;
     contacts_.cache().add_sorted(fresh_, step_.world);
@@ -100,8 +99,8 @@ void HeldIslands::collect_contacts(double from, double h, bool trial)
     touching_.clear();
     run_count_ = 0;
     const auto& detectors = contacts_.detectors();
-    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); }),
-               persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); });
+    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return !d.persists(); }),
+               persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return d.persists(); });
     const bool known = persists && from == 0 && is_current();
     if (!known || locates)
     {
@@ -121,29 +120,31 @@ void HeldIslands::share_touching(double h)
         for (end = i; end < touching_.size() && same_pair(touching_[end], touching_[i]);) ++end;
         HeldIsland* const island = begin_run(touching_[i], contacts_.find_pair(touching_[i], near));
         if (!island) continue;
-        for (std::size_t k = i; k < end; ++k)
-            island->contacts.push_back(touching_[k].contact), island->slots.push_back(touching_[k].slot);
+        for (std::size_t k = i; k < end; ++k) island->contacts.push_back(touching_[k].contact), island->slots.push_back(touching_[k].slot);
         end_run(*island, h);
     }
 }
 
-/// Shares out what the last detection found of persistent pairs. Both lists are sorted by detector, a and b.
+/// Shares out what the last detection found of persistent pairs.
 void HeldIslands::share_known(double h, bool trial)
 {
     std::vector<FoundContact>& found = contacts_.found();
+    const std::span<const PairKey> keys = contacts_.cache().keys();
+    const std::span<PairState> pairs = contacts_.cache().pairs();
     std::uint32_t law_detector = kNoIndex;
     SurfaceLaw law;
     std::size_t at = 0;
-    for (PairState& pair : contacts_.cache().pairs())
+    for (const FoundRun& found_run : contacts_.runs())
     {
-        const std::size_t begin = contacts_.first_of_pair(pair, at);
-        for (at = begin; at < found.size() && contacts_.is_of_pair(found[at], pair);) ++at;
-        if (at == begin || !pair.resting || !contacts_.detectors()[found[begin].detector].persists()) continue;
-        HeldIsland* const island = begin_run(found[begin], &pair);
+        while (at < keys.size() && keys[at] < found_run.key) ++at;
+        if (at + PairState::kAhead < pairs.size()) pairs[at + PairState::kAhead].prefetch();
+        const FoundContact& first = found[found_run.first];
+        if (at == keys.size() || keys[at] != found_run.key || !pairs[at].resting) continue;
+        if (!contacts_.detectors()[first.detector].persists()) continue;
+        HeldIsland* const island = begin_run(first, &pairs[at]);
         if (!island) continue;
-        if (found[begin].detector != law_detector)
-            law_detector = found[begin].detector, law = contacts_.response_law(law_detector);
-        add_known(*island, std::span(found).subspan(begin, at - begin), pair, law, trial);
+        if (first.detector != law_detector) law_detector = first.detector, law = contacts_.response_law(law_detector);
+        add_known(*island, std::span(found).subspan(found_run.first, found_run.end - found_run.first), pairs[at], law, trial);
         end_run(*island, h);
     }
 }
@@ -177,7 +178,7 @@ HeldIslands::HeldIsland* HeldIslands::begin_run(const FoundContact& first, PairS
         const std::uint32_t number = island_of_group_[step_.groups.of(r)];
         if (number == kNoIndex) continue;
         HeldIsland& island = *islands_[number];
-        island.runs.push_back({pair, first.detector, static_cast<std::uint32_t>(island.contacts.size()), 0, order});
+        island.runs.push_back({pair, first.detector, static_cast<std::uint32_t>(island.contacts.size()), 0, order, 0});
         return &island;
     }
     return nullptr;
@@ -188,6 +189,7 @@ void HeldIslands::end_run(HeldIsland& island, double h)
     Run& run = island.runs.back();
     run.end = static_cast<std::uint32_t>(island.contacts.size());
     const std::span<const Contact> own = island.of(run);
+    for (const Contact& c : own) run.most_depth = std::max(run.most_depth, std::fabs(c.depth));
     island.driven = island.driven || midpoint_.is_driven(own.front());
     if (island.turns || island.has_rows) return;
     island.turns = std::any_of(own.begin(), own.end(), [&](const Contact& c) { return midpoint_.turns(c, h); });
@@ -214,24 +216,28 @@ void HeldIslands::set_approach(HeldIsland& island, const GroupSystem& system, do
 
 void HeldIslands::report_paradoxes(HeldIsland& island, double time)
 {
-    const Bodies& bodies = step_.world.host().bodies;
-    wedging_.resize(bodies.size(), 0.0);
-    for (const std::uint32_t b : island.bodies) wedging_[b] = wedging(bodies, b);
+    wedging_.resize(step_.world.host().bodies.size(), 0.0);
+    for (const std::uint32_t b : island.bodies) wedging_[b] = contacts_.wedging_of(b);
     for (const Run& run : island.runs)
-        for (const Contact& c : island.of(run))
-        {
-            const double reach = std::max(wedging_[c.a.index] * length_squared(c.point - bodies.position[c.a.index]),
-                                          wedging_[c.b.index] * length_squared(c.point - bodies.position[c.b.index]));
-            if (!excludes_paradox(c.friction, reach) && contacts_.is_paradox(c)) contacts_.report_paradox(c, *run.pair, time);
-        }
+    {
+        const std::span<const Contact> own = island.of(run);
+        const Ref a = own.front().a, b = own.front().b;
+        // Where bodies are ahead of the start of the step, points may be anywhere near them.
+        const bool is_near = !island.turns && run.most_depth <= contacts_.depth_that_excludes(a, b);
+        if (is_near && excludes_paradox(own.front().friction, std::max(wedging_[a.index], wedging_[b.index]))) continue;
+        for (const Contact& c : own)
+            if (contacts_.is_paradox(c)) contacts_.report_paradox(c, *run.pair, time);
+    }
     for (const std::uint32_t b : island.bodies) wedging_[b] = 0;
 }
 
 /// Notes releases and keeps the impulses for the next step.
 void HeldIslands::keep(HeldIsland& island, double from, double h)
 {
-    for (const Run& run : island.runs)
+    for (std::size_t k = 0; k < island.runs.size(); ++k)
     {
+        if (k + PairState::kAhead < island.runs.size()) island.runs[k + PairState::kAhead].pair->prefetch();
+        const Run& run = island.runs[k];
         const std::span<Contact> own = island.of(run);
         if (is_released(island, run, from, h))
             for (Contact& c : own) c.impulse = {};
@@ -274,8 +280,7 @@ void HeldIslands::report_impacts(const HeldIsland& island, double time)
             Contact c = island.contacts[i];
             if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
             c.depth = island.motion.start_depth(i);
-            if (PairState& pair = *run.pair; pair.ahead)
-                pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, c, time);
+            if (PairState& pair = *run.pair; pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, c, time);
             step_.emit(contacts_.contact_event("contact.impact", *run.pair, time, c, c.impulse));
         }
 }

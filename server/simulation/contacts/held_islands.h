@@ -151,6 +151,7 @@ private:
             std::uint32_t detector = 0;
             std::uint32_t first = 0, end = 0;  ///< in `contacts`
             std::uint32_t order = 0;           ///< number of the pair among those of all islands
+            double most_depth = 0;             ///< m, largest depth or gap
         };
         std::vector<Run> runs;
         std::vector<std::uint32_t> slots;  ///< of each contact: FoundContact::slot
@@ -212,13 +213,13 @@ private:
         const Run* run = nullptr;
     };
     std::vector<TurningRun> turning_;
-    std::vector<FoundContact> at_midpoint_;      ///< contacts of turning_
+    std::vector<FoundContact> at_midpoint_;       ///< contacts of turning_
     std::vector<std::uint32_t> midpoint_places_;  ///< of at_midpoint_
     std::vector<std::uint32_t> plain_groups_;
     std::vector<FoundContact> touching_;         ///< detected for this advance
     std::uint32_t run_count_ = 0;                ///< pairs in all islands
     std::vector<std::uint32_t> member_of_body_;  ///< by host row, for HeldMotion::begin
-    std::vector<double> wedging_;                ///< 1/m^2, by host row, of the members of one island; else 0 (paradox.h)
+    std::vector<double> wedging_;                ///< by host row, of the members of one island; else 0 (paradox.h)
     std::vector<PairState> fresh_;
     std::vector<std::size_t> first_found_;  ///< parallel to fresh_
     std::vector<double> shaft_mobility_;
