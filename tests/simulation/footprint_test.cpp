@@ -152,7 +152,7 @@ TEST_CASE("a warm step of many islands allocates nothing, with 1, 2 and 4 thread
         CAPTURE(threads);
         Scene s(body, "dt=\"1/60\"", threads);
         REQUIRE_MESSAGE(s.loaded(), s.error());
-        s.step(120);
+        s.step(400);
         int quiet = 0;
         for (int i = 0; i < 120; ++i)
         {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "plab/surface.h"
 #include "simulation/contacts/contact_rules.h"
 #include "simulation/contacts/speculation.h"
 #include "simulation/motion/component_call.h"
@@ -18,44 +17,42 @@ namespace
 /// Largest extra margin with which a persistent pair is detected, as a fraction of the smaller body's radius.
 constexpr double kMostShare = 0.1;
 
-/// Keeps the contacts for which `counts` is true.
+/// Keeps the contacts of one detector for which `counts` is true, and lists the pairs.
 template <class Counts>
 class SelectingCollector final : public ContactCollector
 {
 public:
-    SelectingCollector(const world::World& world, std::vector<FoundContact>& out, const Counts& counts)
-        : ContactCollector(world, out), counts_(counts)
+    /// `detector`: component.
+    SelectingCollector(const world::World& world, std::uint32_t detector, std::vector<FoundContact>& out, std::vector<FoundRun>& runs,
+                       const Counts& counts)
+        : ContactCollector(world, out), detector_(detector), first_(out.size()), runs_(runs), counts_(counts)
     {
     }
     void add(const Contact& contact) override
     {
-        if (counts_(contact)) ContactCollector::add(contact);
+        if (!counts_(contact)) return;
+        const FoundContact& f = put(contact);
+        if (out_->size() > first_ + 1 && same_pair(f, *(&f - 1)))
+            in_order_ = in_order_ && (&f - 1)->contact.feature <= contact.feature;
+        else
+            begin_run(contact);
+        ++runs_.back().end;
     }
 
 private:
+    void begin_run(const Contact& contact)
+    {
+        const PairKey key(*world_, detector_, contact.a, contact.b);
+        in_order_ = in_order_ && (runs_.empty() || runs_.back().key < key);
+        const auto at = static_cast<std::uint32_t>(out_->size() - 1);
+        runs_.push_back({at, at, key});
+    }
+
+    std::uint32_t detector_;
+    std::size_t first_;
+    std::vector<FoundRun>& runs_;
     const Counts& counts_;
 };
-
-/// m: radius of the most strongly curved shape of a body, negative for surfaces that are touched from inside; infinite if it has none.
-double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
-{
-    double least = HUGE_VAL;
-    const auto add = [&](const Geometry& g)
-    {
-        const bool round = g.kind == GeometryKind::Sphere || g.kind == GeometryKind::Capsule || g.kind == GeometryKind::Cylinder;
-        if (round && g.size.x < std::fabs(least)) least = g.size.x;
-        const Surface surface = surface_of(g);
-        const bool inside = surface == Surface::Bore || surface == Surface::Bowl;
-        if (inside && surface_radius(g) < std::fabs(least)) least = -surface_radius(g);
-    };
-    for (const Ref shape : bodies.shapes[b])
-    {
-        const Geometry& g = shapes.geometry[shape.index];
-        add(g);
-        for (const std::uint32_t part : g.parts) add(shapes.geometry[part]);
-    }
-    return least;
-}
 
 /// m: gap that opens between two round bodies because they move straight on for h while they slide along one another. One step opens
 /// (v h)^2 / (2 (r_a + r_b)). After it they separate by twice that per step, and forces act against it one step later, so the gap can
@@ -82,7 +79,7 @@ Errors ContactBook::rebuild()
     if (Errors refused = check_contacts(step_.world, detectors_); !refused.empty()) return refused;
     cache_.refresh(step_.world, detectors_);
     resting_.forget();
-    found_.clear();
+    found_.clear(), runs_.clear();
     measure_bodies();
     list_participants();
     return {};
@@ -125,31 +122,6 @@ std::span<const Shortlist> ContactBook::shortlists_of(std::size_t detector, cons
     return std::span(shortlists_).first(lists.size());
 }
 
-void ContactBook::measure_bodies()
-{
-    const world::HostTables& host = step_.world.host();
-    const auto radius_of = [&](const Geometry& g)
-    {
-        double r = 0;
-        if (g.kind == GeometryKind::Plane) return std::numeric_limits<double>::infinity();
-        if (g.kind == GeometryKind::Sphere) r = g.size.x;
-        if (g.kind == GeometryKind::Box) r = length(g.size);
-        if (g.kind == GeometryKind::Capsule) r = g.size.x + g.size.z;
-        if (g.kind == GeometryKind::Cylinder) r = std::hypot(g.size.x, g.size.z);
-        for (const Vec3& v : g.vertices) r = std::max(r, length(v));
-        return r;
-    };
-    curve_radius_of_body_.clear();
-    for (std::uint32_t b = 0; b < host.bodies.size(); ++b) curve_radius_of_body_.push_back(curve_radius(host.bodies, host.shapes, b));
-    radius_of_body_.assign(host.bodies.size(), 0.0);
-    for (std::size_t b = 0; b < radius_of_body_.size(); ++b)
-        for (const Ref shape : host.bodies.shapes[b])
-        {
-            const Geometry& g = host.shapes.geometry[shape.index];
-            radius_of_body_[b] = std::max(radius_of_body_[b], length(g.pose.p - host.bodies.center_B[b]) + radius_of(g));
-        }
-}
-
 void ContactBook::query(const Detector& detector, ContactSink& sink, const IndexSet* active)
 {
     const auto index = static_cast<std::size_t>(&detector - detectors_.data());
@@ -190,15 +162,15 @@ bool ContactBook::detect(const Detector& detector, std::uint32_t index, std::spa
     return ask(detector, sink, persistent, only_persistent);
 }
 
-void ContactBook::detect_all(std::vector<FoundContact>& out)
+void ContactBook::detect_all()
 {
-    out.clear();
+    found_.clear(), runs_.clear();
     bool in_order = true;
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         if (detectors_[d].by_rows && detectors_[d].persists())
         {
-            in_order = detect_with_gaps(d, out) && in_order;
+            in_order = detect_with_gaps(d) && in_order;
             continue;
         }
         persistent_.clear();
@@ -206,8 +178,8 @@ void ContactBook::detect_all(std::vector<FoundContact>& out)
         for (const PairState& p : cache_.pairs())
             if (p.resting && p.detector == detectors_[d].component)
                 persistent_.push_back({p.a, p.b, {}}), margin = std::max(margin, persistence_margin(p));
-        const std::size_t first = out.size();
-        in_order = detect(detectors_[d], d, persistent_, false, out, margin) && in_order;
+        const std::size_t first = found_.size();
+        in_order = detect(detectors_[d], d, persistent_, false, found_, margin) && in_order;
         // A detection pass has one margin, the largest of all persistent pairs. Gaps count for persistent pairs only, each up to its own
         // margin, so the others are dropped again.
         std::size_t near = 0;
@@ -217,14 +189,43 @@ void ContactBook::detect_all(std::vector<FoundContact>& out)
             const PairState* pair = find_pair(f, near);
             return !pair || !pair->resting || f.contact.depth <= -persistence_margin(*pair);
         };
-        out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
+        found_.erase(std::remove_if(found_.begin() + static_cast<std::ptrdiff_t>(first), found_.end(), far), found_.end());
+        list_runs(first);
     }
-    if (!in_order) sort_contacts(out, step_.world);
+    if (in_order) return;
+    sort_contacts(found_, step_.world);
+    runs_.clear(), list_runs(0);
+}
+
+/// Adds the pairs in found_ from this place on.
+void ContactBook::list_runs(std::size_t from)
+{
+    for (auto i = static_cast<std::uint32_t>(from), end = i; i < found_.size(); i = end)
+    {
+        while (end < found_.size() && same_pair(found_[end], found_[i])) ++end;
+        const FoundContact& f = found_[i];
+        runs_.push_back({i, end, PairKey(step_.world, detectors_[f.detector].component, f.contact.a, f.contact.b)});
+    }
+}
+
+void ContactBook::detect_known_pairs()
+{
+    found_.clear(), runs_.clear();
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        persistent_.clear();
+        for (const PairState& p : cache_.pairs())
+            if (p.detector == detectors_[d].component)
+                persistent_.push_back({p.a, p.b, p.resting ? p.normal * -persistence_margin(p) : Vec3{}});
+        if (!persistent_.empty()) detect(detectors_[d], d, persistent_, true, found_);
+    }
+    sort_contacts(found_, step_.world);
+    list_runs(0);
 }
 
 /// Contacts of a detector whose pairs are persistent as soon as they touch. Includes gaps up to the persistence margin, gaps that may close
 /// within the step (speculative contacts), and, for pairs that pressed, gaps that curvature opens. Returns whether they are sorted.
-bool ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out)
+bool ContactBook::detect_with_gaps(std::uint32_t index)
 {
     const Detector& detector = detectors_[index];
     const Bodies& bodies = step_.world.host().bodies;
@@ -255,7 +256,7 @@ bool ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
         if (c.depth > 0 || c.depth > -persistence_margin(c.a, c.b) || c.depth > -margin_of(c)) return true;
         return detector.speculates && may_close(bodies, radius_of_body_, c, acceleration, step_.frame.step);
     };
-    SelectingCollector sink(step_.world, out, counts);
+    SelectingCollector sink(step_.world, detector.component, found_, runs_, counts);
     sink.begin_query(index, {}, false, margin);
     return ask(detector, sink, {}, false);
 }
@@ -353,18 +354,6 @@ double ContactBook::normal_velocity(const Contact& c) const
 bool ContactBook::is_of_pair(const FoundContact& f, const PairState& pair) const
 {
     return detectors_[f.detector].component == pair.detector && f.contact.a == pair.a && f.contact.b == pair.b;
-}
-
-std::size_t ContactBook::first_of_pair(const PairState& pair, std::size_t from) const
-{
-    // Mostly there is nothing between the contacts of two pairs.
-    if (from >= found_.size() || is_of_pair(found_[from], pair)) return from;
-    // Both lists are sorted by detector, a and b, so one pass serves all pairs.
-    const PairKey wanted(step_.world, pair.detector, pair.a, pair.b);
-    const auto key = [&](const FoundContact& f)
-    { return PairKey(step_.world, detectors_[f.detector].component, f.contact.a, f.contact.b); };
-    while (from < found_.size() && key(found_[from]) < wanted) ++from;
-    return from;
 }
 
 }  // namespace plab::simulation

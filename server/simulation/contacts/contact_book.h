@@ -34,6 +34,8 @@ public:
     /// Contacts at the end of the last step, or at the start of the present one until its end is known.
     std::vector<FoundContact>& found() { return found_; }
     const std::vector<FoundContact>& found() const { return found_; }
+    /// The pairs in found(), in order.
+    std::span<const FoundRun> runs() const { return runs_; }
 
     // Sizes and margins ----------------------------------------------------------------------------------------------------
     /// m, by body: radius of the bounding sphere about the centre of mass; infinite for planes.
@@ -60,8 +62,10 @@ public:
     /// The same with a sink of the caller. `active`: the bodies to consider, of which one at least is in each pair; null: all. A detector
     /// must have looked at all bodies before in this step, and nobody but these may have moved since.
     void query(const Detector& detector, ContactSink& sink, const IndexSet* active = nullptr);
-    /// What all detectors find, sorted.
-    void detect_all(std::vector<FoundContact>& out);
+    /// Sets found() to what all detectors find.
+    void detect_all();
+    /// Sets found() to the contacts of known pairs, where all others are certain to be apart.
+    void detect_known_pairs();
     /// The contacts of persistent pairs with a member in `groups` (ascending), including gaps that may close within `h` (s).
     void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h = 0);
     /// Gives contacts of known pairs the impulses that an advance starts from (KnownContact::warm_start).
@@ -70,8 +74,6 @@ public:
     /// The same, faster for contacts in the order of pairs (ContactCache::find).
     PairState* find_pair(const FoundContact& found, std::size_t& near);
     bool is_of_pair(const FoundContact& found, const PairState& pair) const;
-    /// Index at which the contacts of a pair begin in found(), or would begin; `from`: where those of the previous pair end.
-    std::size_t first_of_pair(const PairState& pair, std::size_t from) const;
 
     // Responses ------------------------------------------------------------------------------------------------------------
     /// Sets friction and restitution: from the pair of materials if there is one, otherwise from the response.
@@ -88,6 +90,9 @@ public:
     Event contact_event(const char* kind, const PairState& pair, double time, const Contact& at, const Vec3& impulse = {}) const;
     /// Whether two touching bodies slide in such a way that pressing harder would close them faster (paradox.h).
     bool is_paradox(const Contact& contact) const;
+    /// For excludes_paradox(), where overlaps and gaps are at most depth_that_excludes() (m).
+    double wedging_of(std::uint32_t body) const;
+    double depth_that_excludes(Ref a, Ref b) const;
     void report_paradox(const Contact& contact, PairState& pair, double time);
     /// Sums over the points of a pair in an advance, from which its release is decided. First the impulses of all points, before they are
     /// stored; if the pair then presses no more (stops_pressing), the speeds of all points, and note_release().
@@ -117,8 +122,8 @@ public:
     /// Whether a pair that pressed in the last step presses no more in this advance.
     bool stops_pressing(PairState& pair, const Pressing& pressing) const;
     /// Of a pair that stops pressing. `first`: one of its points. If it opens, its force went through zero
-    /// between the middles of the two steps; linear interpolation gives the time with order 2, and it may lie in the last step. The event is
-    /// emitted when the step is over, because after a rewind the pair may turn out to hold on.
+    /// between the middles of the two steps; linear interpolation gives the time with order 2, and it may lie in the last step. The event
+    /// is emitted when the step is over, because after a rewind the pair may turn out to hold on.
     void note_release(PairState& pair, const Contact& first, const Pressing& pressing, double from, double h);
     /// Emits the release that was noted for this pair. True if there is one.
     bool report_release(PairState& pair);
@@ -129,7 +134,8 @@ private:
     std::span<const Shortlist> shortlists_of(std::size_t detector, const IndexSet& active);
     double curves_of(Ref a, Ref b) const { return std::fabs(curve_radius_of_body_[a.index] + curve_radius_of_body_[b.index]); }
     void measure_islands(ContactLoad& load);
-    bool detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
+    bool detect_with_gaps(std::uint32_t index);
+    void list_runs(std::size_t from);
     bool ask(const Detector& detector, ContactCollector& sink, std::span<const PersistentPair> persistent, bool only_persistent);
     double gap_margin(const PairState& pair, double h) const;
     void drop_far(std::vector<FoundContact>& out, double h) const;
@@ -141,6 +147,8 @@ private:
     ContactCache cache_;
     RestingPairs resting_{step_.world, step_.groups, cache_, step_.report.looked_at};
     std::vector<FoundContact> found_;
+    std::vector<FoundRun> runs_;                ///< of found_
+    std::vector<Vec3> extents_of_body_;         ///< m, about C along the axes of B: no point is further; infinite where they are not known
     std::vector<double> radius_of_body_;        ///< m, about C; infinite for planes
     std::vector<double> curve_radius_of_body_;  ///< m, of the most strongly curved shape; negative inside, infinite if there is none
     std::vector<Event> releases_;               ///< noted in this step, emitted when it is over

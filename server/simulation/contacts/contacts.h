@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <compare>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -128,6 +129,10 @@ struct PairState : PairHead
 
     PointBlock contacts;  ///< the first `count` are in use
 
+    /// For loops over pairs, which come to blocks in no order of memory: asks for the block of a pair this many places ahead.
+    static constexpr std::size_t kAhead = 6;
+    void prefetch() const { __builtin_prefetch(contacts.begin()); }
+
     std::span<KnownContact> all() { return {contacts.begin(), count}; }
     std::span<const KnownContact> all() const { return {contacts.begin(), count}; }
     /// Adds a contact with default values; there must be fewer than kMostContacts.
@@ -157,6 +162,13 @@ struct PairKey
     friend auto operator<=>(const PairKey&, const PairKey&) = default;
 };
 
+/// The contacts of a pair in a sorted list of contacts.
+struct FoundRun
+{
+    std::uint32_t first = 0, end = 0;
+    PairKey key;
+};
+
 /// All known pairs, sorted by detector, a and b in id order. Searches read a list of keys (12 bytes a pair) that always corresponds to
 /// the pairs one to one, so pairs are added and dropped through this class only. Blocks of points that pairs leave behind are reused, so
 /// that contacts that begin and end in a warm step allocate nothing.
@@ -171,7 +183,7 @@ public:
     /// Adds pairs that are not known yet and have no contacts, in one pass. `fresh` is sorted like pairs().
     void add_sorted(std::span<const PairState> fresh, const world::World& world);
     void erase(PairState& pair);
-    /// Asks `ends` once for each pair, in order, and drops those for which it is true.
+    /// Asks ends(pair) or ends(pair, key) once for each pair, in order, and drops those for which it is true.
     template <class Ends>
     void drop_if(Ends ends);
     /// Takes pairs in any order in place of the present ones.
@@ -241,7 +253,13 @@ void ContactCache::drop_if(Ends ends)
     std::size_t kept = 0;
     for (std::size_t i = 0; i < pairs_.size(); ++i)
     {
-        if (ends(pairs_[i])) continue;
+        if (i + PairState::kAhead < pairs_.size()) pairs_[i + PairState::kAhead].prefetch();
+        if constexpr (std::is_invocable_v<Ends, PairState&, const PairKey&>)
+        {
+            if (ends(pairs_[i], keys_[i])) continue;
+        }
+        else if (ends(pairs_[i]))
+            continue;
         if (kept != i) std::swap(pairs_[kept], pairs_[i]), keys_[kept] = keys_[i];
         ++kept;
     }
@@ -274,7 +292,7 @@ public:
     double margin() const override { return margin_; }
     void add(const Contact& contact) override
     {
-        const FoundContact& last = out_->emplace_back(contact, detector_);
+        const FoundContact& last = put(contact);
         if (out_->size() > 1 && simulation::precedes(last, *(&last - 1), *world_)) in_order_ = false;
     }
     bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
@@ -283,15 +301,27 @@ public:
     /// Whether what was added is sorted, also behind what was there before.
     bool in_order() const { return in_order_; }
 
-private:
+protected:
+    /// Adds what a detection fills in.
+    FoundContact& put(const Contact& from)
+    {
+        FoundContact& f = out_->emplace_back();
+        Contact& c = f.contact;
+        c.a = from.a, c.b = from.b, c.feature = from.feature, c.point = from.point, c.normal = from.normal, c.depth = from.depth;
+        f.detector = detector_;
+        return f;
+    }
+
     const world::World* world_;
     std::vector<FoundContact>* out_;
+    bool in_order_ = true;
+
+private:
     double further_pairs_ = 0;
     std::uint32_t detector_ = 0;
     std::span<const PersistentPair> persistent_;
     bool only_persistent_ = false;
     double margin_ = 0;
-    bool in_order_ = true;
 };
 
 /// Collects the pairs that may meet, given each body's motion margin, by which its AABB is expanded.

@@ -98,16 +98,11 @@ void HardContacts::update_features(PairState& pair, std::span<FoundContact> foun
     pair.count = static_cast<std::uint32_t>(std::remove_if(all.begin(), all.end(), is_past) - all.begin());
 }
 
-/// With the contacts of the end of the step: whether a pair is no longer known. `at`: where the contacts of the pair before it end in
-/// found(); moved behind its own.
-bool HardContacts::ends(PairState& pair, std::size_t& at, double time)
+/// With its contacts of the end of the step: whether a pair is no longer known.
+bool HardContacts::ends(PairState& pair, std::span<FoundContact> own, double time)
 {
-    std::vector<FoundContact>& found = contacts_.found();
-    const std::size_t begin = contacts_.first_of_pair(pair, at);
     double deepest = -HUGE_VAL;
-    for (at = begin; at < found.size() && contacts_.is_of_pair(found[at], pair); ++at)
-        deepest = std::max(deepest, found[at].contact.depth);
-    const std::span<FoundContact> own = std::span(found).subspan(begin, at - begin);
+    for (const FoundContact& f : own) deepest = std::max(deepest, f.contact.depth);
     const bool touches = deepest > 0 || (pair.resting && !own.empty() && deepest > -contacts_.persistence_margin(pair));
     const bool was_held = !touches && pressed(pair);
     const bool released = contacts_.report_release(pair);
@@ -137,8 +132,15 @@ void HardContacts::finish_step()
     }
     positions_.ease_overlaps();
     positions_.correct_positions();
-    std::size_t at = 0;
-    contacts_.cache().drop_if([&](PairState& pair) { return ends(pair, at, time); });
+    auto run = contacts_.runs().begin();
+    const auto last = contacts_.runs().end();
+    const auto ended = [&](PairState& pair, const PairKey& key)
+    {
+        while (run != last && run->key < key) ++run;
+        const bool any = run != last && run->key == key;
+        return ends(pair, any ? std::span(found).subspan(run->first, run->end - run->first) : std::span<FoundContact>(), time);
+    };
+    contacts_.cache().drop_if(ended);
     for (const FoundContact& f : found) step_.report.deepest = std::max(step_.report.deepest, f.contact.depth);
 }
 

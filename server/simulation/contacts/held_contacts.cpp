@@ -31,7 +31,7 @@ void HeldIslands::begin_step()
     const bool any_persists = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(),
                                           [](const Detector& d) { return d.by_rows && d.persists(); });
     if (!any_persists || is_current()) return;
-    contacts_.detect_all(contacts_.found());
+    contacts_.detect_all();
     adopt(contacts_.found(), step_.frame.start_time);
     note_state();
 }
@@ -39,26 +39,25 @@ void HeldIslands::begin_step()
 void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
 {
     fresh_.clear(), first_found_.clear();
-    std::size_t near = 0;
-    for (std::size_t i = 0; i < found.size();)
+    const std::span<const PairKey> keys = contacts_.cache().keys();
+    std::size_t at = 0;
+    for (const FoundRun& run : contacts_.runs())
     {
-        const FoundContact& first = found[i];
-        double deepest = first.contact.depth;
-        std::size_t end = i;
-        for (; end < found.size() && same_pair(found[end], first); ++end) deepest = std::max(deepest, found[end].contact.depth);
+        while (at < keys.size() && keys[at] < run.key) ++at;
+        if (at < keys.size() && keys[at] == run.key) continue;
+        const FoundContact& first = found[run.first];
         const Detector& d = contacts_.detectors()[first.detector];
-        if (d.by_rows && d.persists() && !contacts_.cache().find(d.component, first.contact.a, first.contact.b, step_.world, near))
-        {
-            PairState& pair = fresh_.emplace_back();
-            pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = step_.frame.tick;
-            pair.resting = true, pair.normal = first.contact.normal;
-            pair.ahead = deepest <= -contacts_.persistence_margin(pair);
-            if (pair.ahead && !d.speculates)
-                fresh_.pop_back();
-            else
-                first_found_.push_back(i);
-        }
-        i = end;
+        if (!d.by_rows || !d.persists()) continue;
+        double deepest = first.contact.depth;
+        for (std::uint32_t i = run.first; i < run.end; ++i) deepest = std::max(deepest, found[i].contact.depth);
+        PairState& pair = fresh_.emplace_back();
+        pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = step_.frame.tick;
+        pair.resting = true, pair.normal = first.contact.normal;
+        pair.ahead = deepest <= -contacts_.persistence_margin(pair);
+        if (pair.ahead && !d.speculates)
+            fresh_.pop_back();
+        else
+            first_found_.push_back(run.first);
     }
     if (fresh_.empty()) return;
     contacts_.cache().add_sorted(fresh_, step_.world);
@@ -126,17 +125,19 @@ void HeldIslands::list_touching()
     }
 }
 
-/// Lists what the last detection found of persistent pairs. Both lists are sorted by detector, a and b.
+/// Lists what the last detection found of persistent pairs.
 void HeldIslands::list_known()
 {
     const std::vector<FoundContact>& found = contacts_.found();
+    const std::span<const PairKey> keys = contacts_.cache().keys();
+    const std::span<PairState> pairs = contacts_.cache().pairs();
     std::size_t at = 0;
-    for (PairState& pair : contacts_.cache().pairs())
+    for (const FoundRun& run : contacts_.runs())
     {
-        const std::size_t begin = contacts_.first_of_pair(pair, at);
-        for (at = begin; at < found.size() && contacts_.is_of_pair(found[at], pair);) ++at;
-        if (at == begin || !pair.resting || !contacts_.detectors()[found[begin].detector].persists()) continue;
-        add_run(std::span(found).subspan(begin, at - begin), &pair, true);
+        while (at < keys.size() && keys[at] < run.key) ++at;
+        if (at == keys.size() || keys[at] != run.key || !pairs[at].resting) continue;
+        if (!contacts_.detectors()[found[run.first].detector].persists()) continue;
+        add_run(std::span(found).subspan(run.first, run.end - run.first), &pairs[at], true);
     }
 }
 
@@ -172,7 +173,11 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
               for_parts(&step_.workers, island.runs.size(), kRunPart,
                         [&](std::size_t begin, std::size_t end)
                         {
-                            for (std::size_t k = begin; k < end; ++k) fill_run(island, island.runs[k], h, trial);
+                            for (std::size_t k = begin; k < end; ++k)
+                            {
+                                if (k + PairState::kAhead < end) island.runs[k + PairState::kAhead].pair->prefetch();
+                                fill_run(island, island.runs[k], h, trial);
+                            }
                         });
           });
     // A contact that its pair does not know yet gets an id, and ids are given in the order of the pairs.
@@ -213,8 +218,9 @@ void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
         else
             take_known(c, f.contact, all[slot], trial), island.slots[i] = slot;
     }
-    if (island.has_rows) return;
     const std::span<const Contact> contacts = island.of(run);
+    for (const Contact& c : contacts) run.most_depth = std::max(run.most_depth, std::fabs(c.depth));
+    if (island.has_rows) return;
     if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return midpoint_.turns(c, h); }))
         std::atomic_ref(island.turns).store(true, std::memory_order_relaxed);
 }

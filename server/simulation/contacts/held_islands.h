@@ -156,7 +156,8 @@ private:
             std::uint32_t first = 0, end = 0;     ///< in `contacts`
             std::uint32_t order = 0;              ///< number of the pair among those of all islands
             bool known = false;                   ///< found by the last detection: the pair knows what is missing
-            // Results of a pass that threads share:
+            // Results of passes that threads share:
+            double most_depth = 0;    ///< m, largest depth or gap
             bool incomplete = false;  ///< the pair does not know all of its contacts yet
             bool released = false;
         };
@@ -257,7 +258,7 @@ private:
     std::vector<FoundContact> touching_;         ///< detected for this advance
     std::uint32_t run_count_ = 0;                ///< pairs in all islands
     std::vector<std::uint32_t> member_of_body_;  ///< by host row, for HeldMotion::begin
-    std::vector<double> wedging_;                ///< 1/m^2, by host row, of the members of one island; else 0 (paradox.h)
+    std::vector<double> wedging_;                ///< by host row, of the members of one island; else 0 (paradox.h)
     std::vector<PairState> fresh_;
     std::vector<std::size_t> first_found_;  ///< parallel to fresh_
     std::vector<double> shaft_mobility_;

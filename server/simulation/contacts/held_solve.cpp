@@ -139,23 +139,25 @@ double HeldIslands::mobility_of(std::uint32_t root) const
 
 void HeldIslands::find_paradoxes(HeldIsland& island)
 {
-    const Bodies& bodies = step_.world.host().bodies;
     for_parts(&step_.workers, island.bodies.size(), kPart,
               [&](std::size_t begin, std::size_t end)
               {
-                  for (std::size_t k = begin; k < end; ++k) wedging_[island.bodies[k]] = wedging(bodies, island.bodies[k]);
+                  for (std::size_t k = begin; k < end; ++k) wedging_[island.bodies[k]] = contacts_.wedging_of(island.bodies[k]);
               });
     island.jams.resize(island.contacts.size());
-    for_parts(&step_.workers, island.contacts.size(), kPart,
+    const auto find_in = [&](const Run& run)
+    {
+        const std::span<const Contact> own = island.of(run);
+        const Ref a = own.front().a, b = own.front().b;
+        // Where bodies are ahead of the start of the step, points may be anywhere near them.
+        const bool is_near = !island.turns && run.most_depth <= contacts_.depth_that_excludes(a, b);
+        const bool excluded = is_near && excludes_paradox(own.front().friction, std::max(wedging_[a.index], wedging_[b.index]));
+        for (std::uint32_t i = run.first; i < run.end; ++i) island.jams[i] = !excluded && contacts_.is_paradox(island.contacts[i]) ? 1 : 0;
+    };
+    for_parts(&step_.workers, island.runs.size(), kRunPart,
               [&](std::size_t begin, std::size_t end)
               {
-                  for (std::size_t i = begin; i < end; ++i)
-                  {
-                      const Contact& c = island.contacts[i];
-                      const double reach = std::max(wedging_[c.a.index] * length_squared(c.point - bodies.position[c.a.index]),
-                                                    wedging_[c.b.index] * length_squared(c.point - bodies.position[c.b.index]));
-                      island.jams[i] = !excludes_paradox(c.friction, reach) && contacts_.is_paradox(c) ? 1 : 0;
-                  }
+                  for (std::size_t k = begin; k < end; ++k) find_in(island.runs[k]);
               });
     for (const std::uint32_t b : island.bodies) wedging_[b] = 0;
 }
@@ -187,7 +189,11 @@ void HeldIslands::keep(HeldIsland& island, double h)
     for_parts(&step_.workers, island.runs.size(), kRunPart,
               [&](std::size_t begin, std::size_t end)
               {
-                  for (std::size_t k = begin; k < end; ++k) keep_run(k);
+                  for (std::size_t k = begin; k < end; ++k)
+                  {
+                      if (k + PairState::kAhead < end) island.runs[k + PairState::kAhead].pair->prefetch();
+                      keep_run(k);
+                  }
               });
 }
 

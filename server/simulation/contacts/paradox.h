@@ -16,7 +16,13 @@
 ///
 ///   K_nn - mu K_nt . s  >=  1/m + x - mu sqrt(x y)  >=  sqrt(x) (2 / sqrt(m) - mu sqrt(y))
 ///
-/// which is positive if mu^2 y m < 4, and y is at most |r|^2 times the largest eigenvalue of I^-1. A cube has no paradox with mu < 0.94.
+/// which is positive if mu^2 m y < 4. y is at most the largest eigenvalue of M(r) = [r]^T I^-1 [r], a convex function of r that is largest
+/// at the corners of a box around the body. In the principal axes, with A = I^-1 and r = (x, y, z), M has the eigenvalue 0 and two with
+///
+///   sum      A_x (y^2 + z^2) + A_y (z^2 + x^2) + A_z (x^2 + y^2)
+///   product  (A_y A_z x^2 + A_z A_x y^2 + A_x A_y z^2) |r|^2
+///
+/// So a cube has no paradox with mu < 0.94, and a brick of 2 x 1 x 1 none with mu < 0.86.
 #pragma once
 
 #include "plab/collision.h"
@@ -29,10 +35,10 @@ namespace plab::simulation
 /// of h (s), or if neither body can move.
 double pressing_share(const Bodies& bodies, const Contact& contact, double h);
 
-/// 1/m^2: mass times (a bound of) the largest eigenvalue of the inverse inertia of a body; 0 unless it is dynamic.
-double wedging(const Bodies& bodies, std::uint32_t body);
-/// Whether pressing_share() is positive for certain, whatever the velocities. `reach`: wedging() times the square of the distance of the
-/// contact from the centre of mass, the larger one of the two bodies.
-inline bool excludes_paradox(double friction, double reach) { return friction * friction * reach < 3.99; }
+/// A bound of m y for contacts at points within `extents` (m, about C along the axes of B, may be infinite) and `radius` (m); 0 unless the
+/// body is dynamic.
+double wedging(const Bodies& bodies, std::uint32_t body, const Vec3& extents, double radius);
+/// Whether pressing_share() is positive for certain, whatever the velocities; `wedging`: the larger one of the two bodies.
+inline bool excludes_paradox(double friction, double wedging) { return friction * friction * wedging < 3.99; }
 
 }  // namespace plab::simulation

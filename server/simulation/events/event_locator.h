@@ -138,7 +138,6 @@ private:
     void find_near(bool only_rewound);
     void consider_near(std::uint32_t detector, Ref a, Ref b);
     void detect_pair(const Candidate& candidate, const Vec3& shift, std::vector<FoundContact>& found);
-    void query_known_pairs(std::vector<FoundContact>& found);
     Mover mover(std::uint32_t body, const BodyState& now) const { return {body, &motions_[body], &extents_[body], now}; }
     void start_pieces(double time);
     void end_pieces();
@@ -211,20 +210,20 @@ private:
     Advance& advance_;
     std::vector<Candidate> candidates_;  ///< slots
     std::vector<std::uint32_t> free_;
-    std::vector<Entry> queue_;                        ///< heap, earliest event on top
-    std::vector<std::uint64_t> versions_;             ///< by group: number of its present smooth piece within the step
-    std::vector<std::uint32_t> chosen_;               ///< slots that are answered together
-    std::vector<std::uint32_t> set_aside_;            ///< slots
-    std::vector<std::uint32_t> scope_;                ///< groups that are rewound, ascending
-    std::vector<std::uint32_t> left_;                 ///< scratch of move_scope()
-    std::vector<std::uint32_t> resting_places_;       ///< of the persistent pairs in a scope
-    std::vector<std::uint8_t> flags_;                 ///< by group, scratch
-    IndexSet in_scope_;                               ///< groups, while a scope is collected
-    std::vector<std::uint32_t> disturbed_;            ///< groups of the last answer's pairs, and what rests on them
-    std::vector<std::uint8_t> rests_;                 ///< by group: it takes part in a persistent contact
-    bool any_rests_ = false;                          ///< a group in the scope of the present answer takes part in a persistent contact
-    bool rewound_ = false;                            ///< the last answer rewound groups
-    bool answers_at_end_ = false;                     ///< the work budget is spent: nothing is located any more
+    std::vector<Entry> queue_;                   ///< heap, earliest event on top
+    std::vector<std::uint64_t> versions_;        ///< by group: number of its present smooth piece within the step
+    std::vector<std::uint32_t> chosen_;          ///< slots that are answered together
+    std::vector<std::uint32_t> set_aside_;       ///< slots
+    std::vector<std::uint32_t> scope_;           ///< groups that are rewound, ascending
+    std::vector<std::uint32_t> left_;            ///< scratch of move_scope()
+    std::vector<std::uint32_t> resting_places_;  ///< of the persistent pairs in a scope
+    std::vector<std::uint8_t> flags_;            ///< by group, scratch
+    IndexSet in_scope_;                          ///< groups, while a scope is collected
+    std::vector<std::uint32_t> disturbed_;       ///< groups of the last answer's pairs, and what rests on them
+    std::vector<std::uint8_t> rests_;            ///< by group: it takes part in a persistent contact
+    bool any_rests_ = false;                     ///< a group in the scope of the present answer takes part in a persistent contact
+    bool rewound_ = false;                       ///< the last answer rewound groups
+    bool answers_at_end_ = false;                ///< the work budget is spent: nothing is located any more
     WorkBudget budget_;
     std::vector<PairKey> live_;          ///< pairs in the queue, sorted
     std::vector<ShapeGap> shape_gaps_;   ///< of the last distance query, if a body has several shapes
@@ -266,7 +265,6 @@ private:
     double rest_time_ = 0;               ///< s, time at which the pair that is being recorded comes to rest
     std::vector<std::uint8_t> paradox_;  ///< parallel to impact_: not an impact, but the answer to Painleve's paradox
     bool meets_force_contact_ = false;
-    std::vector<PersistentPair> persistent_;
     std::vector<FoundContact> seen_, impact_, at_end_;
 };
 

@@ -32,19 +32,11 @@ struct Draw
     double operator()(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); }
     Vec3 direction() { return normalized(Vec3{(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)}); }
     Quat turn() { return exp_rotation(direction() * (*this)(0, 3)); }
-    /// A box of mass m with half extents that differ by up to `slender`.
-    Vec3 inertia_of_box(double m, double slender)
-    {
-        const Vec3 h{(*this)(1, slender), (*this)(1, slender), (*this)(1, slender)};
-        return Vec3{h.y * h.y + h.z * h.z, h.z * h.z + h.x * h.x, h.x * h.x + h.y * h.y} * (m / 3);
-    }
+    Vec3 half(double slender) { return {(*this)(1, slender), (*this)(1, slender), (*this)(1, slender)}; }
+    Vec3 point_in(const Vec3& h) { return {(*this)(-h.x, h.x), (*this)(-h.y, h.y), (*this)(-h.z, h.z)}; }
 };
 
-double reach_of(const Bodies& b, const Contact& c)
-{
-    return std::max(wedging(b, c.a.index) * length_squared(c.point - b.position[c.a.index]),
-                    wedging(b, c.b.index) * length_squared(c.point - b.position[c.b.index]));
-}
+Vec3 inertia_of_box(double m, const Vec3& h) { return Vec3{h.y * h.y + h.z * h.z, h.z * h.z + h.x * h.x, h.x * h.x + h.y * h.y} * (m / 3); }
 
 }  // namespace
 
@@ -57,15 +49,20 @@ TEST_CASE("no contact that the bound excludes has Painleve's paradox, and some t
     {
         Bodies b;
         const double m = draw(0.1, 10), n = i % 3 == 0 ? 0 : draw(0.1, 10);
-        add_body(b, n, draw.inertia_of_box(n, 8), draw.turn());
-        add_body(b, m, draw.inertia_of_box(m, 8), draw.turn());
-        b.position[0] = draw.direction() * draw(0, 8), b.position[1] = draw.direction() * draw(0, 8);
+        const double slender = i % 2 == 0 ? 2 : 8;
+        const Vec3 ha = draw.half(slender), hb = draw.half(slender);
+        add_body(b, n, inertia_of_box(n, ha), draw.turn());
+        add_body(b, m, inertia_of_box(m, hb), draw.turn());
+        // The contact is at the origin, somewhere in both boxes, mostly at a corner.
+        const bool corner = i % 5 != 0;
+        b.position[0] = rotate(b.orientation[0], corner ? ha : draw.point_in(ha));
+        b.position[1] = rotate(b.orientation[1], corner ? hb : draw.point_in(hb));
         b.velocity[1] = draw.direction() * 10;
         Contact c;
         c.a = {Facet::Body, 0}, c.b = {Facet::Body, 1};
         c.normal = draw.direction(), c.friction = draw(0, 4);
         const double share = pressing_share(b, c, 1);
-        if (excludes_paradox(c.friction, reach_of(b, c)))
+        if (excludes_paradox(c.friction, std::max(wedging(b, 0, ha, length(ha)), wedging(b, 1, hb, length(hb)))))
             ++excluded, least = std::min(least, share);
         else if (share <= 0)
             ++paradoxes;
@@ -76,17 +73,22 @@ TEST_CASE("no contact that the bound excludes has Painleve's paradox, and some t
     CHECK(least < 0.5);  // the bound was put to the test
 }
 
-TEST_CASE("a cube is excluded up to a friction of 0.94, a slender rod of a length of 20 widths is not")
+TEST_CASE("up to which friction boxes are excluded")
 {
-    Bodies b;
-    add_body(b, 0, {}, {}), add_body(b, 3, Vec3{2, 2, 2}, {});  // a cube with half extents of 1 m: I = 2/3 m h^2
-    Contact c;
-    c.a = {Facet::Body, 0}, c.b = {Facet::Body, 1};
-    c.point = {1, 1, 1};
-    CHECK(excludes_paradox(0.93, reach_of(b, c)));
-    CHECK_FALSE(excludes_paradox(0.95, reach_of(b, c)));
-    const double long_one = 401.0, thin = 2.0;  // h^2 + w^2 of half extents 20, 1, 1
-    b.inverse_inertia_B[1] = Mat3::diagonal(1 / thin, 1 / long_one, 1 / long_one);
-    c.point = {20, 1, 1};
-    CHECK_FALSE(excludes_paradox(0.3, reach_of(b, c)));
+    const auto is_excluded = [](const Vec3& h, double friction, bool knows_extents)
+    {
+        Bodies b;
+        add_body(b, 3, inertia_of_box(3, h), {});
+        const Vec3 unknown{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+        return excludes_paradox(friction, wedging(b, 0, knows_extents ? h : unknown, length(h)));
+    };
+    // A cube: m y = 4.5 at its corners, for each direction of sliding. A brick of 2 x 1 x 1: 5.4.
+    CHECK(is_excluded({1, 1, 1}, 0.94, true));
+    CHECK_FALSE(is_excluded({1, 1, 1}, 0.95, true));
+    CHECK(is_excluded({0.5, 0.25, 0.25}, 0.85, true));
+    CHECK_FALSE(is_excluded({0.5, 0.25, 0.25}, 0.87, true));
+    // By its radius alone: |r|^2 m / I.
+    CHECK(is_excluded({0.5, 0.25, 0.25}, 0.66, false));
+    CHECK_FALSE(is_excluded({0.5, 0.25, 0.25}, 0.67, false));
+    CHECK_FALSE(is_excluded({20, 1, 1}, 0.3, true));
 }

@@ -71,8 +71,7 @@ struct Crowd
         CHECK(std::set<std::uint32_t>(reached.members().begin(), reached.members().end()) == all);
         CHECK(reached.members().size() == all.size());
         for (std::uint32_t i = 0; i < cache.pairs().size(); ++i)
-            if (const PairState& p = std::as_const(cache).pairs()[i];
-                p.resting && (all.count(groups.of(p.a)) || all.count(groups.of(p.b))))
+            if (const PairState& p = std::as_const(cache).pairs()[i]; p.resting && (all.count(groups.of(p.a)) || all.count(groups.of(p.b))))
                 wanted.push_back(i);
         CHECK(places == wanted);
     }
@@ -83,16 +82,17 @@ struct Crowd
 TEST_CASE("closures over persistent pairs, from few groups and from most of them")
 {
     std::mt19937 random(3);
+    const auto below = [&](std::uint32_t size) { return static_cast<std::uint32_t>(random() % size); };
     for (const std::uint32_t pairs : {5u, 20u, 40u, 90u})
     {
         Crowd crowd;
         const auto size = static_cast<std::uint32_t>(crowd.groups.group_of_body.size());
         for (std::uint32_t k = 0; k < pairs; ++k)
-            if (const std::uint32_t a = random() % size, b = random() % size; a != b) crowd.join(a, b, k % 5 != 0);
+            if (const std::uint32_t a = below(size), b = below(size); a != b) crowd.join(a, b, k % 5 != 0);
         for (const std::uint32_t start : {1u, 3u, 12u, 25u, kMany})
         {
             std::set<std::uint32_t> from;
-            while (from.size() < start) from.insert(random() % kMany);
+            while (from.size() < start) from.insert(below(kMany));
             crowd.check(from);
         }
     }
@@ -106,8 +106,9 @@ TEST_CASE("a chain that each pass follows for one link only is followed to its e
     for (std::uint32_t b = 0; b < crowd.groups.group_of_body.size(); ++b)
         if (crowd.groups.group_of_body[b] != kNoIndex) bodies.push_back(b);
     std::sort(bodies.begin(), bodies.end(),
-              [&](std::uint32_t x, std::uint32_t y)
-              { return crowd.world.rank(Ref{Facet::Body, x}) > crowd.world.rank(Ref{Facet::Body, y}); });
+              [&](std::uint32_t x, std::uint32_t y) {
+                  return crowd.world.rank(Ref{Facet::Body, x}) > crowd.world.rank(Ref{Facet::Body, y});
+              });
     for (std::size_t i = 0; i + 1 < bodies.size(); ++i) crowd.join(bodies[i], bodies[i + 1], true);
     std::set<std::uint32_t> from;
     for (std::uint32_t k = 0; k <= kMany / 4; ++k) from.insert(crowd.groups.group_of_body[bodies[k]]);
