@@ -159,12 +159,12 @@ private:
             // Results of passes that threads share:
             double most_depth = 0;    ///< m, largest depth or gap
             bool incomplete = false;  ///< the pair does not know all of its contacts yet
-            bool released = false;
+            bool released = false;    ///< it pressed in the last step and does so no more
+            bool counts_all = false;  ///< ContactBook::Pressing
         };
         std::vector<Run> runs;
-        std::vector<std::uint32_t> slots;              ///< of each contact: FoundContact::slot
-        std::vector<std::uint8_t> jams;                ///< of each contact: whether it has Painleve's paradox
-        std::vector<ContactBook::Pressing> pressings;  ///< of each run; valid where it is released
+        std::vector<std::uint32_t> slots;  ///< of each contact: FoundContact::slot
+        std::vector<std::uint8_t> jams;    ///< of each contact: whether it has Painleve's paradox
         HeldMotion motion;
         double size = 0;    ///< m, smallest radius of gyration
         double energy = 0;  ///< J, kinetic, when the manager begins
@@ -205,10 +205,11 @@ private:
     void advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h);
     static void divide_work(HeldIsland& island);
     void book_contacts(const HeldIsland& island, WorkBook book);
-    void keep(HeldIsland& island, double h);
+    void keep(HeldIsland& island);
+    void keep_run(HeldIsland& island, const Run& run);
     static KnownContact* kept(const HeldIsland& island, const Run& run, std::uint32_t contact);
-    bool is_released(HeldIsland& island, const Run& run, double h, ContactBook::Pressing& pressing);
-    void note_releases(const HeldIsland& island, double from, double h);
+    ContactBook::Pressing pressing_of(const HeldIsland& island, const Run& run) const;
+    void note_releases(HeldIsland& island, double from, double h);
     void report_begin(const PairState& pair, const Contact& contact, double time) const;
     void report_impacts(const HeldIsland& island, double time);
     void find_yielding_rows();

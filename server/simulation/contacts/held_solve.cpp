@@ -27,7 +27,7 @@ void HeldIslands::solve(std::span<HeldIsland*> islands, GroupSystem& system, dou
           [&](HeldIsland& island)
           {
               if (books) divide_work(island);
-              if (!trial) keep(island, to - from);
+              if (!trial) keep(island);
           });
     for (HeldIsland* island : islands)
     {
@@ -169,22 +169,15 @@ void HeldIslands::report_paradoxes(const HeldIsland& island, double time)
             if (island.jams[i] != 0) contacts_.report_paradox(island.contacts[i], *run.pair, time);
 }
 
-/// Finds releases, and keeps the impulses for the next step.
-void HeldIslands::keep(HeldIsland& island, double h)
+/// Finds the pairs that are released, and keeps the impulses of all others for the next step.
+void HeldIslands::keep(HeldIsland& island)
 {
-    island.pressings.resize(island.runs.size());
-    const auto keep_run = [&](std::size_t k)
+    const auto keep_or_release = [&](Run& run)
     {
-        Run& run = island.runs[k];
-        const std::span<Contact> own = island.of(run);
-        run.released = is_released(island, run, h, island.pressings[k]);
-        if (run.released)
-            for (Contact& c : own) c.impulse = {};
-        // The impulse of an impact is not an estimate of how hard the contact will press in the next step.
-        for (std::uint32_t i = run.first; i < run.end; ++i)
-            if (KnownContact* const known = kept(island, run, i))
-                known->impulse = island.contacts[i].approach > 0 ? Vec3{} : island.contacts[i].impulse;
-        run.pair->normal = own.back().normal;
+        const ContactBook::Pressing pressing = pressing_of(island, run);
+        run.counts_all = pressing.counts_all;
+        run.released = contacts_.stops_pressing(*run.pair, pressing);
+        if (!run.released) keep_run(island, run);
     };
     for_parts(&step_.workers, island.runs.size(), kRunPart,
               [&](std::size_t begin, std::size_t end)
@@ -192,9 +185,18 @@ void HeldIslands::keep(HeldIsland& island, double h)
                   for (std::size_t k = begin; k < end; ++k)
                   {
                       if (k + PairState::kAhead < end) island.runs[k + PairState::kAhead].pair->prefetch();
-                      keep_run(k);
+                      keep_or_release(island.runs[k]);
                   }
               });
+}
+
+void HeldIslands::keep_run(HeldIsland& island, const Run& run)
+{
+    // The impulse of an impact is not an estimate of how hard the contact will press in the next step.
+    for (std::uint32_t i = run.first; i < run.end; ++i)
+        if (KnownContact* const known = kept(island, run, i))
+            known->impulse = island.contacts[i].approach > 0 ? Vec3{} : island.contacts[i].impulse;
+    run.pair->normal = island.contacts[run.end - 1].normal;
 }
 
 /// Where the pair keeps a contact. Null if it has more of them than it can keep.
@@ -207,35 +209,39 @@ KnownContact* HeldIslands::kept(const HeldIsland& island, const Run& run, std::u
     return found == all.end() ? nullptr : &*found;
 }
 
-/// Whether a pair pressed in the last step and does so no more.
-bool HeldIslands::is_released(HeldIsland& island, const Run& run, double h, ContactBook::Pressing& out)
+/// How hard a pair pressed in the last step and in this one.
+ContactBook::Pressing HeldIslands::pressing_of(const HeldIsland& island, const Run& run) const
 {
-    const auto impulse_before = [&](std::uint32_t i)
-    {
-        const KnownContact* known = kept(island, run, i);
-        return known ? known->impulse : Vec3{};
-    };
     ContactBook::Pressing pressing = contacts_.pressing_of(*run.pair);
     bool is_hit = false;
     for (std::uint32_t i = run.first; i < run.end; ++i)
     {
-        pressing.add_impulse(island.contacts[i], impulse_before(i));
+        const KnownContact* known = kept(island, run, i);
+        pressing.add_impulse(island.contacts[i], known ? known->impulse : Vec3{});
         is_hit = is_hit || island.contacts[i].approach > 0;
     }
     if (is_hit) pressing.now = HUGE_VAL;  // a pair with an impact is not released
-    if (!contacts_.stops_pressing(*run.pair, pressing)) return false;
-    for (std::uint32_t i = run.first; i < run.end; ++i)
-        pressing.add_speed(island.contacts[i], impulse_before(i), island.motion.start_depth(i), island.motion.separation_speed(i), h);
-    out = pressing;
-    return true;
+    return pressing;
 }
 
 /// Notes the releases of pairs whose points all separate.
-void HeldIslands::note_releases(const HeldIsland& island, double from, double h)
+void HeldIslands::note_releases(HeldIsland& island, double from, double h)
 {
-    for (std::size_t k = 0; k < island.runs.size(); ++k)
-        if (const Run& run = island.runs[k]; run.released)
-            contacts_.note_release(*run.pair, island.contacts[run.first], island.pressings[k], from, h);
+    for (const Run& run : island.runs)
+    {
+        if (!run.released) continue;
+        ContactBook::Pressing pressing = pressing_of(island, run);
+        pressing.counts_all = run.counts_all;
+        for (std::uint32_t i = run.first; i < run.end; ++i)
+        {
+            const KnownContact* known = kept(island, run, i);
+            pressing.add_speed(island.contacts[i], known ? known->impulse : Vec3{}, island.motion.start_depth(i),
+                               island.motion.separation_speed(i), h);
+        }
+        contacts_.note_release(*run.pair, island.contacts[run.first], pressing, from, h);
+        for (Contact& c : island.of(run)) c.impulse = {};
+        keep_run(island, run);
+    }
 }
 
 void HeldIslands::report_impacts(const HeldIsland& island, double time)
