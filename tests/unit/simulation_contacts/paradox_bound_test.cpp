@@ -90,5 +90,7 @@ TEST_CASE("up to which friction boxes are excluded")
     // By its radius alone: |r|^2 m / I.
     CHECK(is_excluded({0.5, 0.25, 0.25}, 0.66, false));
     CHECK_FALSE(is_excluded({0.5, 0.25, 0.25}, 0.67, false));
-    CHECK_FALSE(is_excluded({20, 1, 1}, 0.3, true));
+    // A rod of 20 x 1 x 1: m y = 6, by its corners.
+    CHECK(is_excluded({20, 1, 1}, 0.81, true));
+    CHECK_FALSE(is_excluded({20, 1, 1}, 0.82, true));
 }
