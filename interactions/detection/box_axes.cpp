@@ -50,10 +50,12 @@ void try_faces(const Boxes& x, double preference, Best& best)
     }
 }
 
-/// The axis e_i x f_j in A's frame; its component along e_i is 0. Its error is a rounding error divided by the sine.
-void try_edge(const Boxes& x, std::size_t i, std::size_t j, double preference, Best& best)
+/// The axis e_i x f_j in A's frame; its component along e_i is 0. Its error is a rounding error divided by the sine. The compiler knows
+/// the numbers, so that it computes no index.
+template <std::size_t i, std::size_t j>
+void try_edge(const Boxes& x, double preference, Best& best)
 {
-    const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    constexpr std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
     const double u = -x.C[i2][j], v = x.C[i1][j];  // components along e_i1, e_i2
     const double square = u * u + v * v;
     const double along = x.t[i1] * u + x.t[i2] * v;
@@ -63,6 +65,13 @@ void try_edge(const Boxes& x, std::size_t i, std::size_t j, double preference, B
     if (square < kParallel * kParallel || (rough < 0 && best.gap < 0 && rough * rough > best.gap * best.gap * square)) return;
     const double sine = std::sqrt(square);
     best.offer(static_cast<int>(6 + 3 * i + j), along / sine, radii / sine, preference / sine);
+}
+
+template <std::size_t i>
+void try_edges(const Boxes& x, double preference, double margin, Best& best)
+{
+    if (best.gap > margin) return;
+    try_edge<i, 0>(x, preference, best), try_edge<i, 1>(x, preference, best), try_edge<i, 2>(x, preference, best);
 }
 
 Boxes boxes_of(const Vec3& half_a, const Mat3& R_a, const Vec3& half_b, const Mat3& R_b, const Vec3& between)
@@ -105,8 +114,7 @@ BoxAxis find_box_axis(const Vec3& half_a, const Mat3& R_a, const Vec3& p_a, cons
     const double preference = kPreference * (half_a.x + half_a.y + half_a.z + half_b.x + half_b.y + half_b.z);
     Best best;
     try_faces(x, preference, best);
-    for (std::size_t i = 0; i < 3 && !(best.gap > margin); ++i)
-        for (std::size_t j = 0; j < 3; ++j) try_edge(x, i, j, preference, best);
+    try_edges<0>(x, preference, margin, best), try_edges<1>(x, preference, margin, best), try_edges<2>(x, preference, margin, best);
     return finished(best, x, R_a, R_b);
 }
 

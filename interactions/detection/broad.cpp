@@ -34,10 +34,10 @@ double largest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
 
 void BroadPhase::reset(const std::string& kind, std::size_t parts)
 {
-    parts_.clear();
-    parts_.reserve(parts);
+    parts_.clear(), member_of_.clear();
+    parts_.reserve(parts), member_of_.reserve(parts);
     near_.clear(), half_spaces_.clear();
-    raised_ = 0;
+    raised_ = 0, single_ = true;
     search_ = make_pair_search(kind, parts);
     grown_search_ = std::make_unique<TreeSearch>(parts);
     stale_ = true;
@@ -47,7 +47,8 @@ void BroadPhase::add(const Collider& collider, std::uint32_t member, Membership 
 {
     const auto index = static_cast<std::uint32_t>(parts_.size());
     Part& part = parts_.emplace_back();
-    part.member = member;
+    member_of_.push_back(member);
+    single_ = single_ && member == index;
     part.unbounded = collider.kind() == ColliderKind::Plane;
     part.collides = collider.kind() != ColliderKind::None;
     if (!part.collides) return;
@@ -138,18 +139,23 @@ void BroadPhase::search(Workers* workers)
 /// so pairs are first distributed by the member of their first part, which leaves short runs to sort.
 void BroadPhase::sort_pairs(Workers* workers)
 {
-    const std::size_t members = parts_.empty() ? 0 : parts_.back().member + std::size_t{1};
+    const std::size_t members = member_of_.empty() ? 0 : member_of_.back() + std::size_t{1};
     run_ends_.assign(members + 1, 0);
-    for (const Pair& p : near_) ++run_ends_[parts_[p.first].member + std::size_t{1}];
+    for (const Pair& p : near_) ++run_ends_[member_of_[p.first] + std::size_t{1}];
     for (std::size_t m = 1; m <= members; ++m) run_ends_[m] += run_ends_[m - 1];
     sorted_.resize(near_.size());
-    for (const Pair& p : near_) sorted_[run_ends_[parts_[p.first].member]++] = p;  // a run's start becomes its end
+    for (const Pair& p : near_) sorted_[run_ends_[member_of_[p.first]]++] = p;  // a run's start becomes its end
     const auto before = [&](const Pair& x, const Pair& y)
-    { return std::tuple(parts_[x.second].member, x.first, x.second) < std::tuple(parts_[y.second].member, y.first, y.second); };
+    { return std::tuple(member_of_[x.second], x.first, x.second) < std::tuple(member_of_[y.second], y.first, y.second); };
+    // Where each member has one part, the pairs of a run differ in the second part only.
+    const auto second_before = [](const Pair& x, const Pair& y) { return x.second < y.second; };
     const auto sort_runs = [&](std::size_t first, std::size_t end)
     {
         for (std::size_t m = first, begin = m == 0 ? 0 : run_ends_[m - 1]; m < end; begin = run_ends_[m++])
-            std::sort(sorted_.begin() + static_cast<std::ptrdiff_t>(begin), sorted_.begin() + run_ends_[m], before);
+        {
+            const auto run = std::span(sorted_).subspan(begin, run_ends_[m] - begin);
+            single_ ? std::sort(run.begin(), run.end(), second_before) : std::sort(run.begin(), run.end(), before);
+        }
     };
     for_parts(workers, members, kMembersPerPart, sort_runs);
     near_.swap(sorted_);

@@ -48,7 +48,6 @@ public:
 private:
     struct Part
     {
-        std::uint32_t member = 0;
         bool collides = false;
         bool unbounded = false;
         bool tilted = false;  // unbounded and moved since the search structure was told
@@ -66,6 +65,8 @@ private:
     std::unique_ptr<PairSearch> search_;
     std::unique_ptr<TreeSearch> grown_search_;  // not one of ODE's spaces: these boxes differ in every step
     std::vector<Part> parts_;
+    std::vector<std::uint32_t> member_of_;    // by part
+    bool single_ = true;                      // each part is that of the member of the same number
     std::vector<std::uint32_t> half_spaces_;  // parts
     double raised_ = 0;                       // m, by which half-spaces are enlarged in the search structure
     std::vector<Pair> near_, pairs_;

@@ -155,17 +155,27 @@ void lay_faces(const SupportingFace& X, const SupportingFace& Y, Collector& out)
     const double tolerance = out.tolerance(lean_of(X, Y));
     const std::size_t nx = X.corners.size(), ny = Y.corners.size();
     std::array<double, kMostCorners * kMostCorners> inside;  // of Y's edge k, corner i of X: [i * ny + k]
+    std::array<std::uint32_t, kMostCorners> outside;         // the edges that a corner of X is outside of, as bits
+    static_assert(kMostCorners <= 32);
     for (std::size_t i = 0; i < nx; ++i)
     {
         const Vec3& p = X.corners[i].p;
         const Vec3 y = p + n * (onto_y.level - dot(onto_y.along, p));
-        for (std::size_t k = 0; k < ny; ++k) inside[i * ny + k] = dot(Y.corners[k].inward, y) - onto_y.limit[k];
+        outside[i] = 0;
+        for (std::size_t k = 0; k < ny; ++k)
+        {
+            const double depth = dot(Y.corners[k].inward, y) - onto_y.limit[k];
+            inside[i * ny + k] = depth;
+            outside[i] |= (depth < -tolerance ? 1u : 0u) << k;
+        }
     }
     for (std::size_t i = 0; i < nx; ++i)
     {
         const std::size_t j = i + 1 < nx ? i + 1 : 0;
+        if ((outside[i] & outside[j]) != 0) continue;
         const FaceCorner &p = X.corners[i], &q = X.corners[j];
-        const SupportingFace::Cut cut = cut_by({&inside[i * ny], ny}, {&inside[j * ny], ny}, tolerance);
+        SupportingFace::Cut cut;
+        if ((outside[i] | outside[j]) != 0) cut = cut_by({&inside[i * ny], ny}, {&inside[j * ny], ny}, tolerance);
         if (cut.empty()) continue;
         const auto offer = [&](const Vec3& x, std::uint32_t feature)
         { out.offer(x, x + n * (onto_y.level - dot(onto_y.along, x)), feature, true); };
@@ -241,14 +251,6 @@ Separation edge_pair(const Solid& A, const Solid& B, const BoxAxis& axis)
     const double nn = length_squared(n);
     return {axis.gap, a + u * (dot(cross(r, v), n) / nn), b + v * (dot(cross(r, u), n) / nn), axis.normal};
 }
-
-Mat3 axes_of(const Solid& s)
-{
-    Mat3 R;
-    for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < 3; ++i) R(i, k) = s.axis(k)[i];
-    return R;
-}
 }  // namespace
 
 std::uint32_t corner_feature(bool of_a, std::uint32_t corner) { return ((of_a ? 0u : 1u) << 18) | (corner & kCornerMask); }
@@ -303,7 +305,7 @@ void add_manifold(const Solid& A, const Solid& B, const Separation& s, ContactPo
 void box_box(const Solid& A, const Solid& B, ContactPoints& out)
 {
     const Vec3 origin = A.pose().p;
-    const BoxAxis axis = find_box_axis(A.size(), axes_of(A), origin, B.size(), axes_of(B), B.pose().p, out.margin());
+    const BoxAxis axis = find_box_axis(A.size(), A.axes(), origin, B.size(), B.axes(), B.pose().p, out.margin());
     if (!(axis.gap < out.margin() || axis.gap < 0)) return;
     std::array<FaceCorner, 4> room_a, room_b;
     const SupportingFace X = box_face(A, axis.normal, room_a), Y = box_face(B, -axis.normal, room_b);

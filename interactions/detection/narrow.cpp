@@ -20,11 +20,12 @@ bool in_order(const Collider& a, const Pose& X_a, const Collider& b, const Pose&
     const auto rank = [](const Collider& c)
     { return c.kind() == ColliderKind::Plane || is_surface(c.kind()) ? 100 : static_cast<int>(c.kind()); };
     if (rank(a) != rank(b)) return rank(a) < rank(b);
-    const auto key = [](const Collider& c, const Pose& X) {
-        return std::make_tuple(c.size().x, c.size().y, c.size().z, c.hull().vertices.size(), X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y,
-                               X.q.z);
-    };
-    return !(key(b, X_b) < key(a, X_a));
+    // Mostly the first numbers differ already.
+    const auto order = [](const Vec3& x, const Vec3& y) { return x.x != y.x ? x.x < y.x : x.y != y.y ? x.y < y.y : x.z < y.z; };
+    if (a.size() != b.size()) return order(a.size(), b.size());
+    if (a.hull().vertices.size() != b.hull().vertices.size()) return a.hull().vertices.size() < b.hull().vertices.size();
+    if (X_a.p != X_b.p) return order(X_a.p, X_b.p);
+    return std::tie(X_a.q.w, X_a.q.x, X_a.q.y, X_a.q.z) <= std::tie(X_b.q.w, X_b.q.x, X_b.q.y, X_b.q.z);
 }
 
 void collide_with_plane(const Collider& a, const Pose& X_a, const Pose& X_plane, ContactPoints& out)

@@ -54,10 +54,10 @@ bool OdeScene::update(const StepContext& context, const std::string& space, cons
 {
     if (!context.active_bodies.empty() && !members_.empty())
     {
-        list_active(context, between, against);
         // The narrow phase of pairs that are named reads the present poses itself.
-        if (!order.only_persistent())
-            for (const std::uint32_t m : active_) move_member(members_[m], bodies);
+        if (order.only_persistent()) return false;
+        list_active(context, between, against);
+        for (const std::uint32_t m : active_) move_member(members_[m], bodies);
         return false;
     }
     const bool rebuilds = !is_current(space, between, against, bodies, shapes, order);
@@ -102,7 +102,8 @@ void OdeScene::add_part(std::uint32_t member, std::uint32_t shape, const Pose& X
 {
     const auto at = std::lower_bound(shape_of_collider_.begin(), shape_of_collider_.end(), shape);
     const auto collider = static_cast<std::uint32_t>(at - shape_of_collider_.begin());
-    parts_.push_back({member, collider, X_BP * colliders_[collider].pose()});
+    const Pose X_BS = X_BP * colliders_[collider].pose();
+    parts_.push_back({member, collider, X_BS, X_BS.q != Quat{}});
 }
 
 void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const ContactSink& order)
@@ -206,7 +207,8 @@ Pose OdeScene::place(const Part& part, const Vec3& p_OC, const Bodies& bodies) c
 {
     const std::uint32_t body = members_[part.member].body;
     const Quat& q = bodies.orientation[body];
-    return {p_OC + rotate(q, part.in_body.p - bodies.center_B[body]), q * part.in_body.q};
+    const Vec3 p_CS = part.in_body.p - bodies.center_B[body];
+    return {p_CS == Vec3{} ? p_OC : p_OC + rotate(q, p_CS), part.turned ? q * part.in_body.q : q};
 }
 
 void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies, Narrow& narrow) const
@@ -235,8 +237,9 @@ void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shi
 void OdeScene::finish_pair(double shift, Narrow& narrow)
 {
     const auto key = [](const MemberContact& t) { return std::tie(t.at.feature, t.at.point.x, t.at.point.y, t.at.point.z); };
+    const auto before = [&](const MemberContact& s, const MemberContact& t) { return key(s) < key(t); };
     const auto own = std::span(narrow.found).subspan(narrow.first);
-    std::sort(own.begin(), own.end(), [&](const MemberContact& s, const MemberContact& t) { return key(s) < key(t); });
+    if (!std::is_sorted(own.begin(), own.end(), before)) std::sort(own.begin(), own.end(), before);
     std::uint32_t next = 0;
     for (MemberContact& c : own)
     {

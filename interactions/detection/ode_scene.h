@@ -47,7 +47,8 @@ private:
     {
         std::uint32_t member = 0;
         std::uint32_t collider = 0;
-        Pose in_body;  // X_BS
+        Pose in_body;         // X_BS
+        bool turned = false;  // in the body
     };
     struct PersistentQuery
     {

@@ -47,6 +47,7 @@ public:
     const Hull& hull() const { return *hull_; }
     const Pose& pose() const { return X_; }
     Vec3 axis(int k) const { return {R_(0, k), R_(1, k), R_(2, k)}; }
+    const Mat3& axes() const { return R_; }  ///< in columns
     bool curved() const { return core_ == Core::Cylinder; }
     /// m: the distance of no point of the core from `center` exceeds this.
     double extent() const { return extent_; }

@@ -205,13 +205,13 @@ SupportingFace box_face(const Solid& box, const Vec3& d, std::span<FaceCorner> r
     const Vec3 middle = box.pose().p + normal * h[k];
     const std::uint32_t base = upper ? 1u << k : 0u;
     // Counter-clockwise as seen from outside: on the upper side, u comes before v.
-    constexpr std::array<std::array<int, 2>, 4> kRound{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-    for (std::size_t i = 0; i < 4; ++i)
-    {
-        const auto [su, sv] = kRound[upper ? i : (4 - i) % 4];
-        room[i].p = middle + axis_u * (su * h[u]) + axis_v * (sv * h[v]);
-        room[i].id = base | (su > 0 ? 1u << u : 0u) | (sv > 0 ? 1u << v : 0u);
-    }
+    const Vec3 to_u = axis_u * h[u], to_v = axis_v * h[v], before = middle - to_u, beyond = middle + to_u;
+    const std::uint32_t bit_u = 1u << u, bit_v = 1u << v;
+    room[0].p = before - to_v, room[0].id = base;
+    room[2].p = beyond + to_v, room[2].id = base | bit_u | bit_v;
+    FaceCorner &far_u = room[upper ? 1 : 3], &far_v = room[upper ? 3 : 1];
+    far_u.p = beyond - to_v, far_u.id = base | bit_u;
+    far_v.p = before + to_v, far_v.id = base | bit_v;
     if (upper)
         room[0].inward = axis_v, room[1].inward = -axis_u, room[2].inward = -axis_v, room[3].inward = axis_u;
     else

@@ -11,6 +11,7 @@ namespace
 {
 
 constexpr std::uint32_t kMostColours = 64;  // the bits of a mask
+constexpr std::size_t kMostOfPair = 16;     // points: more of them are rare, and only cost an allocation
 
 }  // namespace
 
@@ -82,9 +83,10 @@ template <int W>
 void PacketList<W>::fill(std::size_t number, std::span<const Point> from)
 {
     Packet<W>& packet = packets_[number];
-    const std::size_t end = number + 1 < first_pair_.size() ? first_pair_[number + 1] : order_.size();
-    const std::span<const std::uint32_t> pairs = std::span(order_).subspan(first_pair_[number], end - first_pair_[number]);
-    for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i) points_[i] = {};
+    const std::span<const std::uint32_t> pairs = pairs_of(number);
+    // Pairs are in the order of falling counts. Lanes that stay empty must be zero; all others are written.
+    const std::uint32_t full = pairs.size() == W ? pairs_[pairs.back()].count : 0;
+    for (std::uint32_t i = packet.first + full; i < packet.first + packet.count; ++i) points_[i] = {};
     for (int l = 0; l < static_cast<int>(pairs.size()); ++l)
     {
         const Pair& pair = pairs_[pairs[static_cast<std::size_t>(l)]];
@@ -150,10 +152,11 @@ void PacketList<W>::load(std::span<const Point> from, std::size_t movers, Worker
 }
 
 template <int W>
-void PacketList<W>::reserve(std::size_t points)
+void PacketList<W>::reserve(std::size_t points, std::size_t movers)
 {
     packets_.reserve(points), points_.reserve(points), places_.reserve(points), pairs_.reserve(points);
-    order_.reserve(points), first_pair_.reserve(points), sections_.reserve(1);
+    order_.reserve(points), first_pair_.reserve(points), sections_.reserve(W == 1 ? 1 : 2 * kMostColours);
+    if (W > 1) colours_of_mover_.reserve(movers), starts_.reserve((kMostColours + 1) * kMostOfPair + 1);
 }
 
 /// Takes what changes between sweeps of one step.
@@ -186,7 +189,11 @@ template <int W>
 void PacketList<W>::scale_impulses(double share)
 {
     const Lanes<W> s = Lanes<W>{} + share;
-    for (PacketPoint<W>& p : points_) p.impulse = scaled(p.impulse, s);
+    for_parts(workers_, points_.size(), W == 1 ? kSmallIsland : kPointPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i) points_[i].impulse = scaled(points_[i].impulse, s);
+              });
 }
 
 template class PacketList<1>;

@@ -46,7 +46,9 @@ struct Packet
 };
 
 /// Packets that a thread takes at once: some microseconds of work in a sweep, so that taking it costs little.
-inline constexpr std::size_t kPart = 16;
+inline constexpr std::size_t kPart = 8;
+/// Packed points that a thread takes at once in a loop over them alone.
+inline constexpr std::size_t kPointPart = 128;
 /// Islands of single lanes are too small to be divided.
 inline constexpr std::size_t kSmallIsland = 1 << 20;
 
@@ -58,7 +60,7 @@ public:
     /// `workers`: threads for the loops over the packets until the next call; null: none.
     void load(std::span<const Point> from, std::size_t movers, Workers* workers = nullptr);
     /// Sets memory apart for so many points in as many pairs.
-    void reserve(std::size_t points);
+    void reserve(std::size_t points, std::size_t movers);
     /// Takes targets, friction and impulses anew; the pairs are those that were loaded.
     void reload(std::span<const Point> from);
     /// Writes the impulses back.
@@ -83,6 +85,9 @@ public:
     std::span<const Packet<W>> packets() const { return packets_; }
     std::span<PacketPoint<W>> points() { return points_; }
     std::span<const PacketPoint<W>> points() const { return points_; }
+    /// Calls visit(contact, point, lane) for each contact of a packet.
+    template <class Visit>
+    void visit(std::size_t packet, const Visit& visit) const;
     /// Calls loop(begin, end) with parts of packets() between which no mover is shared, then with the parts of the next colour, and so on.
     template <class Loop>
     void by_colour(const Loop& loop, bool backwards = false) const;
@@ -105,6 +110,11 @@ private:
     void order_pairs();
     void add_packet(std::uint32_t pair, std::uint32_t pairs);
     void fill(std::size_t number, std::span<const Point> from);
+    std::span<const std::uint32_t> pairs_of(std::size_t packet) const
+    {
+        const std::size_t end = packet + 1 < first_pair_.size() ? first_pair_[packet + 1] : order_.size();
+        return std::span(order_).subspan(first_pair_[packet], end - first_pair_[packet]);
+    }
     static void take(const Point& from, PacketPoint<W>& to, int lane);
 
     PacketPoint<W>& at(std::size_t contact) { return points_[places_[contact].point]; }
@@ -131,6 +141,16 @@ private:
     std::vector<Section> sections_;
     Workers* workers_ = nullptr;
 };
+
+template <int W>
+template <class Visit>
+void PacketList<W>::visit(std::size_t packet, const Visit& visit) const
+{
+    const std::span<const std::uint32_t> pairs = pairs_of(packet);
+    for (std::size_t l = 0; l < pairs.size(); ++l)
+        for (std::uint32_t k = 0; k < pairs_[pairs[l]].count; ++k)
+            visit(pairs_[pairs[l]].first + k, packets_[packet].first + k, static_cast<int>(l));
+}
 
 template <int W>
 template <class Loop>
@@ -184,13 +204,18 @@ struct SoftSweep
     Softness between, one_sided;  ///< of two bodies that move; of a body and one that does not
     double push_speed = 0;        ///< m/s
     double rate = 0;              ///< 1/s, 1 / h
+    bool gathers = false;         ///< the present impulses are those of a sub-step before: they count for `sum` and `greatest`
 };
 /// One sweep of soft contacts (soft_step.h), with the points' depths instead of their targets.
 template <int W>
 void sweep_soft(PacketList<W>& list, std::span<Mover> movers, const SoftSweep& how, std::span<SoftPoint<W>> soft);
-/// Moves the depths by h (s) with the present velocities. The points' targets become those of hard contacts at these depths: gaps may
-/// close within h.
+/// Moves the depths by h (s) with the present velocities, and keeps depths and impulses of before. The points' targets become those of hard
+/// contacts at these depths: gaps may close within h.
 template <int W>
 void advance_depths(PacketList<W>& list, std::span<Mover> movers, double h, std::span<SoftPoint<W>> soft);
+
+/// Counts the present impulses for `sum` and `greatest`, and sets them to zero.
+template <int W>
+void gather_and_clear(PacketList<W>& list, std::span<SoftPoint<W>> soft);
 
 }  // namespace plab::managers

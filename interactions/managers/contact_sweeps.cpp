@@ -143,6 +143,13 @@ PLAB_INLINE LaneVec<W> change_impulse(const Packet<W>& packet, PacketPoint<W>& p
 }
 
 template <int W>
+PLAB_INLINE void gather_point(const PacketPoint<W>& p, SoftPoint<W>& soft)
+{
+    soft.sum = soft.sum + p.impulse;
+    soft.greatest = larger(soft.greatest, p.impulse.z);
+}
+
+template <int W>
 PLAB_INLINE void set_point_mobility(const Packet<W>& packet, PacketPoint<W>& p)
 {
     const LaneVec<W> t2 = cross(p.n, p.t1);
@@ -295,6 +302,7 @@ void sweep_soft(PacketList<W>& list, std::span<Mover> movers, const SoftSweep& h
                 for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
                 {
                     PacketPoint<W>& p = list.points()[i];
+                    if (how.gathers) gather_point(p, soft[i]);
                     const LaneVec<W> t2 = cross(p.n, p.t1), u_W = relative(p, a, b);
                     const LaneVec<W> u{dot(p.t1, u_W) + p.given.x, dot(t2, u_W) + p.given.y, dot(p.n, u_W) + p.given.z};
                     // A gap may close, and is hard; overlap is pushed out at a limited speed.
@@ -326,10 +334,28 @@ void advance_depths(PacketList<W>& list, std::span<Mover> movers, double h, std:
                 for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
                 {
                     PacketPoint<W>& p = list.points()[i];
+                    soft[i].depth_before = soft[i].depth, soft[i].moved_with = p.impulse;
                     soft[i].depth = soft[i].depth - h * (dot(p.n, relative(p, a, b)) + p.given.z);
                     p.least = smaller(soft[i].depth, Lanes<W>{}) / h;
                 }
             }
+        });
+    };
+    list.in_parts(part);
+}
+
+template <int W>
+void gather_and_clear(PacketList<W>& list, std::span<SoftPoint<W>> soft)
+{
+    const auto part = [&](std::size_t begin, std::size_t end)
+    {
+        run<W>(PLAB_LOOP {
+            for (const Packet<W>& packet : list.packets().subspan(begin, end - begin))
+                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+                {
+                    gather_point(list.points()[i], soft[i]);
+                    list.points()[i].impulse = {};
+                }
         });
     };
     list.in_parts(part);
@@ -341,7 +367,8 @@ void advance_depths(PacketList<W>& list, std::span<Mover> movers, double h, std:
     template void sum_impulses<W>(const PacketList<W>&, std::span<Momentum>);                                 \
     template double sweep_hard<W>(PacketList<W>&, std::span<Mover>, const HardSweep&);                        \
     template void sweep_soft<W>(PacketList<W>&, std::span<Mover>, const SoftSweep&, std::span<SoftPoint<W>>); \
-    template void advance_depths<W>(PacketList<W>&, std::span<Mover>, double, std::span<SoftPoint<W>>);
+    template void advance_depths<W>(PacketList<W>&, std::span<Mover>, double, std::span<SoftPoint<W>>);       \
+    template void gather_and_clear<W>(PacketList<W>&, std::span<SoftPoint<W>>);
 PLAB_INSTANTIATE(1)
 PLAB_INSTANTIATE(4)
 

@@ -84,11 +84,26 @@ void report(Island& island, const Verdict& verdict)
     island.converged = verdict.converged, island.fell_back = verdict.fell_back;
 }
 
-/// An interrupted solve leaves its memory in an undefined state, so it is cleared.
-template <class Memory>
-void forget_if_given_up(const Island& island, Memory& memory)
+/// Calls solve(number, island, memory) for each island (island_team.h). An interrupted solve leaves its memory in an undefined state, so it
+/// is cleared.
+template <class Memory, class Divides, class Solve>
+void solve_all(const StepContext& context, const Bodies& bodies, const Shafts& shafts, std::span<Island> islands, IslandTeam<Memory>& team,
+               const Divides& divides, const Solve& solve)
 {
-    if (island.interruption && island.interruption->due()) memory = Memory{};
+    team.advance(islands, {.bodies = bodies.size(), .shafts = shafts.size()}, context.workers, divides,
+                 [&](std::size_t i, Memory& memory)
+                 {
+                     if (!islands[i].interrupted()) solve(i, islands[i], memory);
+                 });
+    if (context.interrupted()) team.clear();
+}
+
+bool always(std::size_t) { return true; }
+
+template <class Rows>
+void add_all(const StepContext& context, Row row, std::span<const Island> islands, Rows& rows)
+{
+    for (const Island& island : islands) rows.account.add(context, row, island, rows.tolerance[row]);
 }
 
 }  // namespace
@@ -165,15 +180,20 @@ void SequentialRows::describe(Schema& s)
     s.scratch(memory, "memory", "working memory");
 }
 
-void solve_sequential(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+void solve_all_sequentially(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts,
+                            std::span<Island> islands)
 {
-    Sweeps method(whole(rows.max_iterations[row]), whole(rows.position_iterations[row]), rows.tolerance[row], rows.relaxation[row]);
     StepChoices choices;
     choices.slop = rows.slop[row], choices.correction_share = rows.overlap_share[row];
-    rows.memory[row].problem.workers = context.workers;
-    report(island, advance_island(island, bodies, shafts, method, choices, rows.memory[row]));
-    forget_if_given_up(island, rows.memory[row]);
-    rows.account.add(context, row, island, rows.tolerance[row]);
+    solve_all(context, bodies, shafts, islands, rows.memory[row], always,
+              [&](std::size_t, Island& island, StepMemory& memory)
+              {
+                  Sweeps method(whole(rows.max_iterations[row]), whole(rows.position_iterations[row]), rows.tolerance[row],
+                                rows.relaxation[row]);
+                  memory.problem.workers = context.workers;
+                  report(island, advance_island(island, bodies, shafts, method, choices, memory));
+              });
+    add_all(context, row, islands, rows);
 }
 
 void DirectRows::describe(Schema& s)
@@ -202,24 +222,25 @@ void DirectRows::describe(Schema& s)
     s.scratch(memory, "memory", "working memory: factors of the island's matrix");
 }
 
-void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+void solve_all_directly(const StepContext& context, Row row, DirectRows& rows, Bodies& bodies, Shafts& shafts, std::span<Island> islands)
 {
-    DirectRows::Memory& memory = rows.memory[row];
-    memory.step.problem.workers = context.workers;
     const Solving how{rows.tolerance[row], whole(rows.max_steps[row]), whole(rows.max_iterations[row])};
-    if (island.contacts.size() > static_cast<std::size_t>(rows.max_contacts[row]))
-    {
-        Sweeps method(how.most_sweeps, how.most_sweeps, std::max(1e-6, how.tolerance), 1);
-        report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
-        island.fell_back = true;
-    }
-    else
-    {
-        Exactly method(memory.newton, how);
-        report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
-    }
-    forget_if_given_up(island, memory);
-    rows.account.add(context, row, island, rows.tolerance[row]);
+    const auto is_swept = [&](std::size_t i) { return islands[i].contacts.size() > static_cast<std::size_t>(rows.max_contacts[row]); };
+    solve_all(context, bodies, shafts, islands, rows.memory[row], is_swept,
+              [&](std::size_t i, Island& island, DirectRows::Memory& memory)
+              {
+                  memory.step.problem.workers = context.workers;
+                  if (is_swept(i))
+                  {
+                      Sweeps method(how.most_sweeps, how.most_sweeps, std::max(1e-6, how.tolerance), 1);
+                      report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
+                      island.fell_back = true;
+                      return;
+                  }
+                  Exactly method(memory.newton, how);
+                  report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
+              });
+    add_all(context, row, islands, rows);
 }
 
 void SoftStepRows::describe(Schema& s)
@@ -247,15 +268,18 @@ void SoftStepRows::describe(Schema& s)
     s.scratch(memory, "memory", "working memory");
 }
 
-void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+void solve_all_softly(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, std::span<Island> islands)
 {
     const SoftChoices choices{whole(rows.substeps[row]), whole(rows.relax_iterations[row]),
                               rows.hertz[row],           rows.damping_ratio[row],
                               rows.push_speed[row],      rows.tolerance[row]};
-    rows.memory[row].step.problem.workers = context.workers;
-    report(island, advance_softly(island, bodies, shafts, choices, rows.memory[row]));
-    forget_if_given_up(island, rows.memory[row]);
-    rows.account.add(context, row, island, rows.tolerance[row]);
+    solve_all(context, bodies, shafts, islands, rows.memory[row], always,
+              [&](std::size_t, Island& island, SoftMemory& memory)
+              {
+                  memory.step.problem.workers = context.workers;
+                  report(island, advance_softly(island, bodies, shafts, choices, memory));
+              });
+    add_all(context, row, islands, rows);
 }
 
 void AutomaticRows::describe(Schema& s)
@@ -280,6 +304,7 @@ void AutomaticRows::describe(Schema& s)
     s.output(soft_islands, "soft_islands", unit::one, "islands that were advanced by SoftStep in the last step");
     account.describe(s);
     s.scratch(memory, "memory", "working memory");
+    s.scratch(choices, "choices", "working memory");
 }
 
 namespace
@@ -300,44 +325,59 @@ double mass_ratio(const Island& island, const Bodies& bodies)
 }
 
 /// Keeps `resolved` and `reason` of the step. `context.events` is null in trials, which leave nothing behind.
-void note_method(const StepContext& context, Row row, AutomaticRows& rows, bool direct, std::size_t points, double ratio)
+void note_method(const StepContext& context, Row row, AutomaticRows& rows, const AutomaticRows::Choice& chosen)
 {
     if (!context.events) return;
     if (rows.account.step[row] != context.tick) rows.direct_islands[row] = rows.soft_islands[row] = 0;
-    ++(direct ? rows.direct_islands : rows.soft_islands)[row];
+    ++(chosen.direct ? rows.direct_islands : rows.soft_islands)[row];
     const std::string_view used = rows.soft_islands[row] == 0 ? "Direct" : rows.direct_islands[row] == 0 ? "SoftStep" : "Direct, SoftStep";
     if (rows.resolved[row] == used) return;
     rows.resolved[row] = used;
-    if (direct && rows.soft_islands[row] != 0) return;
-    rows.reason[row] = std::string(direct ? "Direct: " : "SoftStep: ") + "an island has " + std::to_string(points) +
-                       " contact points and rows, and masses up to " + rounded_text(ratio, 2) + " to 1";
+    if (chosen.direct && rows.soft_islands[row] != 0) return;
+    rows.reason[row] = std::string(chosen.direct ? "Direct: " : "SoftStep: ") + "an island has " + std::to_string(chosen.points) +
+                       " contact points and rows, and masses up to " + rounded_text(chosen.ratio, 2) + " to 1";
+}
+
+AutomaticRows::Choice choose_method(const Island& island, const Bodies& bodies, std::size_t most, double heavy)
+{
+    const std::size_t points = island.contacts.size() + island.rows.size();
+    const double ratio = mass_ratio(island, bodies);
+    return {points <= most || (ratio >= heavy && points <= kHeavyPoints * most), points, ratio};
+}
+
+void advance_by_choice(bool direct, Island& island, Bodies& bodies, Shafts& shafts, AutomaticRows::Memory& memory, Workers* workers)
+{
+    memory.direct.step.problem.workers = memory.soft.step.problem.workers = workers;
+    if (!direct)
+    {
+        const SoftChoices choices;
+        return report(island, advance_softly(island, bodies, shafts, choices, memory.soft));
+    }
+    Exactly method(memory.direct.newton, kAffordable);
+    StepChoices choices;
+    choices.slip_ends_up_to = kSlipEnds;
+    report(island, advance_island(island, bodies, shafts, method, choices, memory.direct.step));
 }
 
 }  // namespace
 
-void solve_automatic(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+void solve_all_automatically(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Shafts& shafts,
+                             std::span<Island> islands)
 {
-    const std::size_t points = island.contacts.size() + island.rows.size(), most = static_cast<std::size_t>(rows.max_points[row]);
-    const double ratio = mass_ratio(island, bodies);
-    const bool direct = points <= most || (ratio >= rows.heavy[row] && points <= kHeavyPoints * most);
-    AutomaticRows::Memory& memory = rows.memory[row];
-    memory.direct.step.problem.workers = memory.soft.step.problem.workers = context.workers;
-    if (direct)
+    std::vector<AutomaticRows::Choice>& choices = rows.choices[row];
+    choices.clear();
+    for (const Island& island : islands)
+        choices.push_back(choose_method(island, bodies, static_cast<std::size_t>(rows.max_points[row]), rows.heavy[row]));
+    solve_all(
+        context, bodies, shafts, islands, rows.memory[row], [&](std::size_t i) { return !choices[i].direct; },
+        [&](std::size_t i, Island& island, AutomaticRows::Memory& memory)
+        { advance_by_choice(choices[i].direct, island, bodies, shafts, memory, context.workers); });
+    for (std::size_t i = 0; i < islands.size(); ++i)
     {
-        Exactly method(memory.direct.newton, kAffordable);
-        StepChoices choices;
-        choices.slip_ends_up_to = kSlipEnds;
-        report(island, advance_island(island, bodies, shafts, method, choices, memory.direct.step));
+        note_method(context, row, rows, choices[i]);
+        islands[i].converged = islands[i].residual <= rows.tolerance[row];
+        rows.account.add(context, row, islands[i], rows.tolerance[row]);
     }
-    else
-    {
-        const SoftChoices choices;
-        report(island, advance_softly(island, bodies, shafts, choices, memory.soft));
-    }
-    forget_if_given_up(island, memory);
-    note_method(context, row, rows, direct, points, ratio);
-    island.converged = island.residual <= rows.tolerance[row];
-    rows.account.add(context, row, island, rows.tolerance[row]);
 }
 
 }  // namespace plab::managers

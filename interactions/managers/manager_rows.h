@@ -1,9 +1,10 @@
 /// The component types Manager/*: each advances islands of contacts and one-sided rows. Each call of Phase::Solve takes one step
-/// of one island.
+/// of some islands.
 #pragma once
 
 #include <cstdint>
 
+#include "island_team.h"
 #include "newton.h"
 #include "plab/context.h"
 #include "plab/schema.h"
@@ -31,11 +32,12 @@ struct SequentialRows
     Column<std::int64_t> max_iterations, position_iterations;
     Column<double> tolerance, relaxation, slop, overlap_share;
     Account account;
-    Column<StepMemory> memory;
+    Column<IslandTeam<StepMemory>> memory;
 
     void describe(Schema& schema);
 };
-void solve_sequential(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts, Island& island);
+void solve_all_sequentially(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts,
+                            std::span<Island> islands);
 
 struct DirectRows
 {
@@ -46,23 +48,24 @@ struct DirectRows
     {
         StepMemory step;
         NewtonSolver newton;
+        void reserve(const IslandSize& size) { step.reserve(size); }
     };
-    Column<Memory> memory;
+    Column<IslandTeam<Memory>> memory;
 
     void describe(Schema& schema);
 };
-void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies& bodies, Shafts& shafts, Island& island);
+void solve_all_directly(const StepContext& context, Row row, DirectRows& rows, Bodies& bodies, Shafts& shafts, std::span<Island> islands);
 
 struct SoftStepRows
 {
     Column<std::int64_t> substeps, relax_iterations;
     Column<double> hertz, damping_ratio, push_speed, tolerance;
     Account account;
-    Column<SoftMemory> memory;
+    Column<IslandTeam<SoftMemory>> memory;
 
     void describe(Schema& schema);
 };
-void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, Island& island);
+void solve_all_softly(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, std::span<Island> islands);
 
 /// Manager/Automatic: exact where that is affordable, and of a fixed cost where an island is large.
 ///
@@ -82,11 +85,35 @@ struct AutomaticRows
     {
         DirectRows::Memory direct;
         SoftMemory soft;
+        void reserve(const IslandSize& size) { direct.reserve(size), soft.reserve(size); }
     };
-    Column<Memory> memory;
+    /// What was chosen for an island, and why.
+    struct Choice
+    {
+        bool direct = false;
+        std::size_t points = 0;
+        double ratio = 1;
+    };
+    Column<IslandTeam<Memory>> memory;
+    Column<std::vector<Choice>> choices;  ///< by island
 
     void describe(Schema& schema);
 };
-void solve_automatic(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Shafts& shafts, Island& island);
+void solve_all_automatically(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Shafts& shafts,
+                             std::span<Island> islands);
+
+/// The same for a single island.
+inline void solve_sequential(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+{
+    solve_all_sequentially(context, row, rows, bodies, shafts, {&island, 1});
+}
+inline void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+{
+    solve_all_directly(context, row, rows, bodies, shafts, {&island, 1});
+}
+inline void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+{
+    solve_all_softly(context, row, rows, bodies, shafts, {&island, 1});
+}
 
 }  // namespace plab::managers

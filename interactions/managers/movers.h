@@ -30,6 +30,9 @@ struct Anchor
     Vec3 written;  ///< N m s: the part of Momentum::turn that has been written to the table already
 };
 
+/// J: twice the kinetic energy of a mover with these velocities.
+inline double twice_energy(const Anchor& m, const Vec3& v, const Vec3& w) { return m.mass * length_squared(v) + dot(w, m.inertia * w); }
+
 /// The sum of the impulses on a mover.
 struct Momentum
 {

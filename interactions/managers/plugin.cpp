@@ -9,7 +9,7 @@ PLAB_PLUGIN("managers", registrar)
         .component<SequentialRows>("Manager/SequentialImpulse",
                                    "sequential impulses, started from those of the last step, then sweeps that correct overlap by "
                                    "displacements")
-        .command<solve_sequential>(Phase::Solve, "Manager/Solve", "advances an island of contacts and one-sided rows")
+        .command<solve_all_sequentially>(Phase::Solve, "Manager/Solve", "advances islands of contacts and one-sided rows")
         .order(1)
         .strengths("large piles that change little, thanks to warm starting")
         .cost("sweeps x contact points, no matrix; with warm starting few sweeps suffice where little changes")
@@ -23,7 +23,7 @@ PLAB_PLUGIN("managers", registrar)
         .component<SoftStepRows>("Manager/SoftStep",
                                  "sub-steps with soft contacts, each followed by a relaxation sweep; restitution at the end of the "
                                  "step")
-        .command<solve_soft_step>(Phase::Solve, "Manager/Solve", "advances an island of contacts and one-sided rows")
+        .command<solve_all_softly>(Phase::Solve, "Manager/Solve", "advances islands of contacts and one-sided rows")
         .order(1)
         .strengths("a fixed cost per step; joints and contacts between bodies of similar mass")
         .cost("substeps x (1 + relax_iterations) sweeps over the contact points")
@@ -35,7 +35,7 @@ PLAB_PLUGIN("managers", registrar)
     registrar
         .component<DirectRows>("Manager/Direct",
                                "solves the exact contact law of the whole island by Newton's method with a sparse factorisation")
-        .command<solve_direct>(Phase::Solve, "Manager/Solve", "advances an island of contacts and one-sided rows")
+        .command<solve_all_directly>(Phase::Solve, "Manager/Solve", "advances islands of contacts and one-sided rows")
         .order(1)
         .strengths("mass ratios up to 1e8, stacks of 100, exact friction cone; bodies at rest stay at rest to rounding")
         .cost(
@@ -51,7 +51,7 @@ PLAB_PLUGIN("managers", registrar)
             "resolution locates it")
         .source("Alart, Curnier, CMAME 92 (1991); Acary, Cadoux, Lemarechal, Malick, ZAMM 91 (2011); Castro et al., IEEE T-RO 38 (2022)");
     registrar.component<AutomaticRows>("Manager/Automatic", "Direct for islands that are small or hold heavy bodies, otherwise SoftStep")
-        .command<solve_automatic>(Phase::Solve, "Manager/Solve", "advances an island of contacts and one-sided rows")
+        .command<solve_all_automatically>(Phase::Solve, "Manager/Solve", "advances islands of contacts and one-sided rows")
         .order(1)
         .accuracy("exact to 1e-12 m/s where `resolved` says Direct, otherwise that of SoftStep")
         .strengths("no choice has to be made: few contacts are exact, and thousands run in time")

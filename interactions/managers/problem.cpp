@@ -59,23 +59,29 @@ void Problem::set_mobility(Line& line) const
     }
 }
 
+void Problem::turn_mover(std::size_t i, const Bodies& bodies)
+{
+    if (anchors[i].shaft) return;
+    if (!movers[i].isotropic) set_inertia(movers[i], anchors[i], bodies);
+    // The momentum is constant while a body turns freely; the spin without impulses is what the impulses have not contributed to it.
+    anchors[i].w = bodies.angular_velocity[anchors[i].host] - movers[i].inverse_inertia * anchors[i].written;
+}
+
 void Problem::turn_with(const Bodies& bodies)
 {
-    turn_movers_with(bodies);
+    for_each(movers.size(), [&](std::size_t i) { turn_mover(i, bodies); });
+    for (Line& line : lines) set_mobility(line);
     for (Point& p : points)
         if (!is_isotropic_at(p.a) || !is_isotropic_at(p.b)) set_mobility(p);
 }
 
-void Problem::turn_movers_with(const Bodies& bodies)
+void Problem::turn_movers_and_apply(const Bodies& bodies)
 {
     for_each(movers.size(),
              [&](std::size_t i)
              {
-                 if (anchors[i].shaft) return;
-                 if (!movers[i].isotropic) set_inertia(movers[i], anchors[i], bodies);
-                 // The momentum is constant while a body turns freely; the spin without impulses is what the impulses have not
-                 // contributed to it.
-                 anchors[i].w = bodies.angular_velocity[anchors[i].host] - movers[i].inverse_inertia * anchors[i].written;
+                 turn_mover(i, bodies);
+                 apply_sums(i);
              });
     for (Line& line : lines) set_mobility(line);
 }
@@ -131,6 +137,16 @@ void Problem::set_point(Point& p, const Contact& c, const Bodies& bodies) const
     p.impulse = within_disc(p.impulse, p.friction * p.impulse.z);
 }
 
+std::uint8_t Problem::marks_of(const Point& p, const Contact& c, const Bodies& bodies) const
+{
+    const auto is_carried = [&](std::uint32_t mover, Ref r) { return mover == kNoIndex && bodies.motion[r.index] != Motion::Static; };
+    int out = 0;
+    if (c.approach > 0) out |= c.restitution > 0 ? kMeets | kBounces : kMeets;
+    if (c.turning > 0) out |= kTurns;
+    if (is_carried(p.a, c.a) || is_carried(p.b, c.b)) out |= kCarried;
+    return static_cast<std::uint8_t>(out);
+}
+
 void Problem::add_line(const ConstraintRow& row, std::uint32_t index)
 {
     Line& line = lines.emplace_back();
@@ -152,45 +168,75 @@ void Problem::add_line(const ConstraintRow& row, std::uint32_t index)
     if (line.count == 0) line.impulse = 0;
 }
 
+void Problem::reserve(const IslandSize& size)
+{
+    movers.reserve(size.movers), anchors.reserve(size.movers), sums.reserve(size.movers);
+    points.reserve(size.points), carried_.reserve(size.points);
+    mover_of_body_.resize(size.bodies, kNoIndex), mover_of_shaft_.resize(size.shafts, kNoIndex);
+    single.reserve(std::min(size.points, kSweptInOrder), size.movers);
+    if (size.points > kSweptInOrder) fours.reserve(size.points, size.movers);
+}
+
 void Problem::load(const Island& island, const Bodies& bodies, const Shafts& shafts)
 {
     load_geometry(island, bodies, shafts);
     for (Point& p : points) set_mobility(p);
     // A method may turn to sweeps in any step; this step would be the first to allocate.
-    if (points.size() <= kSweptInOrder) single.reserve(points.size());
+    if (points.size() <= kSweptInOrder) single.reserve(points.size(), movers.size());
 }
 
 void Problem::load_geometry(const Island& island, const Bodies& bodies, const Shafts& shafts)
 {
-    movers.clear(), anchors.clear(), points.clear(), lines.clear();
+    movers.clear(), anchors.clear(), lines.clear();
     contacts_ = island.contacts, rows_ = island.rows;
     interruption = island.interruption;
     add_bodies(island, bodies);
     add_shafts(island, shafts);
     carried_.clear();
-    points.resize(island.contacts.size());
-    for_each(points.size(), [&](std::size_t i) { set_point(points[i], island.contacts[i], bodies); });
-    const auto is_carried = [&](std::uint32_t mover, Ref r) { return mover == kNoIndex && bodies.motion[r.index] != Motion::Static; };
+    points.resize(island.contacts.size()), marks.resize(island.contacts.size());
+    for_each(points.size(),
+             [&](std::size_t i)
+             {
+                 set_point(points[i], contacts_[i], bodies);
+                 marks[i] = marks_of(points[i], contacts_[i], bodies);
+             });
     for (std::uint32_t i = 0; i < points.size(); ++i)
-        if (is_carried(points[i].a, contacts_[i].a) || is_carried(points[i].b, contacts_[i].b)) carried_.push_back(i);
+        if ((marks[i] & kCarried) != 0) carried_.push_back(i);
     for (std::uint32_t i = 0; i < island.rows.size(); ++i) add_line(island.rows[i], i);
     // Only these entries were written, so the maps are empty again for the next island at little cost.
     for (const std::uint32_t b : island.bodies) mover_of_body_[b] = kNoIndex;
     for (const std::uint32_t s : island.shafts) mover_of_shaft_[s] = kNoIndex;
 }
 
+void Problem::read_speed(std::size_t i, const Bodies& bodies, const Shafts& shafts)
+{
+    Anchor& m = anchors[i];
+    m.written = {};
+    if (m.shaft)
+        m.v = {}, m.w = {shafts.speed[m.host], 0, 0};
+    else
+        m.v = bodies.velocity[m.host], m.w = bodies.angular_velocity[m.host];
+}
+
 void Problem::read_speeds(const Bodies& bodies, const Shafts& shafts)
 {
-    for_each(movers.size(),
-             [&](std::size_t i)
-             {
-                 Anchor& m = anchors[i];
-                 m.written = {};
-                 if (m.shaft)
-                     m.v = {}, m.w = {shafts.speed[m.host], 0, 0};
-                 else
-                     m.v = bodies.velocity[m.host], m.w = bodies.angular_velocity[m.host];
-             });
+    for_each(movers.size(), [&](std::size_t i) { read_speed(i, bodies, shafts); });
+    read_given(bodies, shafts);
+}
+
+double Problem::read_speeds_and_apply(const Bodies& bodies, const Shafts& shafts)
+{
+    return 0.5 * sum_over_movers(
+                     [&](std::size_t i)
+                     {
+                         read_speed(i, bodies, shafts);
+                         apply_sums(i);
+                         return twice_energy(anchors[i], anchors[i].v, anchors[i].w);
+                     });
+}
+
+void Problem::read_given(const Bodies& bodies, const Shafts& shafts)
+{
     for (const std::uint32_t i : carried_)
     {
         Point& p = points[i];
@@ -237,13 +283,13 @@ void Problem::clear_impulses()
 
 void Problem::scale_impulses(double share)
 {
-    for (Point& p : points) p.impulse *= share;
+    for_each(points.size(), [&](std::size_t i) { points[i].impulse *= share; });
     for (Line& line : lines) line.impulse *= share;
 }
 
 void Problem::sum_line_impulses()
 {
-    sums.assign(movers.size(), {});
+    clear_sums();
     for (const Line& line : lines)
         for (std::uint32_t k = 0; k < line.count; ++k)
         {
@@ -264,47 +310,61 @@ void Problem::apply_impulses()
     apply_same_impulses();
 }
 
-void Problem::sum_by_velocities()
+void Problem::apply_sums(std::size_t i)
 {
-    for_each(movers.size(),
-             [&](std::size_t i)
-             {
-                 const Anchor& anchor = anchors[i];
-                 sums[i].push = (movers[i].v - anchor.v) * anchor.mass;
-                 sums[i].turn = anchor.inertia * (movers[i].w - anchor.w);
-             });
+    const Anchor& anchor = anchors[i];
+    Mover& m = movers[i];
+    m.v = anchor.v + sums[i].push * m.inverse_mass;
+    m.w = anchor.w + m.inverse_inertia * sums[i].turn;
 }
 
 void Problem::apply_same_impulses()
 {
-    for_each(movers.size(),
-             [&](std::size_t i)
-             {
-                 const Anchor& anchor = anchors[i];
-                 Mover& m = movers[i];
-                 m.v = anchor.v + sums[i].push * m.inverse_mass;
-                 m.w = anchor.w + m.inverse_inertia * sums[i].turn;
-             });
+    for_each(movers.size(), [&](std::size_t i) { apply_sums(i); });
+}
+
+void Problem::sum_by_velocity(std::size_t i)
+{
+    const Anchor& anchor = anchors[i];
+    sums[i].push = (movers[i].v - anchor.v) * anchor.mass;
+    sums[i].turn = anchor.inertia * (movers[i].w - anchor.w);
+}
+
+void Problem::sum_by_velocities()
+{
+    for_each(movers.size(), [&](std::size_t i) { sum_by_velocity(i); });
+}
+
+void Problem::write_speed(std::size_t i, Bodies& bodies, Shafts& shafts)
+{
+    Anchor& m = anchors[i];
+    if (m.shaft)
+    {
+        shafts.speed[m.host] = movers[i].w.x;
+        return;
+    }
+    // The angular momentum is the state: it changes by the impulses themselves.
+    bodies.velocity[m.host] = movers[i].v;
+    const Vec3& turn = sums[i].turn;
+    if (turn == m.written) return;
+    bodies.add_angular_impulse(m.host, turn - m.written);
+    m.written = turn;
 }
 
 void Problem::write_speeds(Bodies& bodies, Shafts& shafts)
 {
-    for_each(movers.size(),
-             [&](std::size_t i)
-             {
-                 Anchor& m = anchors[i];
-                 if (m.shaft)
-                 {
-                     shafts.speed[m.host] = movers[i].w.x;
-                     return;
-                 }
-                 // The angular momentum is the state: it changes by the impulses themselves.
-                 bodies.velocity[m.host] = movers[i].v;
-                 const Vec3& turn = sums[i].turn;
-                 if (turn == m.written) return;
-                 bodies.add_angular_impulse(m.host, turn - m.written);
-                 m.written = turn;
-             });
+    for_each(movers.size(), [&](std::size_t i) { write_speed(i, bodies, shafts); });
+}
+
+double Problem::write_swept_speeds(Bodies& bodies, Shafts& shafts)
+{
+    return 0.5 * sum_over_movers(
+                     [&](std::size_t i)
+                     {
+                         sum_by_velocity(i);
+                         write_speed(i, bodies, shafts);
+                         return twice_energy(anchors[i], movers[i].v, movers[i].w);
+                     });
 }
 
 double Problem::rate(const Line& line) const
@@ -341,56 +401,6 @@ double Problem::rounding(double terms) const
         given = std::max(given, std::fabs(line.impulse) * line.mobility);
     }
     return std::max(0x1p-46 * speed, 0x1p-50 * std::sqrt(terms) * given);
-}
-
-// Active contacts are judged by their velocity itself: next to a large impulse, a small change of impulse would be lost to
-// rounding.
-double violation(const Point& p, const Vec3& u)
-{
-    if (!(p.K(2, 2) > 0)) return 0;
-    const bool presses = p.impulse.z - (u.z - p.least) / p.K(2, 2) > 0;
-    const double of_normal = presses ? std::fabs(u.z - p.least) : std::fabs(p.impulse.z) * p.K(2, 2);
-    if (!p.frictional()) return of_normal;
-    const double k = p.slip_mobility, x = p.impulse.x - u.x / k, y = p.impulse.y - u.y / k, size = std::hypot(x, y);
-    const double radius = p.friction * std::max(0.0, p.impulse.z);
-    if (size <= radius) return std::max(of_normal, std::hypot(u.x, u.y));
-    const double share = radius / size;
-    return std::max(of_normal, std::hypot(x * share - p.impulse.x, y * share - p.impulse.y) * k);
-}
-
-double violation(const Line& line, double rate)
-{
-    if (line.count == 0) return 0;
-    const double off = rate - line.target, wanted = line.impulse - off / line.mobility;
-    const double held = std::clamp(wanted, line.least, line.most);
-    return held == wanted ? std::fabs(off) : std::fabs(held - line.impulse) * line.mobility;
-}
-
-double kinetic_energy(const Problem& problem)
-{
-    double twice = 0;
-    for (std::size_t i = 0; i < problem.movers.size(); ++i)
-    {
-        const Anchor& m = problem.anchors[i];
-        const Vec3 &v = problem.movers[i].v, &w = problem.movers[i].w;
-        twice += m.mass * length_squared(v) + dot(w, m.inertia * w);
-    }
-    return 0.5 * twice;
-}
-
-double kinetic_energy_without(const Problem& problem)
-{
-    double twice = 0;
-    for (const Anchor& m : problem.anchors) twice += m.mass * length_squared(m.v) + dot(m.w, m.inertia * m.w);
-    return 0.5 * twice;
-}
-
-double violation(const Problem& problem)
-{
-    double largest = 0;
-    for (const Point& p : problem.points) largest = std::max(largest, violation(p, problem.relative_velocity(p)));
-    for (const Line& line : problem.lines) largest = std::max(largest, violation(line, problem.rate(line)));
-    return largest;
 }
 
 }  // namespace plab::managers

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "contact_packets.h"
+#include "island_team.h"
 #include "movers.h"
 #include "plab/island.h"
 #include "plab/tables.h"
@@ -47,6 +48,8 @@ class Problem
 public:
     /// Sets geometry, masses and initial impulses (warm start). Targets and velocities are still to be set.
     void load(const Island& island, const Bodies& bodies, const Shafts& shafts);
+    /// Sets memory apart for islands of this size without rows.
+    void reserve(const IslandSize& size);
     /// The same but for the mobilities of the points, K.
     void load_geometry(const Island& island, const Bodies& bodies, const Shafts& shafts);
     /// Updates inertias, mobilities and the spins without impulses to the present attitudes, after bodies have turned freely. Balls and
@@ -54,27 +57,36 @@ public:
     /// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with
     /// another of its points, so the point must not turn with it.
     void turn_with(const Bodies& bodies);
-    /// The same for the movers and rows alone: the points keep their mobilities.
-    void turn_movers_with(const Bodies& bodies);
+    /// The same for the movers and rows alone: the points keep their mobilities. The velocities of the movers become those with the present
+    /// sums of impulses.
+    void turn_movers_and_apply(const Bodies& bodies);
     /// Reads the velocities without impulses, and the given parts of u, from the tables.
     void read_speeds(const Bodies& bodies, const Shafts& shafts);
+    /// Reads the given parts of u alone.
+    void read_given(const Bodies& bodies, const Shafts& shafts);
+    /// Reads the velocities without impulses, and applies the present sums of impulses to them. Returns J: the kinetic energy without
+    /// impulses.
+    double read_speeds_and_apply(const Bodies& bodies, const Shafts& shafts);
     /// Sets all velocities and given parts to zero, for a solve in displacements instead of velocities.
     void rest();
     /// Sets the impulses of all points and lines to zero.
     void clear_impulses();
     void scale_impulses(double share);
-    /// Sets the sums of the movers' impulses to those of the lines alone.
+    /// Sets the sums of the movers' impulses to zero, and to those of the lines alone.
+    void clear_sums() { sums.assign(movers.size(), {}); }
     void sum_line_impulses();
     /// Sets the movers' velocities to those without impulses plus the effect of the present impulses, summed in a fixed order so
     /// that the result is reproducible.
     void apply_impulses();
     /// The same with the sums that there are: where no impulse and no point has changed since the last call of apply_impulses().
     void apply_same_impulses();
+    /// Writes the velocities and the sums of the impulses to the tables.
+    void write_speeds(Bodies& bodies, Shafts& shafts);
     /// Takes the sums from the movers' velocities, which sweeps have changed impulse by impulse: m (v - v0), I (w - w0). They equal those
     /// of apply_impulses() but for rounding, without a walk over all points.
     void sum_by_velocities();
-    /// Writes the velocities and the sums of the impulses to the tables.
-    void write_speeds(Bodies& bodies, Shafts& shafts);
+    /// Does that, then writes. Returns J: the kinetic energy.
+    double write_swept_speeds(Bodies& bodies, Shafts& shafts);
 
     Vec3 relative_velocity(const Point& p) const;  ///< u, m/s
     double rate(const Line& line) const;           ///< J v + given
@@ -95,11 +107,20 @@ public:
     std::vector<Line> lines;      ///< parallel to Island::rows; rows without movers have count 0
     const Interruption* interruption = nullptr;
     Workers* workers = nullptr;  ///< threads that the host lends; null: none
+    /// What is special about a contact: bits of `marks`, which is parallel to `points`.
+    enum Mark : std::uint8_t
+    {
+        kMeets = 1,    ///< it was met with a speed
+        kBounces = 2,  ///< and has restitution
+        kTurns = 4,    ///< Contact::turning
+        kCarried = 8,  ///< see carried()
+    };
+    std::vector<std::uint8_t> marks;
+    mutable std::vector<double> part_sums;  ///< working memory of sum_parts()
     /// Working memory of sweeps over the points.
     PacketList<1> single;
     PacketList<4> fours;
 
-private:
     /// Calls one(i) for each i < count, in parts that threads share.
     template <class One>
     void for_each(std::size_t count, const One& one)
@@ -110,9 +131,29 @@ private:
                       for (std::size_t i = begin; i < end; ++i) one(i);
                   });
     }
+    /// The sum of what term(i) is for each mover, in parts.
+    template <class Term>
+    double sum_over_movers(const Term& term) const
+    {
+        return sum_parts(workers, movers.size(), kMoverPart, part_sums,
+                         [&](std::size_t begin, std::size_t end)
+                         {
+                             double sum = 0;
+                             for (std::size_t i = begin; i < end; ++i) sum += term(i);
+                             return sum;
+                         });
+    }
+
+private:
     void add_bodies(const Island& island, const Bodies& bodies);
     void add_shafts(const Island& island, const Shafts& shafts);
     void set_point(Point& point, const Contact& contact, const Bodies& bodies) const;
+    std::uint8_t marks_of(const Point& point, const Contact& contact, const Bodies& bodies) const;
+    void read_speed(std::size_t mover, const Bodies& bodies, const Shafts& shafts);
+    void turn_mover(std::size_t mover, const Bodies& bodies);
+    void apply_sums(std::size_t mover);
+    void sum_by_velocity(std::size_t mover);
+    void write_speed(std::size_t mover, Bodies& bodies, Shafts& shafts);
     void set_mobility(Point& p) const;
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);

@@ -29,11 +29,11 @@ void SoftIsland<W>::note_limits()
     }
 }
 
-/// Called before and after a kick: notes the change of the momenta.
+/// Called before a kick, and after it when the speeds have been read: notes the change of the momenta.
 template <int W>
 void SoftIsland<W>::note_kicks(bool before)
 {
-    problem_.read_speeds(bodies_, shafts_);
+    if (before) problem_.read_speeds(bodies_, shafts_);
     for (std::size_t i = 0; i < problem_.anchors.size(); ++i)
     {
         const Anchor& m = problem_.anchors[i];
@@ -99,11 +99,12 @@ template <int W>
 void SoftIsland<W>::give_back()
 {
     constexpr int kHalvings = 24;
-    problem_.read_speeds(bodies_, shafts_);
-    clear_impulses();
-    apply();
+    gather_and_clear(contacts_, std::span<SoftPoint<W>>(soft_));
+    for (Line& line : problem_.lines) line.impulse = 0;
+    problem_.clear_sums();
+    problem_.read_given(bodies_, shafts_);
+    const double most = std::max(allowed_, problem_.read_speeds_and_apply(bodies_, shafts_));
     if (!bounces_) return;
-    const double most = std::max(allowed_, kinetic_energy_without(problem_));
     double low = 0, high = 1;
     if (bounce(1) > most)
     {

@@ -33,6 +33,13 @@ struct SoftMemory
         Vec3 push, turn;  ///< N s, N m s: impulse of the forces in the sub-step
     };
     std::vector<Kick> kicks;
+
+    void reserve(const IslandSize& size)
+    {
+        step.reserve(size);
+        single.reserve(std::min(size.points, kSweptInOrder)), meeting.reserve(size.points), kicks.reserve(size.movers);
+        if (size.points > kSweptInOrder) fours.reserve(size.points);
+    }
 };
 
 template <int W>
@@ -46,17 +53,19 @@ public:
 private:
     void start();
     void kick();
+    void meet();
+    void sum();
     void apply();
     void write();
     void move();
     void turn();
     void relax();
+    bool gains(double energy) const;
     bool gains() const;
     int step_hard();
     bool scale_down();
     void sweep_lines(bool soft);
     int remove_gained_energy();
-    void gather();
     void note_kicks(bool before);
     void count_travel();
     void note_limits();
@@ -81,6 +90,7 @@ private:
     bool bounces_ = false;
     bool applied_ = false;  ///< the impulses have been applied in an earlier sub-step of this step
     bool driven_ = false;   ///< the motion of other bodies may add energy at a contact
+    double energy_ = 0;     ///< J: kinetic energy when the velocities were written last
     double most_ = 0;       ///< J: kinetic energy after the sub-step's kick, which contacts must not exceed
     bool limits_bounce_ = false;
     double allowed_ = 0;  ///< J: kinetic energy at the start of the step plus the work of the forces since

@@ -46,7 +46,7 @@ Verdict SoftIsland<W>::run()
     for (int s = 0; s < choices_.substeps && !island_.interrupted(); ++s)
     {
         kick();
-        most_ = kinetic_energy_without(problem_);
+        sweep_.gathers = s > 0;
         sweep_soft(contacts_, std::span<Mover>(problem_.movers), sweep_, std::span<SoftPoint<W>>(soft_));
         sweep_lines(true);
         write();
@@ -55,7 +55,7 @@ Verdict SoftIsland<W>::run()
         for (int i = 0; i < choices_.relax_iterations; ++i) relax();
         write();
         out.iterations += 1 + choices_.relax_iterations + remove_gained_energy();
-        gather();
+        for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
     }
     give_back();
     finish(out);
@@ -69,16 +69,25 @@ void SoftIsland<W>::start()
     problem_.scale_impulses(1.0 / choices_.substeps);
     contacts_.load(problem_.points, problem_.movers.size(), problem_.workers);
     set_mobility(contacts_, std::span<const Mover>(problem_.movers));
-    soft_.assign(contacts_.points().size(), {});
+    soft_.resize(contacts_.points().size());
+    contacts_.in_parts(
+        [&](std::size_t begin, std::size_t end)
+        {
+            for (std::size_t k = begin; k < end; ++k)
+            {
+                const Packet<W>& packet = contacts_.packets()[k];
+                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i) soft_[i] = {};
+                contacts_.visit(k, [&](std::uint32_t contact, std::uint32_t point, int l)
+                                { set_lane(soft_[point].depth, l, island_.contacts[contact].depth); });
+            }
+        });
     memory_.meeting.clear();
     for (std::uint32_t i = 0; i < contacts_.size(); ++i)
     {
-        const Contact& c = island_.contacts[i];
-        const auto place = contacts_.place(i);
-        set_lane(soft_[place.point].depth, place.lane, c.depth);
-        if (c.approach > 0) memory_.meeting.push_back(i);
-        driven_ = driven_ || c.turning > 0;
-        bounces_ = bounces_ || (c.approach > 0 && c.restitution > 0);
+        const std::uint8_t marks = problem_.marks[i];
+        if ((marks & Problem::kMeets) != 0) memory_.meeting.push_back(i);
+        driven_ = driven_ || (marks & Problem::kTurns) != 0;
+        bounces_ = bounces_ || (marks & Problem::kBounces) != 0;
     }
     memory_.line_sum.assign(problem_.lines.size(), 0.0);
     note_limits();
@@ -95,38 +104,62 @@ void SoftIsland<W>::kick()
     if (bounces_) note_kicks(true);
     island_.motion->kick(h_);
     if (!island_.rows.empty()) island_.motion->refresh_rows();
-    problem_.read_speeds(bodies_, shafts_);
-    if (bounces_) note_kicks(false);
+    problem_.read_given(bodies_, shafts_);
     for (const std::uint32_t i : problem_.carried())
     {
         contacts_.set_given(i, problem_.points[i].given);
         driven_ = driven_ || problem_.points[i].given != Vec3{};
     }
-    bool changes = !applied_ || !problem_.lines.empty();  // targets limit the impulses of lines
-    // The impulse that stopped an impact is no estimate for the impulses after it.
-    for (const std::uint32_t i : memory_.meeting)
-        if (contacts_.impulse(i) != Vec3{}) contacts_.set_impulse(i, {}), changes = true;
+    meet();
     set_line_targets(problem_, island_, h_);
-    if (changes)
-        apply();
-    else
-        problem_.apply_same_impulses();
+    if (!applied_ || !problem_.lines.empty()) sum();  // targets limit the impulses of lines
     applied_ = true;
+    most_ = problem_.read_speeds_and_apply(bodies_, shafts_);
+    if (bounces_) note_kicks(false);
+}
+
+/// The impulse that stopped an impact is no estimate for the impulses after it.
+template <int W>
+void SoftIsland<W>::meet()
+{
+    bool changes = false;
+    for (const std::uint32_t i : memory_.meeting)
+    {
+        const Vec3 j = contacts_.impulse(i);
+        if (j == Vec3{}) continue;
+        changes = true;
+        const auto place = contacts_.place(i);
+        SoftPoint<W>& soft = soft_[place.point];
+        if (applied_)
+        {
+            set_lane(soft.sum.x, place.lane, lane(soft.sum.x, place.lane) + j.x);
+            set_lane(soft.sum.y, place.lane, lane(soft.sum.y, place.lane) + j.y);
+            set_lane(soft.sum.z, place.lane, lane(soft.sum.z, place.lane) + j.z);
+            set_lane(soft.greatest, place.lane, std::max(lane(soft.greatest, place.lane), j.z));
+        }
+        contacts_.set_impulse(i, {});
+    }
+    applied_ = applied_ && !changes;
+}
+
+template <int W>
+void SoftIsland<W>::sum()
+{
+    problem_.sum_line_impulses();
+    sum_impulses(contacts_, std::span<Momentum>(problem_.sums));
 }
 
 template <int W>
 void SoftIsland<W>::apply()
 {
-    problem_.sum_line_impulses();
-    sum_impulses(contacts_, std::span<Momentum>(problem_.sums));
+    sum();
     problem_.apply_same_impulses();
 }
 
 template <int W>
 void SoftIsland<W>::write()
 {
-    problem_.sum_by_velocities();
-    problem_.write_speeds(bodies_, shafts_);
+    energy_ = problem_.write_swept_speeds(bodies_, shafts_);
 }
 
 /// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with another
@@ -134,25 +167,18 @@ void SoftIsland<W>::write()
 template <int W>
 void SoftIsland<W>::move()
 {
-    for_parts(problem_.workers, soft_.size(), kMoverPart,
-              [&](std::size_t begin, std::size_t end)
-              {
-                  for (std::size_t i = begin; i < end; ++i)
-                      soft_[i].depth_before = soft_[i].depth, soft_[i].moved_with = contacts_.points()[i].impulse;
-              });
     memory_.lines_moved_with.clear();
     for (const Line& line : problem_.lines) memory_.lines_moved_with.push_back(line.impulse);
     advance_depths(contacts_, std::span<Mover>(problem_.movers), h_, std::span<SoftPoint<W>>(soft_));
     island_.motion->move(h_);
     turn();
-    problem_.apply_same_impulses();  // those that write() applied
 }
 
-/// After a move: the inertias and mobilities of the present attitudes.
+/// After a move: the inertias and mobilities of the present attitudes, and the velocities with the impulses that write() applied.
 template <int W>
 void SoftIsland<W>::turn()
 {
-    problem_.turn_movers_with(bodies_);
+    problem_.turn_movers_and_apply(bodies_);
     refresh_mobility(contacts_, std::span<const Mover>(problem_.movers));
 }
 
@@ -182,27 +208,17 @@ void SoftIsland<W>::sweep_lines(bool soft)
 }
 
 template <int W>
-void SoftIsland<W>::gather()
+bool SoftIsland<W>::gains(double energy) const
 {
-    for_parts(problem_.workers, soft_.size(), kMoverPart,
-              [&](std::size_t begin, std::size_t end)
-              {
-                  for (std::size_t i = begin; i < end; ++i)
-                  {
-                      const LaneVec<W>& j = contacts_.points()[i].impulse;
-                      soft_[i].sum = soft_[i].sum + j;
-                      soft_[i].greatest = larger(soft_[i].greatest, j.z);
-                  }
-              });
-    for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
+    if (driven_ || std::any_of(problem_.lines.begin(), problem_.lines.end(), [](const Line& line) { return is_driven(line); }))
+        return false;
+    return energy > most_ * (1 + 1e-9);
 }
 
 template <int W>
 bool SoftIsland<W>::gains() const
 {
-    if (driven_ || std::any_of(problem_.lines.begin(), problem_.lines.end(), [](const Line& line) { return is_driven(line); }))
-        return false;
-    return kinetic_energy(problem_) > most_ * (1 + 1e-9);
+    return gains(kinetic_energy(problem_));
 }
 
 template <int W>
@@ -275,7 +291,7 @@ template <int W>
 int SoftIsland<W>::remove_gained_energy()
 {
     constexpr int kSweeps = 2;
-    if (!gains()) return 0;
+    if (!gains(energy_)) return 0;
     const Swept done = sweep(problem_, contacts_, {kSweeps});  // with the targets that move() has set
     apply();
     if (gains() && !scale_down()) return done.sweeps + step_hard();
@@ -294,7 +310,7 @@ double SoftIsland<W>::finish_point(std::size_t i)
     const Vec3 u = problem_.relative_velocity(p), returned = contacts_.impulse(i);
     const Vec3 j = returned + Vec3{lane(soft.sum.x, place.lane), lane(soft.sum.y, place.lane), lane(soft.sum.z, place.lane)};
     c.impulse = to_world(p, j);
-    c.slip = std::hypot(u.x, u.y);
+    c.slip = std::sqrt(u.x * u.x + u.y * u.y);
     return returned.z == 0 && p.mobile() && lane(soft.depth, place.lane) >= 0 ? -u.z : 0.0;
 }
 

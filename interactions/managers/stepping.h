@@ -48,6 +48,8 @@ struct StepMemory
         double shaft = 0;
     };
     std::vector<Speeds> speeds;
+
+    void reserve(const IslandSize& size) { problem.reserve(size); }
 };
 
 /// Ends of sliding are located inside the step up to this many contacts: in a pile some contact always stops sliding.

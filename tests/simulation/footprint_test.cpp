@@ -134,6 +134,39 @@ TEST_CASE("a warm step of a sliding stack allocates nothing, with any manager")
     }
 }
 
+TEST_CASE("a warm step of many islands allocates nothing, with 1, 2 and 4 threads")
+{
+    std::string body =
+        R"(<component id="floor" type="Shape/Plane"/><component id="ground" type="State/Static" shape="floor"/>
+        <component id="cube" type="Shape/Box" half_extents="0.5 0.5 0.2"/><component id="g" type="Field/Gravity" between="*"/>
+        <component id="manager" type="Manager/SoftStep" substeps="4"/>
+        <component id="contact" type="CDetection/ODE" between="*" resolution="Resolution/None" response="Response/Rows"
+                   response.manager="manager" response.friction="0.25"/>)";
+    for (int i = 0; i < 60; ++i)
+        for (int k = 0; k < 2 + i % 7; ++k)
+            body += "<component id=\"b" + std::to_string(i) + "_" + std::to_string(k) +
+                    "\" type=\"State/RigidBody\" mass=\"1\" shape=\"cube\" position=\"" + std::to_string(3 * i) + " 0 " +
+                    std::to_string(0.2 + 0.4 * k) + "\" linear_velocity=\"0 " + std::to_string(i % 5) + " 0\"/>";
+    for (const int threads : {1, 2, 4})
+    {
+        CAPTURE(threads);
+        Scene s(body, "dt=\"1/60\"", threads);
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.step(400);
+        int quiet = 0;
+        for (int i = 0; i < 120; ++i)
+        {
+            const long before = allocations;
+            s.simulation().step();
+            const long made = allocations - before;
+            if (!s.simulation().events().empty()) continue;
+            ++quiet;
+            REQUIRE(made == 0);
+        }
+        CHECK(quiet > 80);
+    }
+}
+
 TEST_CASE("an empty step costs less than a microsecond")
 {
     Scene s("");

@@ -10,7 +10,8 @@
 namespace plab
 {
 
-/// The operations by which a manager moves its island. Forces are those of the state at the start of the step.
+/// The operations by which a manager moves its island. Forces are those of the state at the start of the step. Several threads may move
+/// different islands at once. An island with rows comes alone, as its rows share their working memory.
 class IslandMotion
 {
 public:
@@ -29,6 +30,8 @@ public:
 
 /// Phase::Solve: one step of length h. It contains everything that moves during the step; bodies that are not members have mobility 0.
 /// The manager leaves poses and speeds at the end of the step in the host tables.
+/// A call may bring several islands of the same time and length of the step. No body or shaft that moves is a member of two, so a manager
+/// may advance them in any order, also at once; what becomes of one must not depend on which others come with it.
 struct Island
 {
     double h = 0;                            ///< s

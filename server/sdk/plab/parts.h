@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <vector>
 
 #include "plab/workers.h"
 
@@ -19,6 +20,18 @@ void for_parts(Workers* workers, std::size_t count, std::size_t size, const Loop
     const auto part = [&](std::size_t k) { loop(k * size, std::min(count, (k + 1) * size)); };
     if (parts > 1 && workers && workers->threads() > 1) return workers->run(parts, part);
     for (std::size_t k = 0; k < parts; ++k) part(k);
+}
+
+/// The sum of what loop(begin, end) returns for each of these parts, in their order. `sums` is working memory.
+template <class Loop>
+double sum_parts(Workers* workers, std::size_t count, std::size_t size, std::vector<double>& sums, const Loop& loop)
+{
+    if (count <= size) return count == 0 ? 0.0 : loop(std::size_t{0}, count);
+    sums.resize((count + size - 1) / size);
+    for_parts(workers, count, size, [&](std::size_t begin, std::size_t end) { sums[begin / size] = loop(begin, end); });
+    double sum = 0;
+    for (const double part : sums) sum += part;
+    return sum;
 }
 
 /// The largest of numbers that the parts of a loop find; like the parts, it does not depend on the order of threads.

@@ -69,7 +69,8 @@ struct PhaseCall
     RowSink* rows_out = nullptr;                // Constrain
     const RowReports* row_reports = nullptr;    // Finish
     DynamicSystem* system = nullptr;            // Advance
-    Island* island = nullptr;                   // Solve
+    Island* island = nullptr;                   // Solve: one of them
+    std::span<Island> islands;                  // Solve
     GapQuery* gap = nullptr;                    // Gap
     ContactSink* contacts = nullptr;            // Detect
     Trial* trial = nullptr;                     // Locate
@@ -192,10 +193,18 @@ struct Argument<const Table&, Table>
     static void note(std::vector<Access>& out) { out.push_back({"own", false}); }
 };
 
+/// A command that takes an Island& is called once for each island, one that takes this once for all of them.
+template <class Table>
+struct Argument<std::span<Island>, Table>
+{
+    static std::span<Island> get(const PhaseCall& c, Table&, Row) { return c.islands; }
+    static void note(std::vector<Access>& out) { out.push_back({"Island", true}); }
+};
+
 template <auto F, class Table, class R, class... A>
 struct Command
 {
-    static constexpr bool kPerRow = (std::is_same_v<A, Row> || ...);
+    static constexpr bool kPerRow = (std::is_same_v<A, Row> || ...), kPerIsland = (std::is_same_v<A, Island&> || ...);
 
     static Result<void> once(const PhaseCall& call, Table& table, Row row)
     {
@@ -207,12 +216,24 @@ struct Command
         else
             return F(Argument<A, Table>::get(call, table, row)...);
     }
-    static Result<void> run(const PhaseCall& call, void* rows)
+    static Result<void> of_rows(const PhaseCall& call, Table& table)
     {
-        Table& table = *static_cast<Table*>(rows);
         if constexpr (!kPerRow) return once(call, table, kNoIndex);
         for (const Row row : call.rows)
             if (auto r = once(call, table, row); !r) return r;
+        return {};
+    }
+    static Result<void> run(const PhaseCall& call, void* rows)
+    {
+        Table& table = *static_cast<Table*>(rows);
+        if (!kPerIsland || call.islands.empty()) return of_rows(call, table);
+        PhaseCall one = call;
+        for (Island& island : call.islands)
+        {
+            if (island.interrupted()) break;
+            one.island = &island;
+            if (auto r = of_rows(one, table); !r) return r;
+        }
         return {};
     }
     static std::vector<Access> access()

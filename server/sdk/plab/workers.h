@@ -17,8 +17,8 @@ public:
     virtual ~Workers() = default;
     /// Number of threads, the caller's included; at least 1.
     virtual int threads() const = 0;
-    /// Runs job(0) .. job(count - 1), each once, in any order and on any of the threads, and returns when all are done. Jobs must not throw
-    /// and must not call run() themselves.
+    /// Runs job(0) .. job(count - 1), each once, in any order and on any of the threads, and returns when all are done. Jobs must not throw.
+    /// A job that calls run() itself does the jobs of that call one after the other, on its own thread.
     template <class Job>
     void run(std::size_t count, Job&& job)
     {

@@ -30,18 +30,14 @@ Event ContactBook::contact_event(const char* kind, const PairState& pair, double
     return e;
 }
 
-void ContactBook::add_point(Pressing& pressing, PairState& pair, const Contact& c, double speed, double h)
+ContactBook::Pressing ContactBook::pressing_of(const PairState& pair) const
 {
-    const double before = dot(cache_.contact_of(pair, c.feature).impulse, c.normal);
-    pressing.before += before;
-    pressing.now += dot(c.impulse, c.normal);
-    const bool is_known = pair.pressed_tick == step_.frame.tick || pair.release == kUndecided;
-    if (!(before > 0) && !is_known) return;  // it touches without pressing
-    pressing.opens = std::min(pressing.opens, speed - c.turning);
-    pressing.separation_speed = std::min(pressing.separation_speed, speed - c.turning + std::max(0.0, -c.depth) / h);
+    Pressing out;
+    out.counts_all = pair.pressed_tick == step_.frame.tick || pair.release == kUndecided;
+    return out;
 }
 
-bool ContactBook::note_release(PairState& pair, const Contact& first, const Pressing& pressing, double from, double h)
+bool ContactBook::stops_pressing(PairState& pair, const Pressing& pressing) const
 {
     constexpr double kNothing = 0x1p-40;  // fraction of the last step's impulse: the residual of an iterative solver
     if (pair.pressed_tick != step_.frame.tick)
@@ -50,28 +46,28 @@ bool ContactBook::note_release(PairState& pair, const Contact& first, const Pres
         if (!is_open || pressing.before > 0) pair.pressed_before = pressing.before;
         pair.pressed_tick = step_.frame.tick, pair.release = PairHead::kNoRelease;
     }
-    const double pressed = pair.pressed_before;
-    if (!(pressed > 0)) return false;
-    if (pressing.now > kNothing * pressed)
-    {
-        pair.release = PairHead::kNoRelease;
-        return false;
-    }
+    if (!(pair.pressed_before > 0)) return false;
+    if (!(pressing.now > kNothing * pair.pressed_before)) return true;
+    pair.release = PairHead::kNoRelease;
+    return false;
+}
+
+void ContactBook::note_release(PairState& pair, const Contact& first, const Pressing& pressing, double from, double h)
+{
     const Bodies& bodies = step_.world.host().bodies;
-    const double taken = pressed * (mobility_at(bodies, first.a.index, first.point, first.normal) +
-                                    mobility_at(bodies, first.b.index, first.point, first.normal));
-    if (pair.release < kUndecided || !(pressing.separation_speed > kParts * taken)) return true;
+    const double taken = pair.pressed_before * (mobility_at(bodies, first.a.index, first.point, first.normal) +
+                                                mobility_at(bodies, first.b.index, first.point, first.normal));
+    if (pair.release < kUndecided || !(pressing.separation_speed > kParts * taken)) return;
     if (h < step_.frame.step && !(pressing.opens > 0))
     {
         // In a short piece of a step a gap may be too wide to close: the next step shows whether the pair holds on.
         pair.release = kUndecided;
-        return true;
+        return;
     }
     const double time = step_.frame.start_time + from + h * (taken / (taken + pressing.separation_speed) - 0.5);
     Event e = contact_event("contact.release", pair, time, first);
     pair.release = static_cast<std::uint32_t>(releases_.size());
     releases_.push_back(std::move(e));
-    return true;
 }
 
 bool ContactBook::report_release(PairState& pair)

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "plab/surface.h"
 #include "simulation/contacts/contact_rules.h"
 #include "simulation/contacts/speculation.h"
 #include "simulation/motion/component_call.h"
@@ -18,26 +17,42 @@ namespace
 /// Largest extra margin with which a persistent pair is detected, as a fraction of the smaller body's radius.
 constexpr double kMostShare = 0.1;
 
-/// m: radius of the most strongly curved shape of a body, negative for surfaces that are touched from inside; infinite if it has none.
-double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
+/// Keeps the contacts of one detector for which `counts` is true, and lists the pairs.
+template <class Counts>
+class SelectingCollector final : public ContactCollector
 {
-    double least = HUGE_VAL;
-    const auto add = [&](const Geometry& g)
+public:
+    /// `detector`: component.
+    SelectingCollector(const world::World& world, std::uint32_t detector, std::vector<FoundContact>& out, std::vector<FoundRun>& runs,
+                       const Counts& counts)
+        : ContactCollector(world, out), detector_(detector), first_(out.size()), runs_(runs), counts_(counts)
     {
-        const bool round = g.kind == GeometryKind::Sphere || g.kind == GeometryKind::Capsule || g.kind == GeometryKind::Cylinder;
-        if (round && g.size.x < std::fabs(least)) least = g.size.x;
-        const Surface surface = surface_of(g);
-        const bool inside = surface == Surface::Bore || surface == Surface::Bowl;
-        if (inside && surface_radius(g) < std::fabs(least)) least = -surface_radius(g);
-    };
-    for (const Ref shape : bodies.shapes[b])
-    {
-        const Geometry& g = shapes.geometry[shape.index];
-        add(g);
-        for (const std::uint32_t part : g.parts) add(shapes.geometry[part]);
     }
-    return least;
-}
+    void add(const Contact& contact) override
+    {
+        if (!counts_(contact)) return;
+        const FoundContact& f = put(contact);
+        if (out_->size() > first_ + 1 && same_pair(f, *(&f - 1)))
+            in_order_ = in_order_ && (&f - 1)->contact.feature <= contact.feature;
+        else
+            begin_run(contact);
+        ++runs_.back().end;
+    }
+
+private:
+    void begin_run(const Contact& contact)
+    {
+        const PairKey key(*world_, detector_, contact.a, contact.b);
+        in_order_ = in_order_ && (runs_.empty() || runs_.back().key < key);
+        const auto at = static_cast<std::uint32_t>(out_->size() - 1);
+        runs_.push_back({at, at, key});
+    }
+
+    std::uint32_t detector_;
+    std::size_t first_;
+    std::vector<FoundRun>& runs_;
+    const Counts& counts_;
+};
 
 /// m: gap that opens between two round bodies because they move straight on for h while they slide along one another. One step opens
 /// (v h)^2 / (2 (r_a + r_b)). After it they separate by twice that per step, and forces act against it one step later, so the gap can
@@ -64,7 +79,7 @@ Errors ContactBook::rebuild()
     if (Errors refused = check_contacts(step_.world, detectors_); !refused.empty()) return refused;
     cache_.refresh(step_.world, detectors_);
     resting_.forget();
-    found_.clear();
+    found_.clear(), runs_.clear();
     measure_bodies();
     list_participants();
     return {};
@@ -107,68 +122,55 @@ std::span<const Shortlist> ContactBook::shortlists_of(std::size_t detector, cons
     return std::span(shortlists_).first(lists.size());
 }
 
-void ContactBook::measure_bodies()
-{
-    const world::HostTables& host = step_.world.host();
-    const auto radius_of = [&](const Geometry& g)
-    {
-        double r = 0;
-        if (g.kind == GeometryKind::Plane) return std::numeric_limits<double>::infinity();
-        if (g.kind == GeometryKind::Sphere) r = g.size.x;
-        if (g.kind == GeometryKind::Box) r = length(g.size);
-        if (g.kind == GeometryKind::Capsule) r = g.size.x + g.size.z;
-        if (g.kind == GeometryKind::Cylinder) r = std::hypot(g.size.x, g.size.z);
-        for (const Vec3& v : g.vertices) r = std::max(r, length(v));
-        return r;
-    };
-    curve_radius_of_body_.clear();
-    for (std::uint32_t b = 0; b < host.bodies.size(); ++b) curve_radius_of_body_.push_back(curve_radius(host.bodies, host.shapes, b));
-    radius_of_body_.assign(host.bodies.size(), 0.0);
-    for (std::size_t b = 0; b < radius_of_body_.size(); ++b)
-        for (const Ref shape : host.bodies.shapes[b])
-        {
-            const Geometry& g = host.shapes.geometry[shape.index];
-            radius_of_body_[b] = std::max(radius_of_body_[b], length(g.pose.p - host.bodies.center_B[b]) + radius_of(g));
-        }
-}
-
 void ContactBook::query(const Detector& detector, ContactSink& sink, const IndexSet* active)
 {
     const auto index = static_cast<std::size_t>(&detector - detectors_.data());
     ComponentCall question(step_, *step_.world.tables()[detector.table], detector.row);
     question.arguments.contacts = &sink;
     step_.report.visited += active ? active->members().size() : step_.world.host().bodies.size();
-    if (active)
-        question.context.active_bodies = active->flags(), question.context.shortlists = shortlists_of(index, *active);
-    else
+    // A list of the active participants pays only where the detector would go through many others. Where pairs are named it need not.
+    constexpr std::size_t kFew = 8;
+    if (!active)
         seen_in_[index] = step_.serial;
+    else if (question.context.active_bodies = active->flags();
+             !sink.only_persistent() && kFew * active->members().size() < active->flags().size())
+        question.context.shortlists = shortlists_of(index, *active);
     const CostScope scope(step_.meter, step_.meter.of_component(detector.component));
     step_.meter.ran(detector.table, Phase::Detect);
     if (const auto done = question.run(*detector.command); !done)
         question.context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
 }
 
-void ContactBook::detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
-                         std::vector<FoundContact>& out, double margin)
+/// Asks for what the sink collects. Returns whether that is sorted.
+bool ContactBook::ask(const Detector& detector, ContactCollector& sink, std::span<const PersistentPair> persistent, bool only_persistent)
 {
-    ContactCollector sink(step_.world, out);
-    sink.begin_query(index, persistent, only_persistent, margin);
-    const bool some = only_persistent && seen_in_[index] == step_.serial;
+    const auto index = static_cast<std::size_t>(&detector - detectors_.data());
     asked_.begin(step_.world.host().bodies.size());
+    const bool some = only_persistent && seen_in_[index] == step_.serial;
     if (some)
         for (const PersistentPair& p : persistent) asked_.add(p.a.index), asked_.add(p.b.index);
     query(detector, sink, some ? &asked_ : nullptr);
     step_.report.further_pairs += sink.further_pairs();
+    return sink.in_order();
 }
 
-void ContactBook::detect_all(std::vector<FoundContact>& out)
+bool ContactBook::detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
+                         std::vector<FoundContact>& out, double margin)
 {
-    out.clear();
+    ContactCollector sink(step_.world, out);
+    sink.begin_query(index, persistent, only_persistent, margin);
+    return ask(detector, sink, persistent, only_persistent);
+}
+
+void ContactBook::detect_all()
+{
+    found_.clear(), runs_.clear();
+    bool in_order = true;
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         if (detectors_[d].by_rows && detectors_[d].persists())
         {
-            detect_with_gaps(d, out);
+            in_order = detect_with_gaps(d) && in_order;
             continue;
         }
         persistent_.clear();
@@ -176,29 +178,60 @@ void ContactBook::detect_all(std::vector<FoundContact>& out)
         for (const PairState& p : cache_.pairs())
             if (p.resting && p.detector == detectors_[d].component)
                 persistent_.push_back({p.a, p.b, {}}), margin = std::max(margin, persistence_margin(p));
-        const std::size_t first = out.size();
-        detect(detectors_[d], d, persistent_, false, out, margin);
+        const std::size_t first = found_.size();
+        in_order = detect(detectors_[d], d, persistent_, false, found_, margin) && in_order;
         // A detection pass has one margin, the largest of all persistent pairs. Gaps count for persistent pairs only, each up to its own
         // margin, so the others are dropped again.
+        std::size_t near = 0;
         const auto far = [&](const FoundContact& f)
         {
             if (f.contact.depth > 0) return false;
-            const PairState* pair = find_pair(f);
+            const PairState* pair = find_pair(f, near);
             return !pair || !pair->resting || f.contact.depth <= -persistence_margin(*pair);
         };
-        out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
+        found_.erase(std::remove_if(found_.begin() + static_cast<std::ptrdiff_t>(first), found_.end(), far), found_.end());
+        list_runs(first);
     }
-    sort_contacts(out, step_.world);
+    if (in_order) return;
+    sort_contacts(found_, step_.world);
+    runs_.clear(), list_runs(0);
+}
+
+/// Adds the pairs in found_ from this place on.
+void ContactBook::list_runs(std::size_t from)
+{
+    for (auto i = static_cast<std::uint32_t>(from), end = i; i < found_.size(); i = end)
+    {
+        while (end < found_.size() && same_pair(found_[end], found_[i])) ++end;
+        const FoundContact& f = found_[i];
+        runs_.push_back({i, end, PairKey(step_.world, detectors_[f.detector].component, f.contact.a, f.contact.b)});
+    }
+}
+
+void ContactBook::detect_known_pairs()
+{
+    found_.clear(), runs_.clear();
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        persistent_.clear();
+        for (const PairState& p : cache_.pairs())
+            if (p.detector == detectors_[d].component)
+                persistent_.push_back({p.a, p.b, p.resting ? p.normal * -persistence_margin(p) : Vec3{}});
+        if (!persistent_.empty()) detect(detectors_[d], d, persistent_, true, found_);
+    }
+    sort_contacts(found_, step_.world);
+    list_runs(0);
 }
 
 /// Contacts of a detector whose pairs are persistent as soon as they touch. Includes gaps up to the persistence margin, gaps that may close
-/// within the step (speculative contacts), and, for pairs that pressed, gaps that curvature opens.
-void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out)
+/// within the step (speculative contacts), and, for pairs that pressed, gaps that curvature opens. Returns whether they are sorted.
+bool ContactBook::detect_with_gaps(std::uint32_t index)
 {
     const Detector& detector = detectors_[index];
     const Bodies& bodies = step_.world.host().bodies;
     double margin = 0, fastest = 0;
-    for (std::uint32_t b = 0; b < bodies.size(); ++b) fastest = std::max(fastest, length(bodies.velocity[b]));
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) fastest = std::max(fastest, length_squared(bodies.velocity[b]));
+    fastest = std::sqrt(fastest);
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
     {
         if (!bodies.dynamic(b) || !std::isfinite(radius_of_body_[b])) continue;
@@ -208,8 +241,6 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
     }
     const double acceleration = detector.speculation_acceleration.value_or(0);
     if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, step_.frame.step));
-    const std::size_t first = out.size();
-    detect(detector, index, {}, false, out, margin);
     // Use the detected normal, not the stored one: this detection serves the next step as well, and it has to give the same result in a
     // step that starts from a snapshot, where the stored normal may differ.
     std::size_t near = 0;
@@ -220,24 +251,30 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
         if (!pair || !pressed(*pair) || !std::isfinite(radius)) return base;
         return sliding_margin(bodies, c.a, c.b, c.normal, curves_of(c.a, c.b), base, radius, step_.frame.step);
     };
-    const auto far = [&](const FoundContact& f)
+    const auto counts = [&](const Contact& c)
     {
-        if (f.contact.depth > 0 || f.contact.depth > -margin_of(f.contact)) return false;
-        return !detector.speculates || !may_close(bodies, radius_of_body_, f.contact, acceleration, step_.frame.step);
+        if (c.depth > 0 || c.depth > -persistence_margin(c.a, c.b) || c.depth > -margin_of(c)) return true;
+        return detector.speculates && may_close(bodies, radius_of_body_, c, acceleration, step_.frame.step);
     };
-    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
+    SelectingCollector sink(step_.world, detector.component, found_, runs_, counts);
+    sink.begin_query(index, {}, false, margin);
+    return ask(detector, sink, {}, false);
 }
-
-KnownContact& ContactBook::known_contact(const FoundContact& f) { return cache_.contact_of(*find_pair(f), f.contact.feature); }
 
 void ContactBook::warm_start(std::span<FoundContact> contacts, bool trial)
 {
-    for (FoundContact& f : contacts) f.contact.impulse = known_contact(f).warm_start(trial);
+    std::size_t near = 0;
+    for (FoundContact& f : contacts) f.contact.impulse = cache_.contact_of(*find_pair(f, near), f).warm_start(trial);
 }
 
 PairState* ContactBook::find_pair(const FoundContact& f)
 {
     return cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, step_.world);
+}
+
+PairState* ContactBook::find_pair(const FoundContact& f, std::size_t& near)
+{
+    return cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, step_.world, near);
 }
 
 /// m: gaps of a persistent pair up to this may close within h (s). Corners that rotate towards the other body become contacts before they
@@ -267,6 +304,7 @@ void ContactBook::drop_far(std::vector<FoundContact>& out, double h) const
 void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h)
 {
     resting_.find(groups, places_);
+    bool in_order = out.empty();
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         persistent_.clear();
@@ -278,14 +316,15 @@ void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::
             persistent_.push_back({p.a, p.b, {}});
             margin = std::max({margin, persistence_margin(p), gap_margin(p, h)});
         }
-        if (!persistent_.empty()) detect(detectors_[d], d, persistent_, true, out, margin);
+        if (!persistent_.empty()) in_order = detect(detectors_[d], d, persistent_, true, out, margin) && in_order;
     }
     drop_far(out, h);
-    sort_contacts(out, step_.world);
+    if (!in_order) sort_contacts(out, step_.world);
+    std::size_t near = 0;
     for (FoundContact& f : out)
     {
         f.contact.resting = true;
-        const KnownContact& known = known_contact(f);
+        const KnownContact& known = cache_.contact_of(*find_pair(f, near), f);
         f.contact.id = known.id, f.contact.impulse = known.impulse;
         f.contact.depth -= known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
         fill_material(f);
@@ -315,18 +354,6 @@ double ContactBook::normal_velocity(const Contact& c) const
 bool ContactBook::is_of_pair(const FoundContact& f, const PairState& pair) const
 {
     return detectors_[f.detector].component == pair.detector && f.contact.a == pair.a && f.contact.b == pair.b;
-}
-
-std::size_t ContactBook::first_of_pair(const PairState& pair, std::size_t from) const
-{
-    // Mostly there is nothing between the contacts of two pairs.
-    if (from >= found_.size() || is_of_pair(found_[from], pair)) return from;
-    // Both lists are sorted by detector, a and b, so one pass serves all pairs.
-    const PairKey wanted(step_.world, pair.detector, pair.a, pair.b);
-    const auto key = [&](const FoundContact& f)
-    { return PairKey(step_.world, detectors_[f.detector].component, f.contact.a, f.contact.b); };
-    while (from < found_.size() && key(found_[from]) < wanted) ++from;
-    return from;
 }
 
 }  // namespace plab::simulation

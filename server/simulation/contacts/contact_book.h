@@ -34,6 +34,8 @@ public:
     /// Contacts at the end of the last step, or at the start of the present one until its end is known.
     std::vector<FoundContact>& found() { return found_; }
     const std::vector<FoundContact>& found() const { return found_; }
+    /// The pairs in found(), in order.
+    std::span<const FoundRun> runs() const { return runs_; }
 
     // Sizes and margins ----------------------------------------------------------------------------------------------------
     /// m, by body: radius of the bounding sphere about the centre of mass; infinite for planes.
@@ -46,29 +48,32 @@ public:
     }
     /// m: overlap up to this is not corrected.
     double overlap_tolerance(Ref a, Ref b) const { return kOverlapShare * smaller_radius(a, b); }
+    /// Whether a body has a shape that is round, or a round wall that is touched from inside.
+    bool is_round(Ref body) const { return std::isfinite(curve_radius_of_body_[body.index]); }
     /// m: gaps up to this do not end a persistent contact.
     double persistence_margin(Ref a, Ref b) const;
     double persistence_margin(const PairState& pair) const;
 
     // Detection ------------------------------------------------------------------------------------------------------------
-    /// Adds what one detector finds. `only_persistent`: for the given pairs only. `margin`, m: gaps up to this count as contacts.
-    void detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
+    /// Adds what one detector finds. `only_persistent`: for the given pairs only. `margin`, m: gaps up to this count as contacts. Returns
+    /// whether it is sorted, also behind what was in `out` before.
+    bool detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
                 std::vector<FoundContact>& out, double margin = 0);
     /// The same with a sink of the caller. `active`: the bodies to consider, of which one at least is in each pair; null: all. A detector
     /// must have looked at all bodies before in this step, and nobody but these may have moved since.
     void query(const Detector& detector, ContactSink& sink, const IndexSet* active = nullptr);
-    /// What all detectors find, sorted.
-    void detect_all(std::vector<FoundContact>& out);
+    /// Sets found() to what all detectors find.
+    void detect_all();
+    /// Sets found() to the contacts of known pairs, where all others are certain to be apart.
+    void detect_known_pairs();
     /// The contacts of persistent pairs with a member in `groups` (ascending), including gaps that may close within `h` (s).
     void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h = 0);
-    /// The stored state of a contact of a known pair.
-    KnownContact& known_contact(const FoundContact& found);
     /// Gives contacts of known pairs the impulses that an advance starts from (KnownContact::warm_start).
     void warm_start(std::span<FoundContact> contacts, bool trial);
     PairState* find_pair(const FoundContact& found);
+    /// The same, faster for contacts in the order of pairs (ContactCache::find).
+    PairState* find_pair(const FoundContact& found, std::size_t& near);
     bool is_of_pair(const FoundContact& found, const PairState& pair) const;
-    /// Index at which the contacts of a pair begin in found(), or would begin; `from`: where those of the previous pair end.
-    std::size_t first_of_pair(const PairState& pair, std::size_t from) const;
 
     // Responses ------------------------------------------------------------------------------------------------------------
     /// Sets friction and restitution: from the pair of materials if there is one, otherwise from the response.
@@ -85,21 +90,41 @@ public:
     Event contact_event(const char* kind, const PairState& pair, double time, const Contact& at, const Vec3& impulse = {}) const;
     /// Whether two touching bodies slide in such a way that pressing harder would close them faster (paradox.h).
     bool is_paradox(const Contact& contact) const;
+    /// For excludes_paradox(), where overlaps and gaps are at most depth_that_excludes() (m).
+    double wedging_of(std::uint32_t body) const;
+    double depth_that_excludes(Ref a, Ref b) const;
     void report_paradox(const Contact& contact, PairState& pair, double time);
-    /// Sums over the points of a pair in an advance, from which its release is decided.
+    /// Sums over the points of a pair in an advance, from which its release is decided. First the impulses of all points, before they are
+    /// stored; if the pair then presses no more (stops_pressing), the speeds of all points, and note_release().
     struct Pressing
     {
         double before = 0;                   ///< N s: normal impulses in the last step
         double now = 0;                      ///< N s: normal impulses in this advance
         double opens = HUGE_VAL;             ///< m/s: smallest separation speed of a point, relative to the curve of its surface
         double separation_speed = HUGE_VAL;  ///< m/s: smallest speed that a pulling impulse would have had to take away to close the gap
+        bool counts_all = false;             ///< the pair is known to have pressed, so all its points count
+
+        /// `kept`: N s, the impulse of the last step.
+        void add_impulse(const Contact& contact, const Vec3& kept)
+        {
+            before += dot(kept, contact.normal), now += dot(contact.impulse, contact.normal);
+        }
+        /// A point with `depth` (m) at the start that separates with `speed` (m/s) at the end of an advance of h (s).
+        void add_speed(const Contact& contact, const Vec3& kept, double depth, double speed, double h)
+        {
+            if (!counts_all && !(dot(kept, contact.normal) > 0)) return;  // it touches without pressing
+            opens = std::min(opens, speed - contact.turning);
+            separation_speed = std::min(separation_speed, speed - contact.turning + std::max(0.0, -depth) / h);
+        }
     };
-    /// Adds a point that separates with `speed` (m/s) at the end of an advance of h (s). To be called before its impulse is stored.
-    void add_point(Pressing& pressing, PairState& pair, const Contact& contact, double speed, double h);
-    /// Whether a pair that pressed in the last step presses no more in this advance. `first`: one of its points. If it opens, its force
-    /// went through zero between the middles of the two steps; linear interpolation gives the time with order 2, and it may lie in the last
-    /// step. The event is emitted when the step is over, because after a rewind the pair may turn out to hold on.
-    bool note_release(PairState& pair, const Contact& first, const Pressing& pressing, double from, double h);
+    /// For add_impulse().
+    Pressing pressing_of(const PairState& pair) const;
+    /// Whether a pair that pressed in the last step presses no more in this advance.
+    bool stops_pressing(PairState& pair, const Pressing& pressing) const;
+    /// Of a pair that stops pressing. `first`: one of its points. If it opens, its force went through zero
+    /// between the middles of the two steps; linear interpolation gives the time with order 2, and it may lie in the last step. The event
+    /// is emitted when the step is over, because after a rewind the pair may turn out to hold on.
+    void note_release(PairState& pair, const Contact& first, const Pressing& pressing, double from, double h);
     /// Emits the release that was noted for this pair. True if there is one.
     bool report_release(PairState& pair);
 
@@ -109,7 +134,9 @@ private:
     std::span<const Shortlist> shortlists_of(std::size_t detector, const IndexSet& active);
     double curves_of(Ref a, Ref b) const { return std::fabs(curve_radius_of_body_[a.index] + curve_radius_of_body_[b.index]); }
     void measure_islands(ContactLoad& load);
-    void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
+    bool detect_with_gaps(std::uint32_t index);
+    void list_runs(std::size_t from);
+    bool ask(const Detector& detector, ContactCollector& sink, std::span<const PersistentPair> persistent, bool only_persistent);
     double gap_margin(const PairState& pair, double h) const;
     void drop_far(std::vector<FoundContact>& out, double h) const;
     double kinetic_energy(const std::vector<FoundContact>& contacts) const;
@@ -120,6 +147,8 @@ private:
     ContactCache cache_;
     RestingPairs resting_{step_.world, step_.groups, cache_, step_.report.visited};
     std::vector<FoundContact> found_;
+    std::vector<FoundRun> runs_;                ///< of found_
+    std::vector<Vec3> extents_of_body_;         ///< m, about C along the axes of B: no point is further; infinite where they are not known
     std::vector<double> radius_of_body_;        ///< m, about C; infinite for planes
     std::vector<double> curve_radius_of_body_;  ///< m, of the most strongly curved shape; negative inside, infinite if there is none
     std::vector<Event> releases_;               ///< noted in this step, emitted when it is over

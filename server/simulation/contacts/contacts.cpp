@@ -100,7 +100,7 @@ void ContactCache::sort(const world::World& world)
     for (const PairState& p : pairs_) keys_.push_back(key_of(world, p));
 }
 
-KnownContact& ContactCache::contact_of(PairState& pair, std::uint32_t feature)
+KnownContact& ContactCache::search_contact(PairState& pair, std::uint32_t feature)
 {
     for (KnownContact& known : pair.all())
         if (known.feature == feature) return known;
@@ -339,14 +339,7 @@ double least_gyration(const Bodies& bodies, std::span<const std::uint32_t> some)
 
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world)
 {
-    const auto before = [&](const FoundContact& x, const FoundContact& y)
-    {
-        if (same_pair(x, y)) return x.contact.feature < y.contact.feature;
-        if (x.detector != y.detector) return x.detector < y.detector;
-        const std::pair ranks_x(world.rank(x.contact.a), world.rank(x.contact.b)),
-            ranks_y(world.rank(y.contact.a), world.rank(y.contact.b));
-        return ranks_x < ranks_y;
-    };
+    const auto before = [&](const FoundContact& x, const FoundContact& y) { return precedes(x, y, world); };
     // Detectors mostly deliver in this order already.
     if (std::is_sorted(contacts.begin(), contacts.end(), before)) return;
     std::sort(contacts.begin(), contacts.end(), before);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <compare>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -66,8 +67,13 @@ struct Detector
 /// A contact as found now, with the index of its detector.
 struct FoundContact
 {
+    FoundContact() = default;
+    FoundContact(const Contact& at, std::uint32_t by) : contact(at), detector(by) {}
+
     Contact contact;
     std::uint32_t detector = 0;
+    /// Where its pair kept it last: a place in PairState::contacts, at which contact_of() looks first.
+    std::uint32_t slot = 0;
 };
 
 inline bool same_pair(const FoundContact& x, const FoundContact& y)
@@ -123,6 +129,10 @@ struct PairState : PairHead
 
     PointBlock contacts;  ///< the first `count` are in use
 
+    /// For loops over pairs, which come to blocks in no order of memory: asks for the block of a pair this many places ahead.
+    static constexpr std::size_t kAhead = 6;
+    void prefetch() const { __builtin_prefetch(contacts.begin()); }
+
     std::span<KnownContact> all() { return {contacts.begin(), count}; }
     std::span<const KnownContact> all() const { return {contacts.begin(), count}; }
     /// Adds a contact with default values; there must be fewer than kMostContacts.
@@ -152,6 +162,13 @@ struct PairKey
     friend auto operator<=>(const PairKey&, const PairKey&) = default;
 };
 
+/// The contacts of a pair in a sorted list of contacts.
+struct FoundRun
+{
+    std::uint32_t first = 0, end = 0;
+    PairKey key;
+};
+
 /// All known pairs, sorted by detector, a and b in id order. Searches read a list of keys (12 bytes a pair) that always corresponds to
 /// the pairs one to one, so pairs are added and dropped through this class only. Blocks of points that pairs leave behind are reused, so
 /// that contacts that begin and end in a warm step allocate nothing.
@@ -166,7 +183,7 @@ public:
     /// Adds pairs that are not known yet and have no contacts, in one pass. `fresh` is sorted like pairs().
     void add_sorted(std::span<const PairState> fresh, const world::World& world);
     void erase(PairState& pair);
-    /// Asks `ends` once for each pair, in order, and drops those for which it is true.
+    /// Asks ends(pair) or ends(pair, key) once for each pair, in order, and drops those for which it is true.
     template <class Ends>
     void drop_if(Ends ends);
     /// Takes pairs in any order in place of the present ones.
@@ -175,8 +192,19 @@ public:
     const std::vector<PairState>& pairs() const { return pairs_; }
     /// Of each of pairs(), in the same order.
     std::span<const PairKey> keys() const { return keys_; }
-    /// The known contact of a feature of the pair; added with a new id if the feature is new.
-    KnownContact& contact_of(PairState& pair, std::uint32_t feature);
+    /// The known contact of a feature of the pair; added with a new id if the feature is new. `slot`: where it may be.
+    KnownContact& contact_of(PairState& pair, std::uint32_t feature, std::uint32_t slot = 0)
+    {
+        if (slot < pair.count && pair.contacts[slot].feature == feature) return pair.contacts[slot];
+        return search_contact(pair, feature);
+    }
+    /// The same; `found` notes the place.
+    KnownContact& contact_of(PairState& pair, FoundContact& found)
+    {
+        KnownContact& known = contact_of(pair, found.contact.feature, found.slot);
+        found.slot = static_cast<std::uint32_t>(&known - pair.contacts.begin());
+        return known;
+    }
     /// Null if the pair or the feature is not known.
     const KnownContact* find_contact(std::uint32_t detector, Ref a, Ref b, std::uint32_t feature, const world::World& world);
     /// To be called after a structural change: drops pairs whose detector or bodies are gone, and sorts the rest again.
@@ -206,6 +234,7 @@ public:
 
 private:
     std::size_t place_of(const PairKey& key) const;
+    KnownContact& search_contact(PairState& pair, std::uint32_t feature);
     bool is_at(std::size_t place, const PairKey& key) const { return place < keys_.size() && keys_[place] == key; }
     void sort(const world::World& world);
     void shrink(std::size_t size);
@@ -224,7 +253,13 @@ void ContactCache::drop_if(Ends ends)
     std::size_t kept = 0;
     for (std::size_t i = 0; i < pairs_.size(); ++i)
     {
-        if (ends(pairs_[i])) continue;
+        if (i + PairState::kAhead < pairs_.size()) pairs_[i + PairState::kAhead].prefetch();
+        if constexpr (std::is_invocable_v<Ends, PairState&, const PairKey&>)
+        {
+            if (ends(pairs_[i], keys_[i])) continue;
+        }
+        else if (ends(pairs_[i]))
+            continue;
         if (kept != i) std::swap(pairs_[kept], pairs_[i]), keys_[kept] = keys_[i];
         ++kept;
     }
@@ -234,8 +269,17 @@ void ContactCache::drop_if(Ends ends)
 /// Detectors of a scene, in id order.
 std::vector<Detector> find_detectors(const world::World& world, const Schedule& schedule);
 
+/// Whether x comes before y in the order of contacts: by detector, bodies in id order, and feature.
+inline bool precedes(const FoundContact& x, const FoundContact& y, const world::World& world)
+{
+    if (same_pair(x, y)) return x.contact.feature < y.contact.feature;
+    if (x.detector != y.detector) return x.detector < y.detector;
+    const std::uint32_t xa = world.rank(x.contact.a), ya = world.rank(y.contact.a);
+    return xa != ya ? xa < ya : world.rank(x.contact.b) < world.rank(y.contact.b);
+}
+
 /// Collects what one detector finds.
-class ContactCollector final : public ContactSink
+class ContactCollector : public ContactSink
 {
 public:
     ContactCollector(const world::World& world, std::vector<FoundContact>& out) : world_(&world), out_(&out) {}
@@ -246,14 +290,33 @@ public:
     std::span<const PersistentPair> persistent() const override { return persistent_; }
     bool only_persistent() const override { return only_persistent_; }
     double margin() const override { return margin_; }
-    void add(const Contact& contact) override { out_->push_back(FoundContact{contact, detector_}); }
+    void add(const Contact& contact) override
+    {
+        const FoundContact& last = put(contact);
+        if (out_->size() > 1 && simulation::precedes(last, *(&last - 1), *world_)) in_order_ = false;
+    }
     bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
     void took(double further_pairs) override { further_pairs_ += further_pairs; }
     double further_pairs() const { return further_pairs_; }
+    /// Whether what was added is sorted, also behind what was there before.
+    bool in_order() const { return in_order_; }
 
-private:
+protected:
+    /// Adds what a detection fills in.
+    FoundContact& put(const Contact& from)
+    {
+        FoundContact& f = out_->emplace_back();
+        Contact& c = f.contact;
+        c.a = from.a, c.b = from.b, c.feature = from.feature, c.point = from.point, c.normal = from.normal, c.depth = from.depth;
+        f.detector = detector_;
+        return f;
+    }
+
     const world::World* world_;
     std::vector<FoundContact>* out_;
+    bool in_order_ = true;
+
+private:
     double further_pairs_ = 0;
     std::uint32_t detector_ = 0;
     std::span<const PersistentPair> persistent_;
@@ -285,7 +348,7 @@ private:
     std::vector<Pair>* out_;
 };
 
-/// Sorts by detector, bodies in id order, and feature, so that the order in which a library reports contacts does not affect the state.
+/// Sorts by precedes(), so that the order in which a library reports contacts does not affect the state.
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world);
 
 /// N s: sum of the normal impulses of a pair in the last advance.

@@ -1,6 +1,7 @@
 #include "simulation/contacts/hard_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace plab::simulation
 {
@@ -76,40 +77,38 @@ std::size_t HardContacts::list_islands()
     return count;
 }
 
-void HardContacts::update_pair(PairState& pair, std::span<FoundContact> found)
+/// Whether a pair has the same features as before, in the same order: mostly nothing begins or ends.
+bool HardContacts::keeps_features(const PairState& pair, std::span<FoundContact> found)
 {
-    bool overlaps = false;
+    if (pair.count != found.size()) return false;
+    for (std::uint32_t k = 0; k < pair.count; ++k)
+        if (pair.contacts[k].feature != found[k].contact.feature) return false;
+    for (std::uint32_t k = 0; k < pair.count; ++k) found[k].contact.id = pair.contacts[k].id, found[k].slot = k;
+    return true;
+}
+
+void HardContacts::update_features(PairState& pair, std::span<FoundContact> found)
+{
     const std::uint32_t known = pair.count;
-    for (FoundContact& f : found)
-    {
-        overlaps = overlaps || f.contact.depth > 0;
-        f.contact.id = contacts_.cache().contact_of(pair, f.contact.feature).id;
-    }
+    for (FoundContact& f : found) f.contact.id = contacts_.cache().contact_of(pair, f).id;
     const auto is_past = [&](const KnownContact& k)
     { return std::none_of(found.begin(), found.end(), [&](const FoundContact& f) { return f.contact.feature == k.feature; }); };
     if (pair.resting) held_.pass_on(pair, known, found);
     const std::span<KnownContact> all = pair.all();
     pair.count = static_cast<std::uint32_t>(std::remove_if(all.begin(), all.end(), is_past) - all.begin());
-    pair.overlapping = overlaps;
-    if (!found.empty()) pair.normal = found.front().contact.normal;
 }
 
-/// With the contacts of the end of the step: whether a pair is no longer known. `at`: where the contacts of the pair before it end in
-/// found(); moved behind its own.
-bool HardContacts::ends(PairState& pair, std::size_t& at, double time)
+/// With its contacts of the end of the step: whether a pair is no longer known.
+bool HardContacts::ends(PairState& pair, std::span<FoundContact> own, double time)
 {
-    std::vector<FoundContact>& found = contacts_.found();
-    const std::size_t begin = contacts_.first_of_pair(pair, at);
-    bool touches = false;
-    for (at = begin; at < found.size() && contacts_.is_of_pair(found[at], pair); ++at)
-    {
-        const double depth = found[at].contact.depth;
-        touches = touches || depth > 0 || (pair.resting && depth > -contacts_.persistence_margin(pair));
-    }
-    const std::span<FoundContact> own = std::span(found).subspan(begin, at - begin);
+    double deepest = -HUGE_VAL;
+    for (const FoundContact& f : own) deepest = std::max(deepest, f.contact.depth);
+    const bool touches = deepest > 0 || (pair.resting && !own.empty() && deepest > -contacts_.persistence_margin(pair));
     const bool was_held = !touches && pressed(pair);
     const bool released = contacts_.report_release(pair);
-    update_pair(pair, own);
+    if (!keeps_features(pair, own)) update_features(pair, own);
+    pair.overlapping = deepest > 0;
+    if (!own.empty()) pair.normal = own.front().contact.normal;
     const bool ahead = held_.keeps_ahead(pair, touches, own, time);
     if (!touches && !ahead)
     {
@@ -133,8 +132,15 @@ void HardContacts::finish_step()
     }
     positions_.ease_overlaps();
     positions_.correct_positions();
-    std::size_t at = 0;
-    contacts_.cache().drop_if([&](PairState& pair) { return ends(pair, at, time); });
+    auto run = contacts_.runs().begin();
+    const auto last = contacts_.runs().end();
+    const auto ended = [&](PairState& pair, const PairKey& key)
+    {
+        while (run != last && run->key < key) ++run;
+        const bool any = run != last && run->key == key;
+        return ends(pair, any ? std::span(found).subspan(run->first, run->end - run->first) : std::span<FoundContact>(), time);
+    };
+    contacts_.cache().drop_if(ended);
     for (const FoundContact& f : found) step_.report.deepest = std::max(step_.report.deepest, f.contact.depth);
 }
 

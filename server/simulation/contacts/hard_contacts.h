@@ -36,8 +36,9 @@ public:
     void finish_step();
 
 private:
-    bool ends(PairState& pair, std::size_t& at, double time);
-    void update_pair(PairState& pair, std::span<FoundContact> found);
+    bool ends(PairState& pair, std::span<FoundContact> own, double time);
+    static bool keeps_features(const PairState& pair, std::span<FoundContact> found);
+    void update_features(PairState& pair, std::span<FoundContact> found);
     void join_islands(std::span<const std::uint32_t> groups);
     std::size_t list_islands();
 

@@ -1,5 +1,6 @@
 // Contacts of islands that managers hold: which of them are known, which pairs become persistent, and what is kept for the next step.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "simulation/contacts/held_islands.h"
@@ -30,7 +31,7 @@ void HeldIslands::begin_step()
     const bool any_persists = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(),
                                           [](const Detector& d) { return d.by_rows && d.persists(); });
     if (!any_persists || is_current()) return;
-    contacts_.detect_all(contacts_.found());
+    contacts_.detect_all();
     adopt(contacts_.found(), step_.frame.start_time);
     note_state();
 }
@@ -38,26 +39,25 @@ void HeldIslands::begin_step()
 void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
 {
     fresh_.clear(), first_found_.clear();
-    std::size_t near = 0;
-    for (std::size_t i = 0; i < found.size();)
+    const std::span<const PairKey> keys = contacts_.cache().keys();
+    std::size_t at = 0;
+    for (const FoundRun& run : contacts_.runs())
     {
-        const FoundContact& first = found[i];
-        double deepest = first.contact.depth;
-        std::size_t end = i;
-        for (; end < found.size() && same_pair(found[end], first); ++end) deepest = std::max(deepest, found[end].contact.depth);
+        while (at < keys.size() && keys[at] < run.key) ++at;
+        if (at < keys.size() && keys[at] == run.key) continue;
+        const FoundContact& first = found[run.first];
         const Detector& d = contacts_.detectors()[first.detector];
-        if (d.by_rows && d.persists() && !contacts_.cache().find(d.component, first.contact.a, first.contact.b, step_.world, near))
-        {
-            PairState& pair = fresh_.emplace_back();
-            pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = step_.frame.tick;
-            pair.resting = true, pair.normal = first.contact.normal;
-            pair.ahead = deepest <= -contacts_.persistence_margin(pair);
-            if (pair.ahead && !d.speculates)
-                fresh_.pop_back();
-            else
-                first_found_.push_back(i);
-        }
-        i = end;
+        if (!d.by_rows || !d.persists()) continue;
+        double deepest = first.contact.depth;
+        for (std::uint32_t i = run.first; i < run.end; ++i) deepest = std::max(deepest, found[i].contact.depth);
+        PairState& pair = fresh_.emplace_back();
+        pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = step_.frame.tick;
+        pair.resting = true, pair.normal = first.contact.normal;
+        pair.ahead = deepest <= -contacts_.persistence_margin(pair);
+        if (pair.ahead && !d.speculates)
+            fresh_.pop_back();
+        else
+            first_found_.push_back(run.first);
     }
     if (fresh_.empty()) return;
     contacts_.cache().add_sorted(fresh_, step_.world);
@@ -91,28 +91,14 @@ void HeldIslands::pass_on(PairState& pair, std::uint32_t known, std::span<const 
 
 // Contacts ------------------------------------------------------------------------------------------------------------
 
-void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law, bool trial)
-{
-    const world::HostTables& host = step_.world.host();
-    const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
-    const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
-    f.contact.friction = (own ? own : &law)->friction, f.contact.restitution = (own ? own : &law)->restitution;
-    KnownContact& known = contacts_.cache().contact_of(pair, f.contact.feature);
-    f.contact.id = known.id, f.contact.impulse = known.warm_start(trial);
-    f.contact.depth -= known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
-    f.contact.resting = true;
-}
-
 /// Collects the contacts of the held groups at the present state. Those of detectors that persist are known if nothing has moved since the
 /// last detection. Contacts of the other detectors are detected anew, because they depend on which pairs have come to rest in the meantime:
 /// this way the result is a function of the state alone, whatever happened before.
 void HeldIslands::collect_contacts(double from, double h, bool trial)
 {
-    touching_.clear(), pair_of_contact_.clear();
+    touching_.clear();
+    run_count_ = 0;
     const auto& detectors = contacts_.detectors();
-    std::size_t near = 0;
-    const auto pair_of = [&](const FoundContact& f)
-    { return contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world, near); };
     const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return !d.persists(); }),
                persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return d.persists(); });
     const bool known = persists && from == 0 && is_current();
@@ -121,52 +107,128 @@ void HeldIslands::collect_contacts(double from, double h, bool trial)
         contacts_.touching_pairs_of(held_, touching_, h);
         contacts_.warm_start(touching_, trial);
     }
-    if (!known)
-    {
-        for (const FoundContact& f : touching_) pair_of_contact_.push_back(pair_of(f));
-        return;
-    }
-    std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
-    for (const FoundContact& f : touching_) pair_of_contact_.push_back(pair_of(f));
-    add_known_contacts(trial);
+    if (known) std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
+    list_touching();
+    if (known) list_known();
+    all_.clear();
+    for (std::size_t i = 0; i < island_count_; ++i) all_.push_back(islands_[i].get());
+    fill(all_, h, trial);
 }
 
-/// Adds what the last detection found of persistent pairs. Both lists are sorted by detector, a and b.
-void HeldIslands::add_known_contacts(bool trial)
+void HeldIslands::list_touching()
 {
-    std::size_t at = 0;
-    std::uint32_t law_detector = kNoIndex;
-    SurfaceLaw law;
-    for (PairState& pair : contacts_.cache().pairs())
+    std::size_t near = 0;
+    for (std::size_t i = 0, end = 0; i < touching_.size(); i = end)
     {
-        at = contacts_.first_of_pair(pair, at);
-        for (; at < contacts_.found().size() && contacts_.is_of_pair(contacts_.found()[at], pair); ++at)
-        {
-            if (!pair.resting || !contacts_.detectors()[contacts_.found()[at].detector].persists()) continue;
-            FoundContact& f = touching_.emplace_back(contacts_.found()[at]);
-            if (f.detector != law_detector) law = contacts_.response_law(f.detector), law_detector = f.detector;
-            fill(f, pair, law, trial);
-            pair_of_contact_.push_back(&pair);
-        }
+        for (end = i; end < touching_.size() && same_pair(touching_[end], touching_[i]);) ++end;
+        add_run(std::span(touching_).subspan(i, end - i), contacts_.find_pair(touching_[i], near), false);
     }
 }
 
-void HeldIslands::share_contacts(double h)
+/// Lists what the last detection found of persistent pairs.
+void HeldIslands::list_known()
+{
+    const std::vector<FoundContact>& found = contacts_.found();
+    const std::span<const PairKey> keys = contacts_.cache().keys();
+    const std::span<PairState> pairs = contacts_.cache().pairs();
+    std::size_t at = 0;
+    for (const FoundRun& run : contacts_.runs())
+    {
+        while (at < keys.size() && keys[at] < run.key) ++at;
+        if (at == keys.size() || keys[at] != run.key || !pairs[at].resting) continue;
+        if (!contacts_.detectors()[found[run.first].detector].persists()) continue;
+        add_run(std::span(found).subspan(run.first, run.end - run.first), &pairs[at], true);
+    }
+}
+
+/// Lists the contacts of a pair under their island, if that is held in this advance.
+void HeldIslands::add_run(std::span<const FoundContact> found, PairState* pair, bool known)
 {
     const Bodies& bodies = step_.world.host().bodies;
-    for (std::uint32_t i = 0; i < touching_.size(); ++i)
+    const std::uint32_t order = run_count_++;
+    for (const Ref r : {found.front().contact.a, found.front().contact.b})
     {
-        const Contact& c = touching_[i].contact;
-        std::uint32_t number = kNoIndex;
-        for (const Ref r : {c.a, c.b})
-            if (bodies.dynamic(r.index) && step_.groups.of(r) != kNoIndex && number == kNoIndex)
-                number = island_of_group_[step_.groups.of(r)];
+        if (!bodies.dynamic(r.index) || step_.groups.of(r) == kNoIndex) continue;
+        const std::uint32_t number = island_of_group_[step_.groups.of(r)];
         if (number == kNoIndex) continue;
         HeldIsland& island = *islands_[number];
-        island.turns = island.turns || (!island.has_rows && midpoint_.turns(c, h));
-        island.contacts.push_back(c);
-        island.places.push_back(i);
+        Run run;
+        run.pair = pair, run.found = found.data(), run.order = order, run.known = known;
+        run.first = island.contact_count(), run.end = run.first + static_cast<std::uint32_t>(found.size());
+        island.runs.push_back(run);
+        island.driven = island.driven || midpoint_.is_driven(found.front().contact);
+        return;
     }
+}
+
+/// Copies the contacts into their islands.
+void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
+{
+    laws_.clear();
+    for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d) laws_.push_back(contacts_.response_law(d));
+    share(islands,
+          [&](HeldIsland& island)
+          {
+              island.contacts.resize(island.contact_count()), island.slots.resize(island.contact_count());
+              for_parts(&step_.workers, island.runs.size(), kRunPart,
+                        [&](std::size_t begin, std::size_t end)
+                        {
+                            for (std::size_t k = begin; k < end; ++k)
+                            {
+                                if (k + PairState::kAhead < end) island.runs[k + PairState::kAhead].pair->prefetch();
+                                fill_run(island, island.runs[k], h, trial);
+                            }
+                        });
+          });
+    // A contact that its pair does not know yet gets an id, and ids are given in the order of the pairs.
+    incomplete_.clear();
+    for (HeldIsland* island : islands)
+        for (const Run& run : island->runs)
+            if (run.incomplete) incomplete_.push_back({island, &run});
+    std::sort(incomplete_.begin(), incomplete_.end(), [](const RunOf& x, const RunOf& y) { return x.run->order < y.run->order; });
+    for (const RunOf& r : incomplete_)
+        for (std::uint32_t i = r.run->first; i < r.run->end; ++i)
+        {
+            FoundContact f = r.run->found[i - r.run->first];
+            take_known(r.island->contacts[i], f.contact, contacts_.cache().contact_of(*r.run->pair, f), trial);
+            r.island->slots[i] = f.slot;
+        }
+}
+
+void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
+{
+    const world::HostTables& host = step_.world.host();
+    const std::uint32_t ma = host.bodies.material[run.pair->a.index], mb = host.bodies.material[run.pair->b.index];
+    const SurfaceLaw* own = run.known && ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
+    const SurfaceLaw& law = own ? *own : laws_[run.found->detector];
+    for (std::uint32_t i = run.first; i < run.end; ++i)
+    {
+        const FoundContact& f = run.found[i - run.first];
+        Contact& c = island.contacts[i] = f.contact;
+        island.slots[i] = f.slot;
+        if (!run.known) continue;
+        c.friction = law.friction, c.restitution = law.restitution;
+        c.resting = true;
+        const std::span<KnownContact> all = run.pair->all();
+        std::uint32_t slot = f.slot;
+        if (!(slot < all.size() && all[slot].feature == c.feature))
+            for (slot = 0; slot < all.size() && all[slot].feature != c.feature;) ++slot;
+        if (slot == all.size())
+            run.incomplete = true;
+        else
+            take_known(c, f.contact, all[slot], trial), island.slots[i] = slot;
+    }
+    const std::span<const Contact> contacts = island.of(run);
+    for (const Contact& c : contacts) run.most_depth = std::max(run.most_depth, std::fabs(c.depth));
+    if (island.has_rows) return;
+    if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return midpoint_.turns(c, h); }))
+        std::atomic_ref(island.turns).store(true, std::memory_order_relaxed);
+}
+
+void HeldIslands::take_known(Contact& c, const Contact& found, KnownContact& known, bool trial)
+{
+    c.id = known.id, c.impulse = known.warm_start(trial);
+    c.depth = found.depth - known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
 }
 
 /// Sets Contact::approach, the closing speed of impacts. A contact counts as an impact if it had no impulse in the last step and closes
@@ -175,63 +237,30 @@ void HeldIslands::share_contacts(double h)
 /// as an impact must not depend on how far a trial goes.
 void HeldIslands::set_approach(HeldIsland& island, const GroupSystem& system, double h)
 {
-    for (std::size_t k = 0; k < island.members.size(); ++k)
-        given_speed_[island.bodies[k]] = length(system.acceleration(island.members[k])) * step_.frame.step;
-    const double least = kNoApproach * least_gyration(step_.world.host().bodies, island.bodies) / h;
-    for (Contact& c : island.contacts)
-    {
-        const double speed = contacts_.normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
-        const double share = c.impulse == Vec3{} ? 0.5 : 2;
-        c.approach = speed < -std::max(least, share * given) ? -speed : 0.0;
-    }
+    std::atomic<double> smallest{-HUGE_VAL};  // negative, as raise_to() finds the largest
+    for_parts(&step_.workers, island.members.size(), kPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t k = begin; k < end; ++k)
+                      given_speed_[island.bodies[k]] = length(system.acceleration(island.members[k])) * step_.frame.step;
+                  raise_to(smallest, -least_gyration(step_.world.host().bodies, std::span(island.bodies).subspan(begin, end - begin)));
+              });
+    island.size = island.members.empty() ? 0.0 : -smallest;
+    const double least = kNoApproach * island.size / h;
+    for_parts(&step_.workers, island.contacts.size(), kPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  bool meets = false;
+                  for (Contact& c : std::span(island.contacts).subspan(begin, end - begin))
+                  {
+                      const double speed = contacts_.normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
+                      const double share = c.impulse == Vec3{} ? 0.5 : 2;
+                      c.approach = speed < -std::max(least, share * given) ? -speed : 0.0;
+                      meets = meets || c.approach > 0;
+                  }
+                  if (meets) std::atomic_ref(island.meets).store(true, std::memory_order_relaxed);
+              });
     for (const std::uint32_t b : island.bodies) given_speed_[b] = 0;
-}
-
-void HeldIslands::keep(const HeldIsland& island)
-{
-    for (std::size_t i = 0; i < island.contacts.size(); ++i)
-    {
-        const Contact& c = island.contacts[i];
-        PairState& pair = *pair_of_contact_[island.places[i]];
-        // The impulse of an impact is not an estimate of how hard the contact will press in the next step.
-        contacts_.cache().contact_of(pair, c.feature).impulse = c.approach > 0 ? Vec3{} : c.impulse;
-        pair.normal = c.normal;
-    }
-}
-
-/// Finds pairs that pressed in the last step and whose points all separate now.
-void HeldIslands::note_releases(HeldIsland& island, double from, double h) const
-{
-    for (std::size_t i = 0, end = 0; i < island.contacts.size(); i = end)
-    {
-        PairState& pair = *pair_of_contact_[island.places[i]];
-        ContactBook::Pressing pressing;
-        bool is_hit = false;
-        for (end = i; end < island.contacts.size() && pair_of_contact_[island.places[end]] == &pair; ++end)
-        {
-            Contact c = island.contacts[end];
-            c.depth = touching_[island.places[end]].contact.depth;
-            contacts_.add_point(pressing, pair, c, island.motion.separation_speed(end), h);
-            is_hit = is_hit || c.approach > 0;
-        }
-        if (is_hit) pressing.now = HUGE_VAL;  // a pair with an impact is not released
-        if (!contacts_.note_release(pair, island.contacts[i], pressing, from, h)) continue;
-        for (std::size_t k = i; k < end; ++k) island.contacts[k].impulse = {};
-    }
-}
-
-void HeldIslands::report_impacts(const HeldIsland& island, double time)
-{
-    for (std::size_t i = 0; i < island.contacts.size(); ++i)
-    {
-        const Contact& c = island.contacts[i];
-        if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
-        PairState& pair = *pair_of_contact_[island.places[i]];
-        if (pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, touching_[island.places[i]].contact, time);
-        Event e = contacts_.contact_event("contact.impact", pair, time, c, c.impulse);
-        e.contact->depth = touching_[island.places[i]].contact.depth;
-        step_.emit(std::move(e));
-    }
 }
 
 }  // namespace plab::simulation

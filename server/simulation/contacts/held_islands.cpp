@@ -1,8 +1,7 @@
 #include "simulation/contacts/held_islands.h"
 
 #include <algorithm>
-
-#include "simulation/motion/component_call.h"
+#include <numeric>
 
 namespace plab::simulation
 {
@@ -117,8 +116,8 @@ void HeldIslands::make_islands(DisjointSets& islands)
             number = static_cast<std::uint32_t>(island_count_++);
             if (islands_.size() < island_count_) islands_.push_back(std::make_unique<HeldIsland>());
             HeldIsland& fresh = *islands_[number];
-            fresh.manager = manager_of_island_[root], fresh.has_rows = fresh.turns = false;
-            fresh.groups.clear(), fresh.contacts.clear(), fresh.places.clear();
+            fresh.manager = manager_of_island_[root], fresh.has_rows = false;
+            fresh.clear();
         }
         island_of_group_[g] = number;
         numbered_.push_back(root), numbered_.push_back(g);
@@ -136,7 +135,6 @@ void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets&
     if (!(to > from)) return;
     make_islands(islands);
     collect_contacts(from, to - from, trial);
-    share_contacts(to - from);
     plain_.clear(), jointed_.clear(), plain_groups_.clear();
     for (std::size_t i = 0; i < island_count_; ++i)
     {
@@ -161,10 +159,12 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
     system.hold_rows(true);
     system.begin(from, to, book, trial ? nullptr : &step_);
     for (HeldIsland* island : islands) island->members.clear(), island->roots.clear(), island->bodies.clear(), island->shafts.clear();
+    member_of_body_.resize(step_.world.host().bodies.size());
     for (std::uint32_t i = 0; i < system.bodies().size(); ++i)
     {
         const std::uint32_t b = system.bodies()[i], number = island_of_group_[step_.groups.group_of_body[b]];
         if (number == kNoIndex) continue;  // observed only
+        member_of_body_[b] = static_cast<std::uint32_t>(islands_[number]->members.size());
         islands_[number]->members.push_back(i), islands_[number]->bodies.push_back(b);
     }
     for (std::uint32_t i = 0; i < system.roots().size(); ++i)
@@ -175,10 +175,9 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
     }
     system.evaluate(0, 0);
     given_speed_.resize(step_.world.host().bodies.size(), 0.0);
-    for (HeldIsland* island : islands) set_approach(*island, system, to - from);
+    share(islands, [&](HeldIsland& island) { set_approach(island, system, to - from); });
     advance_to_midpoint(islands, system, to - from);
-    for (HeldIsland* island : islands)
-        if (!step_.frame.give_up()) solve(*island, system, from, to, book, trial);
+    solve(islands, system, from, to, book, trial);
     const bool given_up = step_.frame.give_up();  // then islands may be unsolved, and the booked work is discarded
     if (book.work && !given_up) book_forces(system, islands, to - from);
     midpoint_.take_back();
@@ -194,106 +193,25 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
 /// islands with kinematic bodies.
 void HeldIslands::advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h)
 {
-    const auto stays = [this](const Contact& c) { return c.approach > 0 || midpoint_.is_driven(c); };
-    midpoint_places_.clear();
+    turning_.clear(), at_midpoint_.clear();
     for (HeldIsland* island : islands)
     {
-        island->turns = island->turns && std::none_of(island->contacts.begin(), island->contacts.end(), stays);
+        island->turns = island->turns && !island->meets && !island->driven;
         if (!island->turns) continue;
         midpoint_.advance_to_midpoint(system, island->members, h);
-        midpoint_places_.insert(midpoint_places_.end(), island->places.begin(), island->places.end());
+        for (const Run& run : island->runs) turning_.push_back({island, &run});
     }
-    if (midpoint_places_.empty()) return;
+    if (turning_.empty()) return;
     system.evaluate(0, 0);
-    std::sort(midpoint_places_.begin(), midpoint_places_.end());
-    midpoint_.update_contacts(midpoint_places_, touching_, h);
-    for (HeldIsland* island : islands)
-        for (std::size_t i = 0; island->turns && i < island->places.size(); ++i) island->contacts[i] = touching_[island->places[i]].contact;
-}
-
-void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, double to, WorkBook book, bool trial)
-{
-    world::World& world = step_.world;
-    world::HostTables& host = world.host();
-    held.rows.clear();
-    if (held.has_rows && system.rows())
-    {
-        system.rows()->begin_hold(system.context());
-        held.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
-    }
-    if (!trial)
-        for (std::size_t i = 0; i < held.contacts.size(); ++i)
-            if (contacts_.is_paradox(held.contacts[i]))
-                contacts_.report_paradox(held.contacts[i], *pair_of_contact_[held.places[i]], step_.frame.start_time + from);
-    held.motion.begin(system, host.bodies, host.shafts, held.members, held.roots, held.contacts, held.rows, book.work != nullptr,
-                      step_.workers);
-    Island island;
-    island.interruption = step_.frame.interruption;
-    island.h = to - from, island.time = step_.frame.start_time + from;
-    island.bodies = held.bodies, island.shafts = held.shafts;
-    island.size = least_gyration(host.bodies, held.bodies);
-    shaft_mobility_.resize(host.shafts.size());
-    for (const std::uint32_t root : held.shafts) shaft_mobility_[root] = mobility_of(root);
-    island.shaft_mobility = shaft_mobility_;
-    island.rows = held.rows, island.contacts = held.contacts, island.motion = &held.motion;
-
-    ComponentCall answer(step_, held.manager);
-    answer.context.time = island.time, answer.context.dt = island.h, answer.context.interruption = island.interruption;
-    if (trial) answer.context.events = nullptr;
-    answer.arguments.island = &island;
-    const double before = book.work ? held.motion.kinetic_energy() : 0.0;
-    step_.meter.enter(step_.meter.of_component(held.manager));
-    step_.meter.ran(world.component(held.manager).table, Phase::Solve);
-    answer.run(Phase::Solve);
-    step_.meter.leave();
-    if (book.work) book_contacts(held, held.motion.kinetic_energy() - before, book);
-    // The cost per row of a factorisation grows with the number of rows. For kFactored rows it is taken to cost one more sweep.
-    constexpr std::size_t kFactored = 400;
-    const std::size_t rows = 3 * held.contacts.size() + held.rows.size();
-    step_.report.swept_rows += rows * (static_cast<std::size_t>(1 + island.iterations) + rows / kFactored);
-    if (trial) return;
-    step_.report.worst_residual = std::max(step_.report.worst_residual, island.residual);
-    note_releases(held, from, to - from);
-    keep(held);
-    report_impacts(held, island.time);
-}
-
-/// Books the work of the manager. Contacts dissipate energy, so on bodies that nothing else drives their work must not be positive, apart
-/// from what position correction lifts. Energy that the method creates beyond that is not booked as work, so it remains visible as the
-/// unexplained part of the ledger (ContactEnergy::created).
-void HeldIslands::book_contacts(HeldIsland& island, double gained, WorkBook book)
-{
-    const Bodies& bodies = step_.world.host().bodies;
-    const double by_correction = island.motion.count_corrections();
-    const double work = gained - island.motion.work_of_forces();
-    const bool driven = !island.rows.empty() || std::any_of(island.contacts.begin(), island.contacts.end(),
-                                                            [&](const Contact& c) {
-                                                                return bodies.motion[c.a.index] == Motion::Kinematic ||
-                                                                       bodies.motion[c.b.index] == Motion::Kinematic;
-                                                            });
-    const double created = driven ? 0.0 : std::max(0.0, work - by_correction);
-    (*book.work)[island.manager] += book.sign * (work - created);
-    ContactEnergy& own = step_.contact_energy[island.manager];
-    own.created += book.sign * created, own.by_correction += book.sign * by_correction;
-}
-
-/// Reports the impulses of the joints, and moves their work from the manager's account to theirs.
-void HeldIslands::report_rows(const HeldIsland& island, GroupSystem& system, double h, WorkBook book)
-{
-    if (island.rows.empty()) return;
-    StepContext context = system.context();
-    context.time += h;
-    const double work = system.rows()->take_impulses(context, island.rows, h, system.row_book());
-    if (book.work) (*book.work)[island.manager] -= book.sign * work;
-}
-
-/// 1/(kg m^2): inverse inertia of the gear train whose root is this shaft.
-double HeldIslands::mobility_of(std::uint32_t root) const
-{
-    const Shafts& shafts = step_.world.host().shafts;
-    const ShaftTree* tree = step_.graph.tree_of(root);
-    const double inertia = tree ? tree->inertia : shafts.dynamic(root) ? shafts.inertia[root] : 0.0;
-    return inertia > 0 ? 1 / inertia : 0.0;
+    std::sort(turning_.begin(), turning_.end(), [](const RunOf& x, const RunOf& y) { return x.run->order < y.run->order; });
+    for (const RunOf& t : turning_)
+        for (const Contact& c : t.island->of(*t.run)) at_midpoint_.emplace_back(c, t.run->found->detector);
+    midpoint_places_.resize(at_midpoint_.size());
+    std::iota(midpoint_places_.begin(), midpoint_places_.end(), 0u);
+    midpoint_.update_contacts(midpoint_places_, at_midpoint_, h);
+    std::size_t at = 0;
+    for (const RunOf& t : turning_)
+        for (Contact& c : t.island->of(*t.run)) c = at_midpoint_[at++].contact;
 }
 
 /// Books the work of each force component: its power at the mean velocities of the moves. For this the forces are evaluated once more, and
@@ -302,14 +220,24 @@ void HeldIslands::book_forces(GroupSystem& system, std::span<HeldIsland*> island
 {
     world::HostTables& host = step_.world.host();
     Bodies& bodies = host.bodies;
-    kept_positions_.clear(), kept_orientations_.clear(), kept_velocities_.clear(), kept_spins_.clear(), kept_momenta_.clear();
-    kept_speeds_.clear(), kept_angles_.clear();
-    for (const std::uint32_t b : system.bodies())
+    const std::size_t count = system.bodies().size();
+    kept_positions_.resize(count), kept_orientations_.resize(count), kept_velocities_.resize(count), kept_spins_.resize(count);
+    kept_momenta_.resize(count), kept_speeds_.clear(), kept_angles_.clear();
+    const auto for_bodies = [&](const auto& one)
     {
-        kept_positions_.push_back(bodies.position[b]), kept_orientations_.push_back(bodies.orientation[b]);
-        kept_velocities_.push_back(bodies.velocity[b]), kept_spins_.push_back(bodies.angular_velocity[b]);
-        kept_momenta_.push_back(bodies.angular_momentum[b]);
-    }
+        for_parts(&step_.workers, count, kPart,
+                  [&](std::size_t begin, std::size_t end)
+                  {
+                      for (std::size_t i = begin; i < end; ++i) one(i, system.bodies()[i]);
+                  });
+    };
+    for_bodies(
+        [&](std::size_t i, std::uint32_t b)
+        {
+            kept_positions_[i] = bodies.position[b], kept_orientations_[i] = bodies.orientation[b];
+            kept_velocities_[i] = bodies.velocity[b], kept_spins_[i] = bodies.angular_velocity[b];
+            kept_momenta_[i] = bodies.angular_momentum[b];
+        });
     for (const std::uint32_t s : system.roots()) kept_speeds_.push_back(host.shafts.speed[s]), kept_angles_.push_back(host.shafts.angle[s]);
     const std::span<double> speeds = system.speeds();
     const auto put = [&](std::size_t at, const Vec3& v) { speeds[at] = v.x, speeds[at + 1] = v.y, speeds[at + 2] = v.z; };
@@ -325,13 +253,13 @@ void HeldIslands::book_forces(GroupSystem& system, std::span<HeldIsland*> island
             speeds[6 * system.body_count() + island->roots[k]] = means[island->members.size() + k].shaft / h;
     }
     system.evaluate(0, 1);
-    for (std::size_t i = 0; i < system.bodies().size(); ++i)
-    {
-        const std::uint32_t b = system.bodies()[i];
-        bodies.position[b] = kept_positions_[i], bodies.orientation[b] = kept_orientations_[i];
-        bodies.velocity[b] = kept_velocities_[i], bodies.angular_velocity[b] = kept_spins_[i];
-        bodies.angular_momentum[b] = kept_momenta_[i];
-    }
+    for_bodies(
+        [&](std::size_t i, std::uint32_t b)
+        {
+            bodies.position[b] = kept_positions_[i], bodies.orientation[b] = kept_orientations_[i];
+            bodies.velocity[b] = kept_velocities_[i], bodies.angular_velocity[b] = kept_spins_[i];
+            bodies.angular_momentum[b] = kept_momenta_[i];
+        });
     for (std::size_t i = 0; i < system.roots().size(); ++i)
         host.shafts.speed[system.roots()[i]] = kept_speeds_[i], host.shafts.angle[system.roots()[i]] = kept_angles_[i];
 }

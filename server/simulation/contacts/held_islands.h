@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "plab/island.h"
+#include "plab/shares.h"
 #include "simulation/contacts/contact_book.h"
 #include "simulation/contacts/kicked_bodies.h"
 #include "simulation/contacts/midpoint_contacts.h"
@@ -35,21 +36,23 @@ namespace plab::simulation
 class HeldMotion final : public IslandMotion
 {
 public:
-    /// `members`: indices into system.bodies().
+    /// `members`: indices into system.bodies(); `member_of_body`: by host row, the place in it; of other bodies any number.
     void begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std::span<const std::uint32_t> members,
-               std::span<const std::uint32_t> roots, std::span<Contact> contacts, std::span<ConstraintRow> rows, bool books,
-               Workers& workers);
+               std::span<const std::uint32_t> member_of_body, std::span<const std::uint32_t> roots, std::span<Contact> contacts,
+               std::span<ConstraintRow> rows, bool books, Workers& workers);
     void kick(double h) override;
     void move(double h) override;
     void move_mean(double h) override;
     /// m/s: separation speed of a contact's two material points at their present positions.
     double separation_speed(std::size_t contact) const;
+    /// m: of a contact, at the start.
+    double start_depth(std::size_t contact) const { return arms_.empty() ? contacts_[contact].depth : arms_[contact].depth; }
     void refresh_rows() override;
     void refresh_depths() override;
 
     /// J: work of the forces along the distance that the bodies moved.
     double work_of_forces() const { return worked_; }
-    double kinetic_energy() const;
+    double kinetic_energy();
     /// J: work against the forces by displacements other than the moves, which is position correction. From then on these displacements
     /// count as part of the distance moved.
     double count_corrections();
@@ -65,12 +68,16 @@ public:
 
 private:
     void commit(double h, bool mean);
+    double commit_part(double h, bool mean, std::size_t begin, std::size_t end, double worked);
+    double correction_of(std::size_t member);
+    Vec3 arm(std::uint32_t body, const Vec3& point) const;
+    void find_arms();
     Vec3 moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const;
 
     GroupSystem* system_ = nullptr;
     Bodies* bodies_ = nullptr;
     Shafts* shafts_ = nullptr;
-    std::span<const std::uint32_t> members_;
+    std::span<const std::uint32_t> members_, member_of_body_;
     std::span<const std::uint32_t> roots_;  ///< indices into system.roots()
     std::span<Contact> contacts_;
     std::span<ConstraintRow> rows_;
@@ -80,14 +87,15 @@ private:
     KickedBodies kicked_;
     std::vector<double> shaft_before_;
     std::vector<Mean> means_;
-    std::vector<Vec3> started_;  ///< m, positions at the start
+    std::vector<Vec3> started_;         ///< m, positions at the start
+    std::vector<Quat> started_turned_;  ///< orientations at the start
     struct Arms
     {
         Vec3 a, b;         ///< m, in the bodies' frames
-        Vec3 point;        ///< W, at the start
         double depth = 0;  ///< m, at the start
     };
-    std::vector<Arms> arms_;
+    std::vector<Arms> arms_;    ///< of the contacts; empty until a manager asks for their depths
+    std::vector<double> sums_;  ///< working memory of sum_parts()
 };
 
 class HeldIslands
@@ -134,34 +142,88 @@ private:
     {
         std::uint32_t manager = kNoIndex;  ///< component
         bool has_rows = false;
-        bool turns = false;  ///< some body moves along a curved surface
+        bool turns = false;   ///< some body moves along a curved surface
+        bool driven = false;  ///< some contact is one of a kinematic body
+        bool meets = false;   ///< some contact is an impact
         std::vector<std::uint32_t> groups;
         std::vector<std::uint32_t> members,
             roots;                                  ///< indices into the system's lists
         std::vector<std::uint32_t> bodies, shafts;  ///< host rows
         std::vector<Contact> contacts;
         std::vector<ConstraintRow> rows;
-        std::vector<std::uint32_t> places;  ///< of the contacts, in touching_
+        /// The contacts of a pair, which follow one another.
+        struct Run
+        {
+            PairState* pair = nullptr;
+            const FoundContact* found = nullptr;  ///< the first of them
+            std::uint32_t first = 0, end = 0;     ///< in `contacts`
+            std::uint32_t order = 0;              ///< number of the pair among those of all islands
+            bool known = false;                   ///< found by the last detection: the pair knows what is missing
+            // Results of passes that threads share:
+            double most_depth = 0;    ///< m, largest depth or gap
+            bool incomplete = false;  ///< the pair does not know all of its contacts yet
+            bool released = false;    ///< it pressed in the last step and does so no more
+            bool counts_all = false;  ///< ContactBook::Pressing
+        };
+        std::vector<Run> runs;
+        std::vector<std::uint32_t> slots;  ///< of each contact: FoundContact::slot
+        std::vector<std::uint8_t> jams;    ///< of each contact: whether it has Painleve's paradox
         HeldMotion motion;
+        double size = 0;    ///< m, smallest radius of gyration
+        double energy = 0;  ///< J, kinetic, when the manager begins
+        // What the manager did:
+        bool solved = false;
+        int iterations = 0;
+        double work = 0, created = 0, by_correction = 0;  ///< J
+
+        void clear()
+        {
+            turns = driven = meets = false;
+            groups.clear(), runs.clear();
+        }
+        std::uint32_t contact_count() const { return runs.empty() ? 0 : runs.back().end; }
+        std::span<Contact> of(const Run& run) { return std::span(contacts).subspan(run.first, run.end - run.first); }
     };
+    using Run = HeldIsland::Run;
     std::uint32_t manager_of(const PairState& pair) const;
     bool is_current() const;
     void collect_contacts(double from, double h, bool trial);
-    void add_known_contacts(bool trial);
-    void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law, bool trial);
+    void list_touching();
+    void list_known();
+    void add_run(std::span<const FoundContact> found, PairState* pair, bool known);
+    void fill(std::span<HeldIsland*> islands, double h, bool trial);
+    void fill_run(HeldIsland& island, Run& run, double h, bool trial);
+    static void take_known(Contact& contact, const Contact& found, KnownContact& known, bool trial);
     void make_islands(DisjointSets& islands);
-    void share_contacts(double h);
     void set_approach(HeldIsland& island, const GroupSystem& system, double h);
+    void find_paradoxes(HeldIsland& island);
+    void report_paradoxes(const HeldIsland& island, double time);
     void run(std::span<HeldIsland*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from,
              double to, WorkBook book, bool trial);
-    void solve(HeldIsland& island, GroupSystem& system, double from, double to, WorkBook book, bool trial);
+    void solve(std::span<HeldIsland*> islands, GroupSystem& system, double from, double to, WorkBook book, bool trial);
+    void begin(HeldIsland& island, GroupSystem& system, bool books, bool trial);
+    Island describe(HeldIsland& island, double from, double to);
+    void call_managers(std::span<HeldIsland*> islands, double from, double to, bool trial);
+    void call_manager(std::uint32_t manager, double from, double to, bool trial);
     void advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h);
-    void book_contacts(HeldIsland& island, double gained, WorkBook book);
-    void keep(const HeldIsland& island);
+    static void divide_work(HeldIsland& island);
+    void book_contacts(const HeldIsland& island, WorkBook book);
+    void keep(HeldIsland& island);
+    void keep_run(HeldIsland& island, const Run& run);
+    static KnownContact* kept(const HeldIsland& island, const Run& run, std::uint32_t contact);
+    ContactBook::Pressing pressing_of(const HeldIsland& island, const Run& run) const;
+    void note_releases(HeldIsland& island, double from, double h);
     void report_begin(const PairState& pair, const Contact& contact, double time) const;
     void report_impacts(const HeldIsland& island, double time);
-    void note_releases(HeldIsland& island, double from, double h) const;
     void find_yielding_rows();
+    /// Calls job(island) for each, on several threads. Within large islands it may divide its loops.
+    template <class Job>
+    void share(std::span<HeldIsland*> islands, const Job& job)
+    {
+        shares_.run(
+            &step_.workers, islands.size(), kPart, [&](std::size_t i) { return islands[i]->bodies.size() + islands[i]->contact_count(); },
+            [](std::size_t) { return true; }, [&](std::size_t i) { job(*islands[i]); });
+    }
     static void report_rows(const HeldIsland& island, GroupSystem& system, double h, WorkBook book);
     double mobility_of(std::uint32_t root) const;
     void book_forces(GroupSystem& system, std::span<HeldIsland*> islands, double h);
@@ -180,11 +242,27 @@ private:
     std::vector<std::unique_ptr<HeldIsland>> islands_;
     std::size_t island_count_ = 0;
     MidpointContacts midpoint_;
-    std::vector<HeldIsland*> plain_, jointed_;
-    std::vector<std::uint32_t> midpoint_places_;
+    std::vector<HeldIsland*> plain_, jointed_, all_;
+    std::vector<Island> solved_;          ///< what a manager is given
+    std::vector<HeldIsland*> solved_of_;  ///< parallel
+    Shares shares_;
+    /// Bodies, contacts or pairs that a thread handles at once.
+    static constexpr std::size_t kPart = kKickedPart, kRunPart = 32;
+    std::vector<SurfaceLaw> laws_;  ///< by detector, of its response
+    struct RunOf
+    {
+        HeldIsland* island = nullptr;
+        const Run* run = nullptr;
+    };
+    std::vector<RunOf> turning_;                  ///< pairs of islands that are advanced to the midpoint
+    std::vector<RunOf> incomplete_;               ///< pairs with contacts that are new
+    std::vector<FoundContact> at_midpoint_;       ///< contacts of turning_
+    std::vector<std::uint32_t> midpoint_places_;  ///< of at_midpoint_
     std::vector<std::uint32_t> plain_groups_;
-    std::vector<FoundContact> touching_;
-    std::vector<PairState*> pair_of_contact_;
+    std::vector<FoundContact> touching_;         ///< detected for this advance
+    std::uint32_t run_count_ = 0;                ///< pairs in all islands
+    std::vector<std::uint32_t> member_of_body_;  ///< by host row, for HeldMotion::begin
+    std::vector<double> wedging_;                ///< by host row, of the members of one island; else 0 (paradox.h)
     std::vector<PairState> fresh_;
     std::vector<std::size_t> first_found_;  ///< parallel to fresh_
     std::vector<double> shaft_mobility_;

@@ -8,51 +8,84 @@ namespace plab::simulation
 {
 
 void HeldMotion::begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std::span<const std::uint32_t> members,
-                       std::span<const std::uint32_t> roots, std::span<Contact> contacts, std::span<ConstraintRow> rows, bool books,
-                       Workers& workers)
+                       std::span<const std::uint32_t> member_of_body, std::span<const std::uint32_t> roots, std::span<Contact> contacts,
+                       std::span<ConstraintRow> rows, bool books, Workers& workers)
 {
     system_ = &system, bodies_ = &bodies, shafts_ = &shafts;
-    members_ = members, roots_ = roots, contacts_ = contacts, rows_ = rows, books_ = books;
+    members_ = members, member_of_body_ = member_of_body, roots_ = roots, contacts_ = contacts, rows_ = rows, books_ = books;
     workers_ = &workers;
     worked_ = since_start_ = 0;
     shaft_before_.resize(roots.size());
     means_.assign(members.size() + roots.size(), Mean{});
-    started_.clear();
-    for (const std::uint32_t i : members) started_.push_back(bodies.position[system.bodies()[i]]);
-    arms_.resize(contacts.size());
-    for_parts(workers_, contacts.size(), kKickedPart,
-              [&](std::size_t begin, std::size_t end)
+    started_.resize(members.size()), started_turned_.resize(members.size()), arms_.clear();
+    for_parts(workers_, members.size(), kKickedPart,
+              [&](std::size_t first, std::size_t end)
               {
-                  for (std::size_t i = begin; i < end; ++i)
+                  for (std::size_t k = first; k < end; ++k)
                   {
-                      const Contact& c = contacts[i];
-                      const auto arm = [&](Ref r) { return rotate_back(bodies.orientation[r.index], c.point - bodies.position[r.index]); };
-                      arms_[i] = {arm(c.a), arm(c.b), c.point, c.depth};
+                      const std::uint32_t b = system.bodies()[members[k]];
+                      started_[k] = bodies.position[b], started_turned_[k] = bodies.orientation[b];
                   }
               });
 }
 
-double HeldMotion::kinetic_energy() const
+/// m: from the centre of mass to a point that was at `point` at the start, in the body's frame.
+Vec3 HeldMotion::arm(std::uint32_t body, const Vec3& point) const
 {
-    double sum = 0;
-    for (const std::uint32_t i : members_) sum += bodies_->kinetic_energy(system_->bodies()[i]);
-    return sum;
+    const std::uint32_t k = member_of_body_[body];
+    const bool is_member = k < members_.size() && system_->bodies()[members_[k]] == body;
+    if (is_member) return rotate_back(started_turned_[k], point - started_[k]);
+    return rotate_back(bodies_->orientation[body], point - bodies_->position[body]);
+}
+
+/// Few methods ask for depths, so arms are found when the first depth is asked for: the start is known then, too.
+void HeldMotion::find_arms()
+{
+    arms_.resize(contacts_.size());
+    for_parts(workers_, contacts_.size(), kKickedPart,
+              [&](std::size_t begin, std::size_t end)
+              {
+                  for (std::size_t i = begin; i < end; ++i)
+                  {
+                      const Contact& c = contacts_[i];
+                      arms_[i] = {arm(c.a.index, c.point), arm(c.b.index, c.point), c.depth};
+                  }
+              });
+}
+
+double HeldMotion::kinetic_energy()
+{
+    return sum_parts(workers_, members_.size(), kKickedPart, sums_,
+                     [&](std::size_t begin, std::size_t end)
+                     {
+                         double sum = 0;
+                         for (std::size_t k = begin; k < end; ++k) sum += bodies_->kinetic_energy(system_->bodies()[members_[k]]);
+                         return sum;
+                     });
 }
 
 double HeldMotion::count_corrections()
 {
-    double work_of_corrections = 0;
-    for (std::size_t k = 0; k < members_.size(); ++k)
-    {
-        const std::uint32_t b = system_->bodies()[members_[k]];
-        const Vec3 shift = bodies_->position[b] - started_[k] - means_[k].velocity;
-        // A displacement below the rounding error of the position is not a correction.
-        if (length(shift) <= 0x1p-48 * (length(started_[k]) + length(means_[k].velocity))) continue;
-        means_[k].velocity += shift;
-        work_of_corrections -= bodies_->mass[b] * dot(system_->acceleration(members_[k]), shift);
-    }
+    const double work_of_corrections = sum_parts(workers_, members_.size(), kKickedPart, sums_,
+                                                 [&](std::size_t begin, std::size_t end)
+                                                 {
+                                                     double sum = 0;
+                                                     for (std::size_t k = begin; k < end; ++k) sum -= correction_of(k);
+                                                     return sum;
+                                                 });
     worked_ -= work_of_corrections;
     return work_of_corrections;
+}
+
+/// J: work of the forces along the displacement of a member other than its moves.
+double HeldMotion::correction_of(std::size_t k)
+{
+    const std::uint32_t b = system_->bodies()[members_[k]];
+    const Vec3 shift = bodies_->position[b] - started_[k] - means_[k].velocity;
+    // A displacement below the rounding error of the position is not a correction.
+    if (length(shift) <= 0x1p-48 * (length(started_[k]) + length(means_[k].velocity))) return 0;
+    means_[k].velocity += shift;
+    return bodies_->mass[b] * dot(system_->acceleration(members_[k]), shift);
 }
 
 void HeldMotion::kick(double h)
@@ -71,18 +104,29 @@ void HeldMotion::commit(double h, bool mean)
 {
     since_start_ += h;
     if (!books_) return;
-    for (std::size_t k = 0; k < members_.size(); ++k)
-    {
-        const KickedBodies::Speeds speeds = kicked_.speeds(k, mean);
-        means_[k].velocity += speeds.velocity * h;
-        means_[k].momentum += speeds.momentum * h;
-        worked_ += kicked_.power(k, speeds) * h;
-    }
+    if (members_.size() <= kKickedPart)
+        worked_ = commit_part(h, mean, 0, members_.size(), worked_);
+    else
+        worked_ += sum_parts(workers_, members_.size(), kKickedPart, sums_,
+                             [&](std::size_t begin, std::size_t end) { return commit_part(h, mean, begin, end, 0); });
     for (std::size_t k = 0; k < roots_.size(); ++k)
     {
         const double speed = shafts_->speed[system_->roots()[roots_[k]]];
         means_[members_.size() + k].shaft += (mean ? 0.5 * (shaft_before_[k] + speed) : speed) * h;
     }
+}
+
+/// J: `worked` and what the forces do on some members.
+double HeldMotion::commit_part(double h, bool mean, std::size_t begin, std::size_t end, double worked)
+{
+    for (std::size_t k = begin; k < end; ++k)
+    {
+        const KickedBodies::Speeds speeds = kicked_.speeds(k, mean);
+        means_[k].velocity += speeds.velocity * h;
+        means_[k].momentum += speeds.momentum * h;
+        worked += kicked_.power(k, speeds) * h;
+    }
+    return worked;
 }
 
 void HeldMotion::move(double h)
@@ -138,17 +182,18 @@ Vec3 HeldMotion::moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point)
 double HeldMotion::separation_speed(std::size_t contact) const
 {
     const Contact& c = contacts_[contact];
-    const auto speed = [&](std::uint32_t b, const Vec3& arm_B)
-    { return bodies_->velocity[b] + cross(bodies_->angular_velocity[b], rotate(bodies_->orientation[b], arm_B)); };
-    return dot(speed(c.b.index, arms_[contact].b) - speed(c.a.index, arms_[contact].a), c.normal);
+    const auto speed = [&](std::uint32_t b)
+    { return bodies_->velocity[b] + cross(bodies_->angular_velocity[b], rotate(bodies_->orientation[b], arm(b, c.point))); };
+    return dot(speed(c.b.index) - speed(c.a.index), c.normal);
 }
 
 void HeldMotion::refresh_depths()
 {
+    if (arms_.empty()) find_arms();
     for (std::size_t i = 0; i < contacts_.size(); ++i)
     {
         Contact& c = contacts_[i];
-        const Vec3 displacement = moved(c.b.index, arms_[i].b, arms_[i].point) - moved(c.a.index, arms_[i].a, arms_[i].point);
+        const Vec3 displacement = moved(c.b.index, arms_[i].b, c.point) - moved(c.a.index, arms_[i].a, c.point);
         c.depth = arms_[i].depth - dot(displacement, c.normal);
     }
 }

@@ -101,23 +101,29 @@ void ImpulseIslands::book_rest(double work, WorkBook book)
     step_.contact_energy[response].created += book.sign * work;
 }
 
-void ImpulseIslands::keep_impulses(const std::vector<FoundContact>& contacts, double from, double h)
+void ImpulseIslands::keep_impulses(std::span<FoundContact> contacts, double from, double h)
 {
+    std::size_t near = 0;
     for (std::size_t i = 0, end = 0; i < contacts.size(); i = end)
     {
-        const Contact& first = contacts[i].contact;
-        PairState* const pair = contacts_.find_pair(contacts[i]);
-        ContactBook::Pressing pressing;
-        for (end = i; end < contacts.size() && same_pair(contacts[end], contacts[i]); ++end)
-            if (pair) contacts_.add_point(pressing, *pair, contacts[end].contact, contacts_.normal_velocity(contacts[end].contact), h);
-        if (!pair) continue;
-        contacts_.note_release(*pair, first, pressing, from, h);
-        for (std::size_t k = i; k < end; ++k)
-        {
-            contacts_.cache().contact_of(*pair, contacts[k].contact.feature).impulse = contacts[k].contact.impulse;
-            pair->normal = contacts[k].contact.normal;
-        }
+        for (end = i; end < contacts.size() && same_pair(contacts[end], contacts[i]);) ++end;
+        const std::span<FoundContact> own = contacts.subspan(i, end - i);
+        if (PairState* const pair = contacts_.find_pair(own.front(), near)) keep_impulses_of(*pair, own, from, h);
     }
+}
+
+void ImpulseIslands::keep_impulses_of(PairState& pair, std::span<FoundContact> contacts, double from, double h)
+{
+    ContactCache& cache = contacts_.cache();
+    ContactBook::Pressing pressing = contacts_.pressing_of(pair);
+    for (FoundContact& f : contacts) pressing.add_impulse(f.contact, cache.contact_of(pair, f).impulse);
+    if (contacts_.stops_pressing(pair, pressing))
+    {
+        for (FoundContact& f : contacts)
+            pressing.add_speed(f.contact, cache.contact_of(pair, f).impulse, f.contact.depth, contacts_.normal_velocity(f.contact), h);
+        contacts_.note_release(pair, contacts.front().contact, pressing, from, h);
+    }
+    for (FoundContact& f : contacts) cache.contact_of(pair, f).impulse = f.contact.impulse, pair.normal = f.contact.normal;
 }
 
 }  // namespace plab::simulation

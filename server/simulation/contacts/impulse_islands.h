@@ -29,7 +29,8 @@ private:
     bool advance_to_midpoint(GroupSystem& system, double h);
     void update_touching(double h);
     void book_rest(double work, WorkBook book);
-    void keep_impulses(const std::vector<FoundContact>& contacts, double from, double h);
+    void keep_impulses(std::span<FoundContact> contacts, double from, double h);
+    void keep_impulses_of(PairState& pair, std::span<FoundContact> contacts, double from, double h);
 
     StepState& step_;
     GroupMotion& motion_;

@@ -4,7 +4,6 @@
 #include <tuple>
 
 #include "plab/rotation.h"
-#include "plab/surface.h"
 
 namespace plab::simulation
 {
@@ -17,22 +16,6 @@ constexpr double kNoDisplacement = 0x1p-13;
 /// Cosine of the largest angle between a normal at the start and at the midpoint; beyond it the two belong to different surfaces.
 constexpr double kSameCurve = 0.9;
 
-bool is_round(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
-{
-    const auto round = [](const Geometry& g)
-    {
-        return g.kind == GeometryKind::Sphere || g.kind == GeometryKind::Capsule || g.kind == GeometryKind::Cylinder ||
-               surface_of(g) == Surface::Bore || surface_of(g) == Surface::Bowl;
-    };
-    return std::any_of(bodies.shapes[b].begin(), bodies.shapes[b].end(),
-                       [&](const Ref& shape)
-                       {
-                           const Geometry& g = shapes.geometry[shape.index];
-                           return round(g) || std::any_of(g.parts.begin(), g.parts.end(),
-                                                          [&](std::uint32_t part) { return round(shapes.geometry[part]); });
-                       });
-}
-
 }  // namespace
 
 bool MidpointContacts::is_driven(const Contact& c) const
@@ -43,12 +26,11 @@ bool MidpointContacts::is_driven(const Contact& c) const
 
 bool MidpointContacts::turns(const Contact& c, double h) const
 {
-    const world::HostTables& host = step_.world.host();
-    const Bodies& bodies = host.bodies;
+    if (!contacts_.is_round(c.a) || !contacts_.is_round(c.b)) return false;
+    const Bodies& bodies = step_.world.host().bodies;
     const Vec3 v = bodies.velocity[c.b.index] - bodies.velocity[c.a.index];
     const double along = length(v - c.normal * dot(v, c.normal));
-    if (!(along * h > kNoDisplacement * contacts_.smaller_radius(c.a, c.b))) return false;
-    return is_round(bodies, host.shapes, c.a.index) && is_round(bodies, host.shapes, c.b.index);
+    return along * h > kNoDisplacement * contacts_.smaller_radius(c.a, c.b);
 }
 
 void MidpointContacts::advance_to_midpoint(GroupSystem& system, std::span<const std::uint32_t> members, double h)

@@ -1,6 +1,8 @@
 #include "simulation/contacts/paradox.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "simulation/contacts/contacts.h"
 
@@ -38,6 +40,28 @@ double pressing_share(const Bodies& bodies, const Contact& c, double h)
     double alone = 0, sliding = 0;
     for (const std::uint32_t b : both) add_couplings(bodies, b, c.point, c.normal, force, alone, sliding);
     return alone > 0 ? sliding / alone : 1;
+}
+
+double wedging(const Bodies& bodies, std::uint32_t body, const Vec3& extents, double radius)
+{
+    if (!bodies.dynamic(body)) return 0;
+    const Mat3& A = bodies.inverse_inertia_B[body];
+    const double x = extents.x * extents.x, y = extents.y * extents.y, z = extents.z * extents.z;
+    // No eigenvalue of A is larger than the largest sum of a row.
+    double most = 0, aside = 0;
+    for (int i = 0; i < 3; ++i)
+    {
+        const double others = std::fabs(A(i, (i + 1) % 3)) + std::fabs(A(i, (i + 2) % 3));
+        most = std::max(most, std::fabs(A(i, i)) + others), aside += others;
+    }
+    most *= radius * radius;
+    if (aside == 0 && std::isfinite(x + y + z))
+    {
+        const double sum = A(0, 0) * (y + z) + A(1, 1) * (z + x) + A(2, 2) * (x + y);
+        const double product = (A(1, 1) * A(2, 2) * x + A(2, 2) * A(0, 0) * y + A(0, 0) * A(1, 1) * z) * (x + y + z);
+        most = std::min(most, 0.5 * (sum + std::sqrt(std::max(0.0, sum * sum - 4 * product))));
+    }
+    return bodies.mass[body] * most;
 }
 
 }  // namespace plab::simulation

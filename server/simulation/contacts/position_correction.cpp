@@ -69,14 +69,18 @@ Vec3 PositionCorrection::force_on(Ref body)
 /// the next detection finds that overlap, and the next step corrects it.
 void PositionCorrection::correct_positions()
 {
+    const auto& detectors = contacts_.detectors();
+    if (std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_rows; })) return;
     const std::span<const FoundContact> found = contacts_.found();
+    std::size_t near = 0;
     for (std::size_t i = 0, end = 0; i < found.size(); i = end)
     {
         double deepest = 0;
         for (end = i; end < found.size() && same_pair(found[end], found[i]); ++end)
             deepest = std::max(deepest, found[end].contact.depth - found[end].contact.rest_depth);
-        const PairState* pair = contacts_.find_pair(found[i]);
-        const bool by_impulses = pair && pair->resting && !contacts_.detectors()[found[i].detector].by_rows;
+        if (detectors[found[i].detector].by_rows) continue;
+        const PairState* pair = contacts_.find_pair(found[i], near);
+        const bool by_impulses = pair && pair->resting;
         if (by_impulses && deepest > contacts_.overlap_tolerance(pair->a, pair->b)) separate(found.subspan(i, end - i));
     }
 }

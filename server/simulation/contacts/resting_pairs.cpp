@@ -73,8 +73,36 @@ void RestingPairs::find(std::span<const std::uint32_t> groups, std::vector<std::
         if (pairs[i].resting && (is_wanted(pairs[i].a) || is_wanted(pairs[i].b))) places.push_back(i);
 }
 
+/// close_over() by passes over all pairs, which need no index and give sorted places. False if the set has grown in all passes.
+bool RestingPairs::close_in_passes(IndexSet& groups, std::vector<std::uint32_t>& places)
+{
+    constexpr int kMostPasses = 3;
+    const Bodies& bodies = world_.host().bodies;
+    const std::vector<PairState>& pairs = cache_.pairs();
+    for (int pass = 0; pass < kMostPasses; ++pass)
+    {
+        bool grows = false;
+        places.clear();
+        visited_ += pairs.size();
+        for (std::uint32_t i = 0; i < pairs.size(); ++i)
+        {
+            const PairState& p = pairs[i];
+            if (!p.resting) continue;
+            const std::uint32_t ga = groups_.of(p.a), gb = groups_.of(p.b);
+            const bool has_a = ga != kNoIndex && groups.has(ga), has_b = gb != kNoIndex && groups.has(gb);
+            if (has_a || has_b) places.push_back(i);
+            if (has_a == has_b || !bodies.dynamic(p.a.index) || !bodies.dynamic(p.b.index)) continue;
+            groups.add(has_a ? gb : ga);
+            grows = true;
+        }
+        if (!grows) return true;
+    }
+    return false;
+}
+
 void RestingPairs::close_over(IndexSet& groups, std::vector<std::uint32_t>& places)
 {
+    if (is_most_of_all(groups.members()) && close_in_passes(groups, places)) return;
     places.clear();
     const Bodies& bodies = world_.host().bodies;
     // A group is never left again once it is a member, so each is visited once.

@@ -41,6 +41,7 @@ private:
     };
     void build();
     void put(const PairState& pair, std::size_t place);
+    bool close_in_passes(IndexSet& groups, std::vector<std::uint32_t>& places);
     /// Calls found(pair, place) for each persistent pair of a group.
     template <class Found>
     void each_of(std::uint32_t group, Found&& found);

@@ -135,19 +135,4 @@ void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
     push(slot);
 }
 
-void EventLocator::query_known_pairs(std::vector<FoundContact>& found)
-{
-    // All other pairs are certain to be apart.
-    found.clear();
-    for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d)
-    {
-        persistent_.clear();
-        for (const PairState& p : contacts_.cache().pairs())
-            if (p.detector == contacts_.detectors()[d].component)
-                persistent_.push_back({p.a, p.b, p.resting ? p.normal * -contacts_.persistence_margin(p) : Vec3{}});
-        if (!persistent_.empty()) contacts_.detect(contacts_.detectors()[d], d, persistent_, true, found);
-    }
-    sort_contacts(found, step_.world);
-}
-
 }  // namespace plab::simulation

@@ -115,6 +115,8 @@ void EventLocator::consider(const std::vector<FoundContact>& found, std::size_t 
 
 void EventLocator::collect(const std::vector<FoundContact>& found)
 {
+    const auto& detectors = contacts_.detectors();
+    if (std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); })) return;
     note_live();
     for (std::size_t i = 0; i < found.size();)
     {
@@ -302,7 +304,7 @@ void EventLocator::detect_again(std::vector<FoundContact>& found)
     if (any_certifies_) find_near(true);
     if (all_certify_) return;
     const double before = sweeps_and_queries();
-    contacts_.detect_all(found);
+    contacts_.detect_all();
     budget_.spend(WorkBudget::kListedPair * static_cast<double>(step_.groups.all.size() + found.size()) + sweeps_and_queries() - before);
     collect(found);
 }
@@ -347,7 +349,7 @@ void EventLocator::answer_the_rest(std::size_t left, std::vector<FoundContact>& 
     report_too_many(left);
     queue_.clear(), free_.clear(), chosen_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
-    contacts_.detect_all(found);
+    contacts_.detect_all();
     answers_at_end_ = true;
     collect(found);
     answers_at_end_ = false;
@@ -391,9 +393,9 @@ void EventLocator::run(std::vector<FoundContact>& found)
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
     versions_.assign(step_.groups.all.size(), 0);
     met_.assign(step_.world.host().bodies.size(), {});
-    note_resting_groups();
+    if (std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); })) note_resting_groups();
     if (any_certifies_) begin_motion_bounds(), find_near(false);
-    if (!all_certify_) contacts_.detect_all(found), collect(found);
+    if (!all_certify_) contacts_.detect_all(), collect(found);
     std::uint32_t slot = 0;
     while (!step_.frame.give_up() && pop(slot))
     {
@@ -419,7 +421,7 @@ void EventLocator::run(std::vector<FoundContact>& found)
         for (const std::uint32_t done : chosen_) free_.push_back(done);
         if (rewound_) detect_again(found);
     }
-    if (all_certify_) query_known_pairs(found);
+    if (all_certify_) contacts_.detect_known_pairs();
 }
 
 }  // namespace plab::simulation

@@ -155,7 +155,6 @@ private:
     void find_near(bool only_rewound);
     void consider_near(std::uint32_t detector, Ref a, Ref b);
     void detect_pair(const Candidate& candidate, const Vec3& shift, std::vector<FoundContact>& found);
-    void query_known_pairs(std::vector<FoundContact>& found);
     Mover mover(std::uint32_t body, const BodyState& now) const { return {body, &motions_[body], &extents_[body], now}; }
     void start_pieces(double time);
     void end_pieces();
@@ -287,7 +286,6 @@ private:
     double rest_time_ = 0;               ///< s, time at which the pair that is being recorded comes to rest
     std::vector<std::uint8_t> paradox_;  ///< parallel to impact_: not an impact, but the answer to Painleve's paradox
     bool meets_force_contact_ = false;
-    std::vector<PersistentPair> persistent_;
     std::vector<FoundContact> seen_, impact_, at_end_;
 };
 

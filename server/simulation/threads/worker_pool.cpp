@@ -11,6 +11,9 @@ namespace
 constexpr std::chrono::microseconds kWatch{50};
 constexpr std::uint64_t kJobs = 0xffffffff;  // the lower half of an offer
 
+/// This thread is doing a job.
+thread_local bool at_work = false;
+
 void pause_briefly()
 {
 #if defined(__x86_64__)
@@ -62,7 +65,9 @@ void WorkerPool::take_jobs()
     while ((offer & kJobs) != 0)
     {
         if (!offer_.compare_exchange_weak(offer, offer - 1)) continue;
+        at_work = true;
         call_(job_, count_ - static_cast<std::size_t>(offer & kJobs));
+        at_work = false;
         if (--unfinished_ == 0 && caller_sleeps_)
         {
             const std::lock_guard lock(mutex_);
@@ -74,7 +79,7 @@ void WorkerPool::take_jobs()
 
 void WorkerPool::run_jobs(std::size_t count, Call call, void* job)
 {
-    if (workers_.empty() || count < 2)
+    if (workers_.empty() || count < 2 || at_work)
     {
         for (std::size_t i = 0; i < count; ++i) call(job, i);
         return;

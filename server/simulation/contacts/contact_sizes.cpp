@@ -1,0 +1,97 @@
+// Sizes of bodies, from which margins and bounds follow.
+#include <algorithm>
+#include <cmath>
+
+#include "plab/surface.h"
+#include "simulation/contacts/contact_book.h"
+#include "simulation/contacts/paradox.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// A point of contact may lie outside of a body by this fraction of its radius where Painleve's paradox is excluded by the body's size.
+constexpr double kOutside = 0.01;
+
+/// m: radius of the most strongly curved shape of a body, negative for surfaces that are touched from inside; infinite if it has none.
+double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
+{
+    double least = HUGE_VAL;
+    const auto add = [&](const Geometry& g)
+    {
+        const bool round = g.kind == GeometryKind::Sphere || g.kind == GeometryKind::Capsule || g.kind == GeometryKind::Cylinder;
+        if (round && g.size.x < std::fabs(least)) least = g.size.x;
+        const Surface surface = surface_of(g);
+        const bool inside = surface == Surface::Bore || surface == Surface::Bowl;
+        if (inside && surface_radius(g) < std::fabs(least)) least = -surface_radius(g);
+    };
+    for (const Ref shape : bodies.shapes[b])
+    {
+        const Geometry& g = shapes.geometry[shape.index];
+        add(g);
+        for (const std::uint32_t part : g.parts) add(shapes.geometry[part]);
+    }
+    return least;
+}
+
+/// m: radius about the origin of the shape's frame.
+double radius_of(const Geometry& g)
+{
+    double r = 0;
+    if (g.kind == GeometryKind::Plane) return HUGE_VAL;
+    if (g.kind == GeometryKind::Sphere) r = g.size.x;
+    if (g.kind == GeometryKind::Box) r = length(g.size);
+    if (g.kind == GeometryKind::Capsule) r = g.size.x + g.size.z;
+    if (g.kind == GeometryKind::Cylinder) r = std::hypot(g.size.x, g.size.z);
+    for (const Vec3& v : g.vertices) r = std::max(r, length(v));
+    return r;
+}
+
+/// m: the same along the axes of the shape's frame; infinite for shapes that it does not know.
+Vec3 extents_of(const Geometry& g)
+{
+    if (g.kind == GeometryKind::Box) return g.size;
+    if (g.kind == GeometryKind::Sphere) return {g.size.x, g.size.x, g.size.x};
+    if (g.kind == GeometryKind::Cylinder) return {g.size.x, g.size.x, g.size.z};
+    if (g.kind == GeometryKind::Capsule) return {g.size.x, g.size.x, g.size.x + g.size.z};
+    return {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+}
+
+}  // namespace
+
+void ContactBook::measure_bodies()
+{
+    const world::HostTables& host = step_.world.host();
+    const Bodies& bodies = host.bodies;
+    curve_radius_of_body_.clear();
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) curve_radius_of_body_.push_back(curve_radius(bodies, host.shapes, b));
+    radius_of_body_.assign(bodies.size(), 0.0);
+    extents_of_body_.assign(bodies.size(), {});
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (const Ref shape : bodies.shapes[b])
+        {
+            const Geometry& g = host.shapes.geometry[shape.index];
+            const Vec3 p_CS = g.pose.p - bodies.center_B[b], half = extents_of(g);
+            radius_of_body_[b] = std::max(radius_of_body_[b], length(p_CS) + radius_of(g));
+            const Mat3 R = rotation_matrix(g.pose.q);
+            Vec3& extents = extents_of_body_[b];
+            for (int i = 0; i < 3; ++i)
+            {
+                double reach = std::fabs(p_CS[i]);
+                for (int k = 0; k < 3; ++k) reach += R(i, k) != 0 ? std::fabs(R(i, k)) * half[k] : 0.0;
+                extents[i] = std::max(extents[i], reach);
+            }
+        }
+}
+
+double ContactBook::wedging_of(std::uint32_t b) const
+{
+    const double outside = kOutside * radius_of_body_[b];
+    return wedging(step_.world.host().bodies, b, extents_of_body_[b] + Vec3{outside, outside, outside}, radius_of_body_[b] + outside);
+}
+
+// The point is midway between the two surfaces.
+double ContactBook::depth_that_excludes(Ref a, Ref b) const { return 2 * kOutside * smaller_radius(a, b); }
+
+}  // namespace plab::simulation
