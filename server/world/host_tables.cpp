@@ -217,6 +217,15 @@ void MotionMemento::save(const HostTables& t)
     quantities_ = t.quantities.value;
 }
 
+void MotionMemento::fit(const HostTables& t)
+{
+    const std::size_t bodies = t.bodies.size(), shafts = t.shafts.size();
+    position_.resize(bodies), velocity_.resize(bodies), orientation_.resize(bodies);
+    angular_velocity_.resize(bodies), angular_momentum_.resize(bodies);
+    angle_.resize(shafts), speed_.resize(shafts), anchor_.resize(shafts), root_anchor_.resize(shafts);
+    quantities_.resize(t.quantities.size());
+}
+
 void MotionMemento::restore(HostTables& t) const
 {
     t.bodies.position = position_, t.bodies.velocity = velocity_, t.bodies.orientation = orientation_;

@@ -61,6 +61,8 @@ class MotionMemento
 {
 public:
     void save(const HostTables& tables);
+    /// Makes room for all rows, whose contents are then unspecified until they are saved.
+    void fit(const HostTables& tables);
     void restore(HostTables& tables) const;
     void save_body(const HostTables& tables, std::uint32_t i);
     void save_shaft(const HostTables& tables, std::uint32_t i);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "plab/surface.h"
@@ -18,8 +19,16 @@ namespace
 /// Largest extra margin with which a persistent pair is detected, as a fraction of the smaller body's radius.
 constexpr double kMostShare = 0.1;
 
-/// m: radius of the most strongly curved shape of a body, negative for surfaces that are touched from inside; infinite if it has none.
-double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
+/// Whether pairs are known, and rest, with one detector as with the other.
+bool keep_same_pairs(const Detector& x, const Detector& y)
+{
+    const auto traits = [](const Detector& d)
+    { return std::tuple(d.component, d.responds, d.by_rows, d.by_force, d.speculates || d.adapts, d.response, d.resolution); };
+    return traits(x) == traits(y);
+}
+
+/// m: radius of the most strongly curved part of a shape, negative for surfaces that are touched from inside; infinite if it has none.
+double curve_radius(const Shapes& shapes, std::uint32_t shape)
 {
     double least = HUGE_VAL;
     const auto add = [&](const Geometry& g)
@@ -30,13 +39,22 @@ double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
         const bool inside = surface == Surface::Bore || surface == Surface::Bowl;
         if (inside && surface_radius(g) < std::fabs(least)) least = -surface_radius(g);
     };
-    for (const Ref shape : bodies.shapes[b])
-    {
-        const Geometry& g = shapes.geometry[shape.index];
-        add(g);
-        for (const std::uint32_t part : g.parts) add(shapes.geometry[part]);
-    }
+    add(shapes.geometry[shape]);
+    for (const std::uint32_t part : shapes.geometry[shape].parts) add(shapes.geometry[part]);
     return least;
+}
+
+/// m: radius of the sphere about the origin of a shape's frame that contains it.
+double bounding_radius(const Geometry& g)
+{
+    double r = 0;
+    if (g.kind == GeometryKind::Plane) return std::numeric_limits<double>::infinity();
+    if (g.kind == GeometryKind::Sphere) r = g.size.x;
+    if (g.kind == GeometryKind::Box) r = length(g.size);
+    if (g.kind == GeometryKind::Capsule) r = g.size.x + g.size.z;
+    if (g.kind == GeometryKind::Cylinder) r = std::hypot(g.size.x, g.size.z);
+    for (const Vec3& v : g.vertices) r = std::max(r, length(v));
+    return r;
 }
 
 /// m: gap that opens between two round bodies because they move straight on for h while they slide along one another. One step opens
@@ -58,14 +76,18 @@ double sliding_margin(const Bodies& bodies, Ref a, Ref b, const Vec3& normal, do
 
 }  // namespace
 
-Errors ContactBook::rebuild()
+Errors ContactBook::rebuild(bool sizes)
 {
-    detectors_ = find_detectors(step_.world, step_.schedule);
+    const std::vector<Detector> before = std::exchange(detectors_, find_detectors(step_.world, step_.schedule));
     if (Errors refused = check_contacts(step_.world, detectors_); !refused.empty()) return refused;
-    cache_.refresh(step_.world, detectors_);
+    // A cache may be large, and most structural changes are of no concern to it.
+    const bool same = std::ranges::equal(before, detectors_, keep_same_pairs);
+    if (!same || order_number_ != step_.world.order_number()) cache_.refresh(step_.world, detectors_);
+    order_number_ = step_.world.order_number();
+    if (imposed_.size() != detectors_.size()) imposed_.clear();
     resting_.forget();
     found_.clear();
-    measure_bodies();
+    if (sizes || !detectors_.empty()) measure_bodies();
     list_participants();
     return {};
 }
@@ -107,28 +129,21 @@ std::span<const Shortlist> ContactBook::shortlists_of(std::size_t detector, cons
     return std::span(shortlists_).first(lists.size());
 }
 
+/// Many bodies may share a shape, so each shape is measured once.
 void ContactBook::measure_bodies()
 {
     const world::HostTables& host = step_.world.host();
-    const auto radius_of = [&](const Geometry& g)
-    {
-        double r = 0;
-        if (g.kind == GeometryKind::Plane) return std::numeric_limits<double>::infinity();
-        if (g.kind == GeometryKind::Sphere) r = g.size.x;
-        if (g.kind == GeometryKind::Box) r = length(g.size);
-        if (g.kind == GeometryKind::Capsule) r = g.size.x + g.size.z;
-        if (g.kind == GeometryKind::Cylinder) r = std::hypot(g.size.x, g.size.z);
-        for (const Vec3& v : g.vertices) r = std::max(r, length(v));
-        return r;
-    };
-    curve_radius_of_body_.clear();
-    for (std::uint32_t b = 0; b < host.bodies.size(); ++b) curve_radius_of_body_.push_back(curve_radius(host.bodies, host.shapes, b));
-    radius_of_body_.assign(host.bodies.size(), 0.0);
+    std::vector<double> curves(host.shapes.size()), radii(host.shapes.size());
+    for (std::uint32_t k = 0; k < curves.size(); ++k)
+        curves[k] = curve_radius(host.shapes, k), radii[k] = bounding_radius(host.shapes.geometry[k]);
+    curve_radius_of_body_.assign(host.bodies.size(), HUGE_VAL), radius_of_body_.assign(host.bodies.size(), 0.0);
     for (std::size_t b = 0; b < radius_of_body_.size(); ++b)
         for (const Ref shape : host.bodies.shapes[b])
         {
+            double& curve = curve_radius_of_body_[b];
+            if (std::fabs(curves[shape.index]) < std::fabs(curve)) curve = curves[shape.index];
             const Geometry& g = host.shapes.geometry[shape.index];
-            radius_of_body_[b] = std::max(radius_of_body_[b], length(g.pose.p - host.bodies.center_B[b]) + radius_of(g));
+            radius_of_body_[b] = std::max(radius_of_body_[b], length(g.pose.p - host.bodies.center_B[b]) + radii[shape.index]);
         }
 }
 

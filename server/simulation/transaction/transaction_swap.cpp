@@ -81,6 +81,7 @@ Result<void> Transaction::make_missing(model::ComponentSpec& spec, const Schema&
         {
             model::SceneSpec fragment;
             fragment.components.push_back(part);
+            saved_.add_backup();
             if (auto added = run_->world().add(fragment); !added) return added;
             touched_.push_back(part.id);
         }
