@@ -59,8 +59,9 @@ std::vector<std::uint32_t> World::referrers(std::uint32_t component) const
             for (Row row = 0; row < owners.size(); ++row)
             {
                 if (owners[row] == kNoIndex) continue;
-                const bool refers = role.many ? std::find((*role.many)[row].begin(), (*role.many)[row].end(), wanted) != (*role.many)[row].end()
-                                              : (*role.one)[row] == wanted;
+                const bool refers = role.many
+                                        ? std::find((*role.many)[row].begin(), (*role.many)[row].end(), wanted) != (*role.many)[row].end()
+                                        : (*role.one)[row] == wanted;
                 if (refers) add(owners[row]);
             }
         }

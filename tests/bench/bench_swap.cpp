@@ -1,8 +1,10 @@
 // For how long a swap stops the loop, against the number of bodies beside it or in it, free and in contact. Prints a Markdown table:
-// medians and the longest of the pauses in ms, the objects that the trial steps, how many swaps were proved, and medians of the steps right
-// after a swap and of the steps before the next one. Names of cases, a number of bodies and swaps=N may be given as arguments.
+// medians and the longest of the pauses in ms and their CPU time, the objects that the trial steps, how many swaps were proved, and the CPU
+// time of the steps right after a swap and of the steps before the next one (medians). Names of cases, a number of bodies and swaps=N may
+// be given as arguments.
+#include <time.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -66,9 +68,10 @@ std::string gears(int n)
     for (int i = 0; i < n; ++i)
     {
         const std::string k = std::to_string(i);
-        out += component("a" + k, "State/Shaft", "inertia=\"1\" solver=\"own\" angular_velocity=\"0.5\"") +
-               component("b" + k, "State/Shaft", "inertia=\"2\" solver=\"own\"") +
-               component("gear" + k, "Constraint/AngularVelocity/Graph", "driver=\"a" + k + "\" driven=\"b" + k + "\" velocity_factor=\"-1\"");
+        out +=
+            component("a" + k, "State/Shaft", "inertia=\"1\" solver=\"own\" angular_velocity=\"0.5\"") +
+            component("b" + k, "State/Shaft", "inertia=\"2\" solver=\"own\"") +
+            component("gear" + k, "Constraint/AngularVelocity/Graph", "driver=\"a" + k + "\" driven=\"b" + k + "\" velocity_factor=\"-1\"");
     }
     return out + "</plab>";
 }
@@ -121,12 +124,20 @@ double median(std::vector<double> values)
     return values[values.size() / 2];
 }
 
+/// ms of this thread: other processes do not count, so a busy machine can be measured.
+double cpu_time()
+{
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
 /// ms
 double time_of_step(simulation::Simulation& simulation)
 {
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = cpu_time();
     simulation.step();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    return cpu_time() - begin;
 }
 
 void measure(const Case& c, int n, int swaps)
@@ -139,7 +150,7 @@ void measure(const Case& c, int n, int swaps)
     simulation::Simulation simulation(library);
     if (const auto loaded = simulation.load(*compiled); !loaded) fail(loaded.error().text());
     for (int i = 0; i < kSettle; ++i) simulation.step();
-    std::vector<double> pauses, first, usual;
+    std::vector<double> pauses, cpu, first, usual;
     int proven = 0;
     std::size_t objects = 0;
     for (int i = 0; i < swaps; ++i)
@@ -147,7 +158,9 @@ void measure(const Case& c, int n, int swaps)
         simulation::Request request;
         request.trial.budget = simulation::TrialChoice::Budget::Automatic;
         request.operations = {simulation::SwapOperation{c.id, c.types[i % 2], {}}};
+        const double begin = cpu_time();
         const simulation::Reply reply = simulation.carry_out_now(request);
+        cpu.push_back(cpu_time() - begin);
         if (!reply.done) fail(reply.errors.front().text());
         pauses.push_back(1e-6 * reply.pause_ns);
         proven += reply.trial.outcome == simulation::TrialReport::Outcome::Made ? 1 : 0;
@@ -156,8 +169,8 @@ void measure(const Case& c, int n, int swaps)
         simulation.step();
         usual.push_back(time_of_step(simulation));
     }
-    std::printf("| %s | %d | %.3g | %.3g | %zu | %d of %d | %.3g | %.3g |\n", c.name, n, median(pauses),
-                *std::max_element(pauses.begin(), pauses.end()), objects, proven, swaps, median(first), median(usual));
+    std::printf("| %s | %d | %.3g | %.3g | %.3g | %zu | %d of %d | %.3g | %.3g |\n", c.name, n, median(pauses),
+                *std::max_element(pauses.begin(), pauses.end()), median(cpu), objects, proven, swaps, median(first), median(usual));
     std::fflush(stdout);
 }
 
@@ -175,8 +188,9 @@ int main(int argc, char** argv)
             swaps = std::max(1, std::atoi(argv[i] + 6));
         else
             names.emplace_back(argv[i]);
-    std::printf("| swap | bodies | pause, ms | longest, ms | objects in the trial | with a proof | next step, ms | usual step, ms |\n");
-    std::printf("|---|---|---|---|---|---|---|---|\n");
+    std::printf(
+        "| swap | bodies | pause, ms | longest, ms | CPU, ms | objects in the trial | with a proof | next step, ms | usual step, ms |\n");
+    std::printf("|---|---|---|---|---|---|---|---|---|\n");
     for (const Case& c : kCases)
         if (names.empty() || std::find(names.begin(), names.end(), c.name) != names.end())
             for (const int n : counts) measure(c, n, swaps);

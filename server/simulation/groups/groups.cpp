@@ -200,6 +200,7 @@ private:
         for (Group& group : groups_.all)
             for (auto* list : {&group.forces, &group.couplings, &group.rows})
             {
+                if (list->size() < 2) continue;
                 std::sort(list->begin(), list->end());
                 list->erase(std::unique(list->begin(), list->end()), list->end());
             }
@@ -294,8 +295,8 @@ private:
     Groups& groups_;
     std::size_t count_ = 0;  ///< of groups so far
     DisjointSets sets_;
-    Participation participation_;             ///< of the interaction that is looked at
-    std::vector<const Role*> solver_roles_;   ///< by table
+    Participation participation_;            ///< of the interaction that is looked at
+    std::vector<const Role*> solver_roles_;  ///< by table
 };
 
 }  // namespace

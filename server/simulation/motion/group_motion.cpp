@@ -11,12 +11,28 @@ void GroupMotion::rebuild(bool rewinds, bool members_only)
     segment_begin_.assign(step_.groups.all.size(), 0.0);
     pool_.clear(step_.world);
     row_reports_.clear(step_.world.components().size());
+    if (members_only_)
+    {
+        fit_members(), save_members(start_);
+        return;
+    }
     for (world::MotionMemento* memento : {&start_, &segment_, &end_})
         if (rewinds_)
             memento->save(step_.world.host());
         else
-            memento->fit(step_.world.host());
-    save_start();
+            memento->fit(step_.world.host());  // within a step it keeps the state at the start of the step
+}
+
+void GroupMotion::fit_members()
+{
+    std::vector<std::uint32_t> bodies, shafts, quantities;
+    const auto add = [](const std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& to)
+    { to.insert(to.end(), from.begin(), from.end()); };
+    for (const Group& g : step_.groups.all)
+        add(g.bodies, bodies), add(g.prescribed_bodies, bodies), add(g.shafts, shafts), add(g.prescribed_shafts, shafts),
+            add(g.quantities, quantities);
+    for (auto* rows : {&bodies, &shafts, &quantities}) std::sort(rows->begin(), rows->end());
+    start_.fit_rows(std::move(bodies), std::move(shafts), std::move(quantities));
 }
 
 void GroupMotion::save_members(world::MotionMemento& memento) const

@@ -31,8 +31,8 @@ public:
 
     /// `memory` must outlive this object.
     void remember_with(GroupMemory* memory) { memory_ = memory; }
-    /// To be called after any structural change. `rewinds`: groups may be rewound within a step, so states have to be saved. `members_only`:
-    /// nothing but the members of groups moves or is looked at, so states of others need not be saved.
+    /// To be called after any structural change. `rewinds`: groups may be rewound within a step, so states have to be saved.
+    /// `members_only`: nothing but the members of groups moves or is looked at, so states of others need not be saved.
     void rebuild(bool rewinds, bool members_only);
     /// Forces that all systems set up from now on get in addition to those of the schedule; null: none.
     void feel(ExtraForces* extra) { extra_ = extra; }
@@ -83,6 +83,7 @@ private:
         friend auto operator<=>(const Unit&, const Unit&) = default;
     };
     void collect_units(std::span<const std::uint32_t> groups);
+    void fit_members();
     void save_members(world::MotionMemento& memento) const;
 
     StepState& step_;

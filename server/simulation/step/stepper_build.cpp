@@ -32,8 +32,7 @@ void add_drives(const world::World& world, const Schedule& schedule, ConstraintG
 
 }  // namespace
 
-Stepper::Stepper(world::World& world, int threads)
-    : step_(world, std::max(1, threads)), advance_(step_, motion_, book_, hard_, forces_)
+Stepper::Stepper(world::World& world, int threads) : step_(world, std::max(1, threads)), advance_(step_, motion_, book_, hard_, forces_)
 {
     motion_.remember_with(&forces_);
 }
@@ -111,15 +110,21 @@ Result<void> Stepper::rebuild()
     return {};
 }
 
+/// Nobody asks a stepper of a part of the scene for its costs.
 void Stepper::rebuild_costs()
 {
     const auto& tables = step_.world.tables();
-    std::vector<std::uint8_t> alone(tables.size());
-    for (std::size_t t = 0; t < tables.size(); ++t) alone[t] = measured_alone(tables[t]->type().info) ? 1 : 0;
-    std::vector<std::uint32_t> owners(step_.world.components().size(), kNoIndex);
-    for (const std::uint32_t i : components())
-        if (const std::uint32_t table = step_.world.component(i).table; table != kNoIndex && alone[table] != 0) owners[i] = table;
-    step_.meter.accounts().fit(owners.size(), tables.size());
+    const std::size_t components = step_.world.components().size();
+    std::vector<std::uint32_t> owners;
+    if (!part_)
+    {
+        std::vector<std::uint8_t> alone(tables.size());
+        for (std::size_t t = 0; t < tables.size(); ++t) alone[t] = measured_alone(tables[t]->type().info) ? 1 : 0;
+        owners.assign(components, kNoIndex);
+        for (const std::uint32_t i : step_.world.in_id_order())
+            if (const std::uint32_t table = step_.world.component(i).table; table != kNoIndex && alone[table] != 0) owners[i] = table;
+    }
+    step_.meter.accounts().fit(components, tables.size());
     cost_.rebuild(owners, tables.size());
     motion_.scratch().measure_with(step_.meter);
 }

@@ -34,6 +34,20 @@ Totals totals_of(world::World& world, const Stepper& stepper, double time, Tick 
     return t;
 }
 
+Energies energies_of(world::World& world, const Stepper& stepper, double time, Tick tick)
+{
+    Energies out;
+    const world::HostTables& host = world.host();
+    for (const std::uint32_t i : stepper.components())
+    {
+        const world::Component& c = world.component(i);
+        if (c.facet == Facet::Body) out.kinetic += host.bodies.kinetic_energy(c.host_index);
+        if (c.facet == Facet::Shaft) out.kinetic += host.shafts.kinetic_energy(c.host_index);
+    }
+    out.stored = stored_energy_of(world, stepper, time, tick);
+    return out;
+}
+
 double stored_energy_of(world::World& world, const Stepper& stepper, double time, Tick tick)
 {
     StoredEnergy stored;

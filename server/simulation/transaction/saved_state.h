@@ -30,7 +30,7 @@ private:
 
     Run* run_ = nullptr;
     world::UndoLog log_;
-    std::optional<world::Backup> backup_;    ///< of the time of the first addition or removal
+    std::optional<world::Backup> backup_;  ///< of the time of the first addition or removal
     std::optional<ContactCache> contacts_;
     Materials materials_;
     Shafts shafts_;  ///< only the columns that a stepper derives (kDerivedShaftColumns)

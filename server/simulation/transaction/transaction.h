@@ -108,7 +108,7 @@ private:
     std::uint64_t trial_begin_ = 0;      ///< ns
     bool old_tried_ = false;
     TrialResult old_;
-    std::vector<std::size_t> held_before_;           ///< contact points, by swap
+    std::vector<std::size_t> held_before_;                                ///< contact points, by swap
     double energy_before_ = 0, energy_applied_ = 0, kinetic_before_ = 0;  ///< J, of the whole scene at the boundary
     bool structural_ = false;
     std::vector<std::string> touched_;  ///< ids that were added, removed or changed

@@ -32,6 +32,7 @@ std::size_t Transaction::held_points(std::uint32_t component) const
         };
         return std::any_of(stepper.detectors().begin(), stepper.detectors().end(), is_it);
     };
+    if (!concerns_contacts(run_->world(), component)) return 0;
     std::size_t n = 0;
     for (const PairState& p : stepper.contacts().pairs()) n += p.resting && !p.ahead && concerned(p.detector) ? p.count : 0;
     for (const ForcePair& p : stepper.contacts().force_pairs()) n += concerned(p.detector) ? p.count : 0;
@@ -133,7 +134,7 @@ Result<void> Transaction::build_and_try(TrialScope& scope, bool swaps)
 {
     if (auto built = run_->stepper().rebuild(); !built) return model::first_of_alike(built.errors());
     report_contacts();
-    const Totals now = run_->totals();
+    const Energies now = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);
     energy_applied_ = now.kinetic + now.stored;
     run_->stepper().requests_work() += now.kinetic - kinetic_before_;
     if (!request_->trial.is_wanted())
@@ -155,7 +156,7 @@ void Transaction::run_on_scene(bool swaps)
     trial_begin_ = now_ns();
     saved_.begin(*run_, changes_contacts());
     const Clock clock = read_clock();
-    const Totals first = run_->totals();
+    const Energies first = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);
     energy_before_ = first.kinetic + first.stored, kinetic_before_ = first.kinetic;
     TrialScope scope(run_->world());
     if (swaps && request_->trial.is_wanted()) mark_touched(scope), try_old(scope);

@@ -69,7 +69,8 @@ void Trial::keep_contacts(const TrialScope& scope)
     if (scope.has_everything())
         contacts_.copy(stepper_.contacts());
     else if (scope.bodies().empty())
-        contacts_.copy_if(stepper_.contacts(), [](const PairKey&) { return false; }, [](Ref, Ref) { return false; });
+        contacts_.copy_if(
+            stepper_.contacts(), [](const PairKey&) { return false; }, [](Ref, Ref) { return false; });
     else
     {
         const std::vector<std::uint8_t>& flags = scope.components().flags;

@@ -66,8 +66,8 @@ private:
     std::vector<std::uint32_t> kept_;  ///< components, in id order
     ByteWriter cells_;                 ///< their values
     std::set<std::uint32_t> prepared_;
-    std::uint64_t first_ns_ = 0;  ///< duration of the first step
-    Stepper* part_ = nullptr;  ///< the stepper in use during a trial
+    std::uint64_t first_ns_ = 0;            ///< duration of the first step
+    Stepper* part_ = nullptr;               ///< the stepper in use during a trial
     const Selection* selection_ = nullptr;  ///< its components
 };
 

@@ -129,10 +129,7 @@ bool TrialScope::holds(Ref object) const
     return object.facet == Facet::Quantities && in(quantities_);
 }
 
-std::size_t TrialScope::objects() const
-{
-    return marked_.size();
-}
+std::size_t TrialScope::objects() const { return marked_.size(); }
 
 /// Groups that read one another are advanced together, so a cluster is in the scope as a whole or not at all.
 void TrialScope::mark_cluster(const Groups& groups, std::uint32_t cluster)
@@ -197,6 +194,7 @@ bool TrialScope::acts_on_scope(std::uint32_t component) const
 void TrialScope::choose_with_parts(std::uint32_t component)
 {
     if (std::exchange(selection_.flags[component], 1) != 0) return;
+    selection_.components.push_back(component);
     for (const Role& role : world_->table_of(component).schema().roles())
     {
         if (names_objects(role)) continue;
@@ -216,16 +214,27 @@ void TrialScope::choose_components()
                                           std::pair{Facet::Quantities, quantities_.size()}})
             for (std::uint32_t i = 0; i < size; ++i) (void)mark({facet, i});
     selection_.flags.assign(world_->components().size(), everything_ ? 1 : 0);
-    for (const std::uint32_t i : world_->in_id_order())
-    {
-        const world::Component& c = world_->component(i);
-        if (everything_ || c.table == kNoIndex) continue;
-        if (is_object(c.facet) ? holds(c.ref(i)) : acts_on_scope(i)) choose_with_parts(i);
-    }
     selection_.components.clear();
-    for (const std::uint32_t i : world_->in_id_order())
-        if (selection_.flags[i] != 0) selection_.components.push_back(i);
+    if (everything_)
+        selection_.components = world_->in_id_order();
+    else
+        choose_on_scope();
     list_rows(), list_others();
+}
+
+/// The objects in the scope are listed already, and of the others only interactions have to be looked at.
+void TrialScope::choose_on_scope()
+{
+    for (const Ref object : marked_)
+        if (const std::uint32_t i = world_->host().component_of(object); i != kNoIndex) choose_with_parts(i);
+    for (const auto& table : world_->tables())
+    {
+        if (table->type().info.facet != Facet::Component) continue;
+        for (const std::uint32_t i : table->component_of_row())
+            if (i != kNoIndex && acts_on_scope(i)) choose_with_parts(i);
+    }
+    std::sort(selection_.components.begin(), selection_.components.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return world_->rank(a) < world_->rank(b); });
 }
 
 void TrialScope::list_rows()

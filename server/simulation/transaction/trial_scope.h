@@ -56,6 +56,7 @@ private:
     void mark_cluster(const Groups& groups, std::uint32_t cluster);
     void add_object(Ref object);
     bool rewinds_everything(const Stepper& stepper) const;
+    void choose_on_scope();
     void list_rows();
     void list_others();
     bool carries_on(Ref object) const;
@@ -66,8 +67,8 @@ private:
     bool everything_ = false;
     std::vector<std::uint8_t> bodies_, shafts_, quantities_;  ///< by host row
     std::vector<Ref> marked_;                                 ///< the same, in the order in which they were found
-    std::vector<std::uint32_t> fixed_;    ///< static bodies that are changed, so that bodies resting on them are in the scope
-    std::vector<std::uint8_t> visited_;   ///< by directory index
+    std::vector<std::uint32_t> fixed_;   ///< static bodies that are changed, so that bodies resting on them are in the scope
+    std::vector<std::uint8_t> visited_;  ///< by directory index
     Selection selection_;
     std::vector<std::uint32_t> body_rows_, shaft_rows_, quantities_rows_, other_body_rows_, other_shaft_rows_;
 };
