@@ -103,9 +103,10 @@ private:
     const Request* request_;
     Reply reply_;
     SavedState saved_;
-    std::set<std::uint32_t> prepared_;   ///< components whose opaque parts were rebuilt, to be rebuilt again after a rollback
-    std::vector<Operation> operations_;  ///< of the request, with patterns resolved
-    std::uint64_t trial_begin_ = 0;      ///< ns
+    std::set<std::uint32_t> prepared_;      ///< components whose opaque parts were rebuilt, to be rebuilt again after a rollback
+    std::vector<Operation> operations_;     ///< of the request, with patterns resolved
+    std::vector<std::string> known_types_;  ///< names of types, once they are needed
+    std::uint64_t trial_begin_ = 0;         ///< ns
     bool old_tried_ = false;
     TrialResult old_;
     std::vector<std::size_t> held_before_;                                ///< contact points, by swap
