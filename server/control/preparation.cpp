@@ -38,14 +38,14 @@ void collect_types(const std::vector<model::ComponentNode>& nodes, std::set<std:
     }
 }
 
-world::Shared<model::SceneSpec> together(const model::SceneSpec& scene, model::SceneSpec fragment)
+world::Shared<model::SceneSpec> together(const model::SceneSpec& scene, const model::SceneSpec& fragment)
 {
     world::Shared<model::SceneSpec> out;
     model::SceneSpec& whole = out.edit();
     whole.settings = scene.settings, whole.file = scene.file;
     whole.components.reserve(scene.components.size() + fragment.components.size());
     whole.components = scene.components;
-    std::move(fragment.components.begin(), fragment.components.end(), std::back_inserter(whole.components));
+    whole.components.append(fragment.components);
     return out;
 }
 

@@ -2,7 +2,10 @@
 /// built only from this form; requests add to it and remove from it, --expand prints it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -75,17 +78,88 @@ struct ComponentSpec
     SourceLocation where;
 };
 
+/// The components of a scene in the order of its document. Copies share the components, which never change: a change replaces one by
+/// another. So a scene with one component exchanged costs a pointer for each of the others, and copies may be used by other threads.
+class ComponentList
+{
+public:
+    class Iterator
+    {
+    public:
+        using iterator_category = std::random_access_iterator_tag;
+        using value_type = ComponentSpec;
+        using difference_type = std::ptrdiff_t;
+        using pointer = const ComponentSpec*;
+        using reference = const ComponentSpec&;
+
+        Iterator() = default;
+        explicit Iterator(const std::shared_ptr<const ComponentSpec>* at) : at_(at) {}
+        reference operator*() const { return **at_; }
+        pointer operator->() const { return at_->get(); }
+        reference operator[](difference_type n) const { return *at_[n]; }
+        Iterator& operator++() { return ++at_, *this; }
+        Iterator& operator--() { return --at_, *this; }
+        Iterator operator++(int) { return Iterator(at_++); }
+        Iterator& operator+=(difference_type n) { return at_ += n, *this; }
+        friend Iterator operator+(Iterator i, difference_type n) { return Iterator(i.at_ + n); }
+        friend Iterator operator-(Iterator i, difference_type n) { return Iterator(i.at_ - n); }
+        friend difference_type operator-(Iterator a, Iterator b) { return a.at_ - b.at_; }
+        friend auto operator<=>(const Iterator&, const Iterator&) = default;
+
+    private:
+        const std::shared_ptr<const ComponentSpec>* at_ = nullptr;
+    };
+
+    ComponentList() = default;
+    ComponentList(std::vector<ComponentSpec> specs)
+    {
+        reserve(specs.size());
+        for (ComponentSpec& spec : specs) push_back(std::move(spec));
+    }
+
+    Iterator begin() const { return Iterator(specs_.data()); }
+    Iterator end() const { return Iterator(specs_.data() + specs_.size()); }
+    std::size_t size() const { return specs_.size(); }
+    bool empty() const { return specs_.empty(); }
+    const ComponentSpec& operator[](std::size_t i) const { return *specs_[i]; }
+    const ComponentSpec& front() const { return *specs_.front(); }
+    const ComponentSpec& back() const { return *specs_.back(); }
+
+    void reserve(std::size_t n) { specs_.reserve(n); }
+    void push_back(ComponentSpec spec) { specs_.push_back(std::make_shared<const ComponentSpec>(std::move(spec))); }
+    void append(const ComponentList& others) { specs_.insert(specs_.end(), others.specs_.begin(), others.specs_.end()); }
+    void replace(std::size_t i, ComponentSpec spec) { specs_[i] = std::make_shared<const ComponentSpec>(std::move(spec)); }
+    /// The component as it is, to be put back by the second form of replace().
+    std::shared_ptr<const ComponentSpec> share(std::size_t i) const { return specs_[i]; }
+    void replace(std::size_t i, std::shared_ptr<const ComponentSpec> spec) { specs_[i] = std::move(spec); }
+    template <class Gone>
+    void remove_if(Gone gone)
+    {
+        std::erase_if(specs_, [&](const std::shared_ptr<const ComponentSpec>& spec) { return gone(*spec); });
+    }
+
+private:
+    std::vector<std::shared_ptr<const ComponentSpec>> specs_;
+};
+
 struct SceneSpec
 {
     SceneSettings settings;
-    std::vector<ComponentSpec> components;  ///< document order; ids unique
+    ComponentList components;  ///< document order; ids unique
     std::string file;
 
     const ComponentSpec* find(const std::string& id) const
     {
-        for (const ComponentSpec& c : components)
-            if (c.id == id) return &c;
-        return nullptr;
+        const std::size_t i = position_of(id, 0);
+        return i < components.size() ? &components[i] : nullptr;
+    }
+    /// Where the component is; `guess` is looked at first. The number of components if there is none with this id.
+    std::size_t position_of(const std::string& id, std::size_t guess) const
+    {
+        if (guess < components.size() && components[guess].id == id) return guess;
+        std::size_t i = 0;
+        while (i < components.size() && components[i].id != id) ++i;
+        return i;
     }
 };
 

@@ -27,11 +27,12 @@ std::vector<std::string> split(std::string_view text, char separator)
     }
 }
 
-model::ComponentSpec* find(model::SceneSpec& scene, const std::string& id)
+/// The place of the component with this id or alias; the number of components if there is none.
+std::size_t find(const model::SceneSpec& scene, const std::string& id)
 {
-    for (model::ComponentSpec& c : scene.components)
-        if (c.id == id) return c.alias_of.empty() ? &c : find(scene, c.alias_of);
-    return nullptr;
+    const std::size_t at = scene.position_of(id, 0);
+    if (at == scene.components.size() || scene.components[at].alias_of.empty()) return at;
+    return find(scene, scene.components[at].alias_of);
 }
 
 Error unknown_id(const model::SceneSpec& scene, const Setting& s, const std::string& id)
@@ -42,7 +43,7 @@ Error unknown_id(const model::SceneSpec& scene, const Setting& s, const std::str
 }
 
 /// Roles that the old type did not have, as the short form of a blueprint fills them: the scene's solver, or a part of the
-/// role's default type. May move the scene's components.
+/// role's default type, which is added to the scene.
 void fill_roles(model::SceneSpec& scene, model::ComponentSpec& c, const Schema& schema)
 {
     std::vector<model::ComponentSpec> parts;
@@ -141,10 +142,20 @@ Result<void> apply_one(model::SceneSpec& scene, model::TypeSource& types, const 
         scene.settings.dt = *dt;
         return {};
     }
-    if (model::ComponentSpec* c = find(scene, s.target))
-        return c->type.empty() ? Result<void>(wrong(s, s.target + " is a group and has no type")) : exchange(scene, *c, types, s);
+    const auto edit = [&](std::size_t at, auto change)
+    {
+        model::ComponentSpec c = scene.components[at];
+        auto done = change(c);
+        if (done) scene.components.replace(at, std::move(c));
+        return done;
+    };
+    const std::size_t none = scene.components.size();
+    if (const std::size_t at = find(scene, s.target); at != none)
+        return scene.components[at].type.empty() ? Result<void>(wrong(s, s.target + " is a group and has no type"))
+                                                 : edit(at, [&](model::ComponentSpec& c) { return exchange(scene, c, types, s); });
     for (std::size_t dot = s.target.rfind('.'); dot != std::string::npos && dot > 0; dot = s.target.rfind('.', dot - 1))
-        if (model::ComponentSpec* c = find(scene, s.target.substr(0, dot))) return set_parameter(*c, types, s.target.substr(dot + 1), s);
+        if (const std::size_t at = find(scene, s.target.substr(0, dot)); at != none)
+            return edit(at, [&](model::ComponentSpec& c) { return set_parameter(c, types, s.target.substr(dot + 1), s); });
     return unknown_id(scene, s, s.target);
 }
 
@@ -280,7 +291,7 @@ Result<model::SceneSpec> apply(const model::SceneSpec& scene, model::TypeSource&
 {
     model::SceneSpec out = scene;
     // Types first: a parameter may be one that only the new type has.
-    const auto is_type = [&](const Setting& s) { return !s.is_dt() && find(out, s.target) != nullptr; };
+    const auto is_type = [&](const Setting& s) { return !s.is_dt() && find(out, s.target) != out.components.size(); };
     for (const bool wanted : {true, false})
         for (const Setting& s : settings)
             if (is_type(s) == wanted)

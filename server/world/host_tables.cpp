@@ -1,6 +1,8 @@
 #include "world/host_tables.h"
 
+#include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace plab::world
 {
@@ -210,6 +212,7 @@ void save_state(const HostTables& t, Ref ref, ByteWriter& out)
 
 void MotionMemento::save(const HostTables& t)
 {
+    some_ = false;
     position_ = t.bodies.position, velocity_ = t.bodies.velocity, orientation_ = t.bodies.orientation;
     angular_velocity_ = t.bodies.angular_velocity, angular_momentum_ = t.bodies.angular_momentum;
     angle_ = t.shafts.angle, speed_ = t.shafts.speed;
@@ -217,8 +220,38 @@ void MotionMemento::save(const HostTables& t)
     quantities_ = t.quantities.value;
 }
 
+void MotionMemento::resize(std::size_t bodies, std::size_t shafts, std::size_t quantities)
+{
+    position_.resize(bodies), velocity_.resize(bodies), orientation_.resize(bodies);
+    angular_velocity_.resize(bodies), angular_momentum_.resize(bodies);
+    angle_.resize(shafts), speed_.resize(shafts), anchor_.resize(shafts), root_anchor_.resize(shafts);
+    quantities_.resize(quantities);
+}
+
+void MotionMemento::fit(const HostTables& t)
+{
+    some_ = false;
+    resize(t.bodies.size(), t.shafts.size(), t.quantities.size());
+}
+
+void MotionMemento::fit_rows(std::vector<std::uint32_t> bodies, std::vector<std::uint32_t> shafts, std::vector<std::uint32_t> quantities)
+{
+    some_ = true;
+    bodies_ = std::move(bodies), shafts_ = std::move(shafts), quantity_rows_ = std::move(quantities);
+    resize(bodies_.size(), shafts_.size(), quantity_rows_.size());
+}
+
+std::size_t MotionMemento::place(const std::vector<std::uint32_t>& rows, std::uint32_t row) const
+{
+    if (!some_) return row;
+    const auto at = std::lower_bound(rows.begin(), rows.end(), row);
+    assert(at != rows.end() && *at == row);
+    return static_cast<std::size_t>(at - rows.begin());
+}
+
 void MotionMemento::restore(HostTables& t) const
 {
+    assert(!some_);
     t.bodies.position = position_, t.bodies.velocity = velocity_, t.bodies.orientation = orientation_;
     t.bodies.angular_velocity = angular_velocity_, t.bodies.angular_momentum = angular_momentum_;
     t.shafts.angle = angle_, t.shafts.speed = speed_;
@@ -228,30 +261,37 @@ void MotionMemento::restore(HostTables& t) const
 
 void MotionMemento::save_body(const HostTables& t, std::uint32_t i)
 {
-    position_[i] = t.bodies.position[i], velocity_[i] = t.bodies.velocity[i], orientation_[i] = t.bodies.orientation[i];
-    angular_velocity_[i] = t.bodies.angular_velocity[i], angular_momentum_[i] = t.bodies.angular_momentum[i];
+    const std::size_t k = place(bodies_, i);
+    position_[k] = t.bodies.position[i], velocity_[k] = t.bodies.velocity[i], orientation_[k] = t.bodies.orientation[i];
+    angular_velocity_[k] = t.bodies.angular_velocity[i], angular_momentum_[k] = t.bodies.angular_momentum[i];
 }
 
 void MotionMemento::save_shaft(const HostTables& t, std::uint32_t i)
 {
-    angle_[i] = t.shafts.angle[i], speed_[i] = t.shafts.speed[i];
-    anchor_[i] = t.shafts.anchor[i], root_anchor_[i] = t.shafts.root_anchor[i];
+    const std::size_t k = place(shafts_, i);
+    angle_[k] = t.shafts.angle[i], speed_[k] = t.shafts.speed[i];
+    anchor_[k] = t.shafts.anchor[i], root_anchor_[k] = t.shafts.root_anchor[i];
 }
 
 void MotionMemento::restore_body(HostTables& t, std::uint32_t i) const
 {
-    t.bodies.position[i] = position_[i], t.bodies.velocity[i] = velocity_[i], t.bodies.orientation[i] = orientation_[i];
-    t.bodies.angular_velocity[i] = angular_velocity_[i], t.bodies.angular_momentum[i] = angular_momentum_[i];
+    const std::size_t k = place(bodies_, i);
+    t.bodies.position[i] = position_[k], t.bodies.velocity[i] = velocity_[k], t.bodies.orientation[i] = orientation_[k];
+    t.bodies.angular_velocity[i] = angular_velocity_[k], t.bodies.angular_momentum[i] = angular_momentum_[k];
 }
 
 void MotionMemento::restore_shaft(HostTables& t, std::uint32_t i) const
 {
-    t.shafts.angle[i] = angle_[i], t.shafts.speed[i] = speed_[i];
-    t.shafts.anchor[i] = anchor_[i], t.shafts.root_anchor[i] = root_anchor_[i];
+    const std::size_t k = place(shafts_, i);
+    t.shafts.angle[i] = angle_[k], t.shafts.speed[i] = speed_[k];
+    t.shafts.anchor[i] = anchor_[k], t.shafts.root_anchor[i] = root_anchor_[k];
 }
 
-void MotionMemento::save_quantities(const HostTables& t, std::uint32_t i) { quantities_[i] = t.quantities.value[i]; }
+void MotionMemento::save_quantities(const HostTables& t, std::uint32_t i) { quantities_[place(quantity_rows_, i)] = t.quantities.value[i]; }
 
-void MotionMemento::restore_quantities(HostTables& t, std::uint32_t i) const { t.quantities.value[i] = quantities_[i]; }
+void MotionMemento::restore_quantities(HostTables& t, std::uint32_t i) const
+{
+    t.quantities.value[i] = quantities_[place(quantity_rows_, i)];
+}
 
 }  // namespace plab::world

@@ -61,6 +61,10 @@ class MotionMemento
 {
 public:
     void save(const HostTables& tables);
+    /// Makes room for all rows, whose contents are unspecified until they are saved.
+    void fit(const HostTables& tables);
+    /// Makes room for these rows only (ascending), the only ones that may be saved and restored from now on, one by one.
+    void fit_rows(std::vector<std::uint32_t> bodies, std::vector<std::uint32_t> shafts, std::vector<std::uint32_t> quantities);
     void restore(HostTables& tables) const;
     void save_body(const HostTables& tables, std::uint32_t i);
     void save_shaft(const HostTables& tables, std::uint32_t i);
@@ -70,6 +74,11 @@ public:
     void restore_quantities(HostTables& tables, std::uint32_t i) const;
 
 private:
+    void resize(std::size_t bodies, std::size_t shafts, std::size_t quantities);
+    std::size_t place(const std::vector<std::uint32_t>& rows, std::uint32_t row) const;
+
+    bool some_ = false;  ///< only the rows of the following lists
+    std::vector<std::uint32_t> bodies_, shafts_, quantity_rows_;
     std::vector<Vec3> position_, velocity_, angular_velocity_, angular_momentum_;
     std::vector<Quat> orientation_;
     std::vector<double> angle_, speed_, anchor_, root_anchor_;

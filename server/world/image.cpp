@@ -63,6 +63,7 @@ Image World::image() const
 {
     Image out;
     out.directory = directory_.lend(), out.scene = scene_.lend();
+    (void)out.directory->index_of_id.lend();
     out.layouts.reserve(tables_.size());
     for (const auto& table : tables_) out.layouts.push_back(table->layout());
     ByteWriter cells;

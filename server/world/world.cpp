@@ -21,7 +21,7 @@ std::uint32_t World::insert(Component component)
         directory.free.pop_back();
     }
     component.alive = true;
-    directory.index_of_id[component.id] = i;
+    directory.index_of_id.edit()[component.id] = i;
     directory.components[i] = std::move(component);
     return i;
 }
@@ -29,14 +29,16 @@ std::uint32_t World::insert(Component component)
 void World::erase(std::uint32_t i)
 {
     Directory& directory = directory_.edit();
-    directory.index_of_id.erase(directory.components[i].id);
+    directory.index_of_id.edit().erase(directory.components[i].id);
     directory.components[i] = {};
     directory.free.push_back(i);
 }
 
 void World::quarantine(std::uint32_t i, bool quarantined)
 {
-    if (component(i).quarantined != quarantined) directory_.edit().components[i].quarantined = quarantined;
+    if (component(i).quarantined == quarantined) return;
+    note(i);
+    directory_.edit().components[i].quarantined = quarantined;
 }
 
 void World::describe(const model::SceneSettings& settings, const std::string& file)
@@ -47,10 +49,11 @@ void World::describe(const model::SceneSettings& settings, const std::string& fi
 
 void World::sort_by_id()
 {
+    ++order_number_;
     in_id_order_.clear();
     rank_.assign(components().size(), kNoIndex);
     // std::map iterates in byte-wise order of ids, which is the order that every phase, hash and listing uses.
-    for (const auto& [id, i] : directory_->index_of_id)
+    for (const auto& [id, i] : *directory_->index_of_id)
     {
         rank_[i] = static_cast<std::uint32_t>(in_id_order_.size());
         in_id_order_.push_back(i);
@@ -177,7 +180,7 @@ void add_placed(Errors& out, const Errors& errors, const model::ComponentSpec& s
 std::vector<World::Created> World::create_from(std::size_t first, Errors& errors)
 {
     std::vector<Created> created;
-    const std::vector<model::ComponentSpec>& specs = scene_->components;
+    const model::ComponentList& specs = scene_->components;
     created.reserve(specs.size() - first);
     directory_.edit().components.reserve(components().size() + specs.size() - first);
     for (std::size_t k = first; k < specs.size(); ++k)
@@ -216,8 +219,7 @@ std::vector<World::Created> World::in_order_of_preparation(const std::vector<Cre
 Result<void> World::add(const model::SceneSpec& fragment)
 {
     const std::size_t first = scene_->components.size();
-    std::vector<model::ComponentSpec>& specs = scene_.edit().components;
-    specs.insert(specs.end(), fragment.components.begin(), fragment.components.end());
+    scene_.edit().components.append(fragment.components);
     return add_from(first);
 }
 
@@ -262,7 +264,7 @@ void World::refresh_open_roles()
 void World::remove(std::uint32_t component)
 {
     const Component c = directory_->components[component];
-    std::erase_if(scene_.edit().components, [&](const model::ComponentSpec& s) { return s.id == c.id; });
+    scene_.edit().components.remove_if([&](const model::ComponentSpec& s) { return s.id == c.id; });
     if (c.table != kNoIndex)
     {
         parked_.push_back({c.table, c.row, c.host_index, c.facet});
@@ -280,8 +282,10 @@ Result<void> World::exchange(std::uint32_t component, const model::ComponentSpec
     auto table_index = table_for(spec.type);
     if (!table_index) return table_index.errors();
     Table& table = *tables_[*table_index];
+    note(component);
     const Component old = directory_->components[component];
-    const HostTables host_before = host_;
+    const HostRow host_before(host_, old.facet, old.host_index);
+    const Materials materials_before = host_.materials;
 
     Component next = old;
     next.table = *table_index;
@@ -295,13 +299,16 @@ Result<void> World::exchange(std::uint32_t component, const model::ComponentSpec
     {
         table.remove(next.row);
         directory_.edit().components[component] = old;
-        host_ = host_before;
+        host_before.restore(host_);
+        host_.materials = materials_before;
         return done.errors();
     }
     parked_.push_back({old.table, old.row, kNoIndex, old.facet});
     tables_[old.table]->assign(old.row, kNoIndex, kNoIndex);
-    for (model::ComponentSpec& s : scene_.edit().components)
-        if (s.id == spec.id) s = spec;
+    const std::size_t place = scene_->position_of(spec.id, component);
+    if (place == scene_->components.size()) return {};
+    if (undo_) undo_->specs.push_back({place, scene_->components.share(place)});
+    scene_.edit().components.replace(place, spec);
     return {};
 }
 

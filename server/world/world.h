@@ -16,34 +16,16 @@
 #include "world/host_tables.h"
 #include "world/shared.h"
 #include "world/table.h"
+#include "world/undo_log.h"
 
 namespace plab::world
 {
-
-/// A directory entry. The index belongs to the id as long as a component of that id exists, also across swaps.
-struct Component
-{
-    std::string id;
-    std::uint32_t table = kNoIndex;  ///< kNoIndex: a group
-    Row row = kNoIndex;
-    Facet facet = Facet::Component;
-    std::uint32_t host_index = kNoIndex;
-    std::uint64_t commands = 0;  ///< bit per command of its type: takes part in the step
-    bool alive = false;
-    bool quarantined = false;
-
-    /// How roles refer to this component.
-    Ref ref(std::uint32_t directory_index) const
-    {
-        return facet == Facet::Component ? Ref{facet, directory_index} : Ref{facet, host_index};
-    }
-};
 
 /// The directory of components. Changed only by requests.
 struct Directory
 {
     std::vector<Component> components;
-    std::map<std::string, std::uint32_t> index_of_id;
+    Shared<std::map<std::string, std::uint32_t>> index_of_id;  ///< apart, because an exchange does not change it
     std::vector<std::uint32_t> free;
 };
 
@@ -98,6 +80,16 @@ public:
     Backup backup() const;
     void restore(const Backup& backup);
 
+    /// From now on changes of components are noted in `log`, which has to live as long; null: nowhere. Returns the log that was in use.
+    UndoLog* note_in(UndoLog* log);
+    /// Notes a component as it is, unless it has been. To be called before its values or its host row are changed from outside; prepare(),
+    /// set() and exchange() do it.
+    void note(std::uint32_t component);
+    /// Takes back everything in the log, and ends it. Opaque objects that Prepare makes are not covered (as in a backup).
+    void take_back(const UndoLog& log);
+    /// Values and host rows only: for components whose opaque parts had to be prepared again after take_back().
+    void restore_values(const UndoLog& log);
+
     /// The fields of these kinds (bits) of all existing components, in an order that is constant while the structure is.
     void save_fields(unsigned kinds, ByteWriter& out) const;
     void load_fields(unsigned kinds, ByteReader& in);
@@ -121,11 +113,25 @@ public:
     const model::ComponentType* type_of(std::uint32_t component) const;
     /// Existing components in the order of their ids.
     const std::vector<std::uint32_t>& in_id_order() const { return in_id_order_; }
+    /// Another number whenever components were added or removed, so that ranks changed.
+    std::uint64_t order_number() const { return order_number_; }
     /// Position of a component in id order.
     std::uint32_t rank(std::uint32_t component) const { return rank_[component]; }
     std::uint32_t rank(Ref ref) const { return rank_[host_.component_of(ref)]; }
+    /// By directory index.
+    std::span<const std::uint32_t> ranks() const { return rank_; }
     /// Participants of a role in id order; empty if the type has no such role.
     std::vector<Ref> participants(std::uint32_t component, const Role& role) const;
+    /// Calls visit(participant) for each of them.
+    template <class Visit>
+    void for_each_participant(std::uint32_t component, const Role& role, Visit visit) const
+    {
+        const Row row = directory_->components[component].row;
+        if (role.many)
+            for (const Ref ref : (*role.many)[row]) visit(ref);
+        else if (const Ref ref = (*role.one)[row]; ref.valid())
+            visit(ref);
+    }
     /// Directory indices of the components that refer to `component` through a role.
     std::vector<std::uint32_t> referrers(std::uint32_t component) const;
 
@@ -190,6 +196,8 @@ private:
     std::vector<std::uint32_t> in_id_order_, rank_;
     HostTables host_;
     std::vector<Parked> parked_;
+    UndoLog* undo_ = nullptr;
+    std::uint64_t order_number_ = 0;
 };
 
 }  // namespace plab::world

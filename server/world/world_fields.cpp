@@ -12,8 +12,9 @@ namespace plab::world
 
 std::uint32_t World::find(const std::string& id) const
 {
-    const auto found = directory_->index_of_id.find(id);
-    return found == directory_->index_of_id.end() ? kNoIndex : found->second;
+    const std::map<std::string, std::uint32_t>& index = *directory_->index_of_id;
+    const auto found = index.find(id);
+    return found == index.end() ? kNoIndex : found->second;
 }
 
 const std::string& World::id_of(std::uint32_t component) const
@@ -36,17 +37,39 @@ std::vector<Ref> World::participants(std::uint32_t component, const Role& role) 
     return ref.valid() ? std::vector<Ref>{ref} : std::vector<Ref>{};
 }
 
+/// The columns of roles say quickly who may refer to it; whether that is by name, and not by "*", is written in the scene.
 std::vector<std::uint32_t> World::referrers(std::uint32_t component) const
 {
-    std::vector<std::uint32_t> out;
-    for (const model::ComponentSpec& spec : scene_->components)
-        for (const model::RoleSpec& role : spec.roles)
-            if (!role.everyone &&
-                std::find(role.members.begin(), role.members.end(), directory_->components[component].id) != role.members.end())
+    const Component& c = directory_->components[component];
+    if (c.table == kNoIndex) return {};
+    const Ref wanted = c.ref(component);
+    std::vector<std::pair<std::size_t, std::uint32_t>> found;  // by place in the scene
+    const auto add = [&](std::uint32_t referrer)
+    {
+        const std::size_t place = scene_->position_of(id_of(referrer), referrer);
+        if (place == scene_->components.size()) return;
+        for (const model::RoleSpec& role : scene_->components[place].roles)
+            if (!role.everyone && std::find(role.members.begin(), role.members.end(), c.id) != role.members.end())
+                return (void)found.emplace_back(place, referrer);
+    };
+    for (const auto& table : tables_)
+        for (const Role& role : table->schema().roles())
+        {
+            if (std::find(role.facets.begin(), role.facets.end(), wanted.facet) == role.facets.end()) continue;
+            const auto owners = table->component_of_row();
+            for (Row row = 0; row < owners.size(); ++row)
             {
-                out.push_back(find(spec.id));
-                break;
+                if (owners[row] == kNoIndex) continue;
+                const bool refers = role.many
+                                        ? std::find((*role.many)[row].begin(), (*role.many)[row].end(), wanted) != (*role.many)[row].end()
+                                        : (*role.one)[row] == wanted;
+                if (refers) add(owners[row]);
             }
+        }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    std::vector<std::uint32_t> out;
+    for (const auto& [place, referrer] : found) out.push_back(referrer);
     return out;
 }
 
@@ -76,6 +99,7 @@ Result<void> World::set(std::uint32_t component, const std::string& name, const 
     if (field->kind == FieldKind::Output || field->kind == FieldKind::Scratch)
         return reason("'" + name + "' is computed, it cannot be set");
     if (plab::type_of(value) != field->type) return reason("'" + name + "' has another type");
+    note(component);
     if (field->hosted)
         set_hosted(host_, c.facet, c.host_index, name, value);
     else
@@ -122,6 +146,7 @@ Result<void> World::prepare(std::uint32_t component)
 {
     const Component& c = directory_->components[component];
     if (c.table == kNoIndex) return {};
+    note(component);
     auto done = run(component, Phase::Prepare);
     if (done && c.facet == Facet::Body)
         host_.bodies.needle[c.host_index] = host_.bodies.dynamic(c.host_index) && is_needle(host_.bodies.inertia_B[c.host_index]) ? 1 : 0;

@@ -34,7 +34,7 @@ enum class Sharing
 
 struct Cluster
 {
-    std::vector<std::uint32_t> groups;
+    std::span<const std::uint32_t> groups;
     std::size_t load = 0;
     std::uint32_t solver = kNoIndex;
     Sharing sharing = Sharing::Alone;
@@ -44,12 +44,15 @@ struct Cluster
 std::vector<Cluster> clusters_of(const Groups& groups)
 {
     std::vector<Cluster> out(groups.clusters);
-    for (std::uint32_t g = 0; g < groups.all.size(); ++g)
+    for (std::uint32_t c = 0; c < groups.clusters; ++c)
     {
-        const Group& group = groups.all[g];
-        Cluster& c = out[group.cluster];
-        c.groups.push_back(g), c.solver = group.solver;
-        c.load += group.bodies.size() + group.shafts.size() + group.quantities.size() + 1;
+        out[c].groups = groups.of_cluster(c);
+        for (const std::uint32_t g : out[c].groups)
+        {
+            const Group& group = groups.all[g];
+            out[c].solver = group.solver;
+            out[c].load += group.bodies.size() + group.shafts.size() + group.quantities.size() + 1;
+        }
     }
     return out;
 }
@@ -139,7 +142,7 @@ void BatchedAdvance::plan()
         if (keeps) home.emplace(c.solver, static_cast<std::size_t>(&batch - batches_.data()));
         batch.load += c.load;
         if (c.sharing == Sharing::Alone)
-            batch.add_part(c.solver).groups = c.groups;
+            batch.add_part(c.solver).groups.assign(c.groups.begin(), c.groups.end());
         else
             share(batch, c, split_[step_.groups.all[c.groups.front()].cluster], shared);
     }

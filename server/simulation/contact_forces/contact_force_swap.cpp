@@ -77,7 +77,10 @@ void ContactForces::convert_contacts()
                   [&](const ForcePair& p) { return index_of(p.detector) == contacts_.detectors().size() || !lives(p.a) || !lives(p.b); });
     // Loop over copies, so that converted pairs are not visited again.
     const auto soft = cache.force_pairs();
-    const auto hard = std::as_const(cache).pairs();
+    std::vector<PairState> hard;
+    if (any_)
+        for (const PairState& p : std::as_const(cache).pairs())
+            if (const std::uint32_t d = index_of(p.detector); d < contacts_.detectors().size() && by_force_[d]) hard.push_back(p);
     live_.pairs = soft;
     for (const ForcePair& p : soft)
     {
@@ -89,8 +92,7 @@ void ContactForces::convert_contacts()
         else
             find_same(live_.pairs, p.detector, p.a, p.b)->law = laws_[d].values;
     }
-    for (const PairState& p : hard)
-        if (const std::uint32_t d = index_of(p.detector); d < contacts_.detectors().size() && by_force_[d]) hard_to_soft(p, d);
+    for (const PairState& p : hard) hard_to_soft(p, index_of(p.detector));
     cache.force_pairs() = live_.pairs;
 }
 

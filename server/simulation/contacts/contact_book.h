@@ -19,12 +19,17 @@ public:
     explicit ContactBook(StepState& step) : step_(step) {}
 
     /// To be called after any structural change: finds detectors and sizes of bodies, and drops pairs whose detector or bodies are gone.
-    /// Errors: see contact_rules.h.
-    Errors rebuild();
+    /// Errors: see contact_rules.h. `sizes`: sizes of bodies are wanted even if there is no detector.
+    Errors rebuild(bool sizes = true);
     void begin_step() { releases_.clear(), resting_.forget(); }
     /// Lets the resolutions that adapt choose how the impacts of this step are found. True if one of them chose otherwise than before: then
     /// what was detected with the former margins does not serve this step.
     bool choose_search();
+    /// Whether there are such resolutions.
+    bool adapts() const;
+    /// For a stepper that steps a part of a scene: from now on they choose as they would at present in a step of the whole scene, whose
+    /// contacts `whole` has.
+    void search_as(const ContactBook& whole);
 
     const std::vector<Detector>& detectors() const { return detectors_; }
     ContactCache& cache() { return cache_; }
@@ -133,10 +138,16 @@ private:
     void list_participants();
     std::span<const Shortlist> shortlists_of(std::size_t detector, const IndexSet& active);
     double curves_of(Ref a, Ref b) const { return std::fabs(curve_radius_of_body_[a.index] + curve_radius_of_body_[b.index]); }
+<<<<<<< HEAD
     void measure_islands(ContactLoad& load);
     bool detect_with_gaps(std::uint32_t index);
     void list_runs(std::size_t from);
     bool ask(const Detector& detector, ContactCollector& sink, std::span<const PersistentPair> persistent, bool only_persistent);
+=======
+    void measure_islands(std::span<const PairState> pairs, ContactLoad& load);
+    void ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out);
+    void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
+>>>>>>> fswap
     double gap_margin(const PairState& pair, double h) const;
     void drop_far(std::vector<FoundContact>& out, double h) const;
     double kinetic_energy(const std::vector<FoundContact>& contacts) const;
@@ -144,6 +155,7 @@ private:
 
     StepState& step_;
     std::vector<Detector> detectors_;
+    std::uint64_t order_number_ = 0;  ///< of the world when the cache was refreshed last
     ContactCache cache_;
     RestingPairs resting_{step_.world, step_.groups, cache_, step_.report.visited};
     std::vector<FoundContact> found_;
@@ -172,6 +184,8 @@ private:
     };
     DisjointSets load_islands_;             ///< of bodies
     std::vector<IslandCount> load_counts_;  ///< by representative body
+    std::vector<ImpactSearch> searches_;    ///< by detector, in this step
+    std::vector<ImpactSearch> imposed_;     ///< by detector; empty: they choose
     std::vector<PersistentPair> persistent_;
     std::vector<std::uint32_t> places_;
     std::vector<Contact> impact_contacts_;

@@ -95,7 +95,8 @@ void ContactCache::assign(std::vector<PairState> pairs, const world::World& worl
 
 void ContactCache::sort(const world::World& world)
 {
-    std::sort(pairs_.begin(), pairs_.end(), [&](const PairState& x, const PairState& y) { return key_of(world, x) < key_of(world, y); });
+    const auto before = [&](const PairState& x, const PairState& y) { return key_of(world, x) < key_of(world, y); };
+    if (!std::is_sorted(pairs_.begin(), pairs_.end(), before)) std::sort(pairs_.begin(), pairs_.end(), before);
     keys_.clear();
     for (const PairState& p : pairs_) keys_.push_back(key_of(world, p));
 }
@@ -134,7 +135,7 @@ void ContactCache::refresh(const world::World& world, const std::vector<Detector
     const auto has_no_speculating_detector = [&](const PairState& p)
     {
         return p.ahead && std::none_of(detectors.begin(), detectors.end(),
-                                       [&](const Detector& d) { return d.component == p.detector && d.speculates; });
+                                       [&](const Detector& d) { return d.component == p.detector && (d.speculates || d.adapts); });
     };
     drop_if([&](const PairState& p) { return gone(p) || has_no_speculating_detector(p); });
     for (PairState& p : pairs_)

@@ -212,6 +212,9 @@ public:
     void clear() { *this = {}; }
     /// Copies `from`, except contact slots that are not in use, and keeps this cache's memory.
     void copy(const ContactCache& from);
+    /// The same for the pairs whose key `keep` accepts, and the pairs with force contacts whose bodies `keep_forces` accepts.
+    template <class Keep, class KeepForces>
+    void copy_if(const ContactCache& from, Keep keep, KeepForces keep_forces);
     std::uint64_t new_id() { return next_id_++; }
     std::uint64_t next_id() const { return next_id_; }
     /// Lets ids continue from those of a snapshot.
@@ -264,6 +267,18 @@ void ContactCache::drop_if(Ends ends)
         ++kept;
     }
     shrink(kept);
+}
+
+template <class Keep, class KeepForces>
+void ContactCache::copy_if(const ContactCache& from, Keep keep, KeepForces keep_forces)
+{
+    clear();
+    for (std::size_t i = 0; i < from.keys_.size(); ++i)
+        if (keep(from.keys_[i])) pairs_.push_back(from.pairs_[i]), keys_.push_back(from.keys_[i]);
+    for (const ForcePair& p : from.force_pairs_)
+        if (keep_forces(p.a, p.b)) force_pairs_.push_back(p);
+    parked_pairs_ = from.parked_pairs_, parked_force_pairs_ = from.parked_force_pairs_;
+    next_id_ = from.next_id_, may_have_rest_depth_ = from.may_have_rest_depth_;
 }
 
 /// Detectors of a scene, in id order.

@@ -4,6 +4,7 @@
 // rewound or restored makes the same choice.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "simulation/contacts/contact_book.h"
 #include "simulation/motion/component_call.h"
@@ -37,13 +38,13 @@ ImpactSearch search_of(const Detector& d)
 }  // namespace
 
 /// Fills in the largest islands of persistent contacts, over all detections: a body may rest on what another detection holds.
-void ContactBook::measure_islands(ContactLoad& load)
+void ContactBook::measure_islands(std::span<const PairState> pairs, ContactLoad& load)
 {
     const Bodies& bodies = step_.world.host().bodies;
     load_islands_.reset(bodies.size());
     load_counts_.assign(bodies.size(), {});
     // Points are counted at one body of each pair first, so that the pairs are gone through once.
-    for (const PairState& p : cache_.pairs())
+    for (const PairState& p : pairs)
     {
         if (!p.resting) continue;
         if (bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) load_islands_.join(p.a.index, p.b.index);
@@ -59,24 +60,48 @@ void ContactBook::measure_islands(ContactLoad& load)
     }
 }
 
-bool ContactBook::choose_search()
+/// Asks the resolutions that adapt, for the state of all bodies and `pairs`. Others keep what they have.
+void ContactBook::ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out)
 {
-    if (std::none_of(detectors_.begin(), detectors_.end(), [](const Detector& d) { return d.adapts; })) return false;
     ContactLoad load;
-    measure_islands(load);
+    measure_islands(pairs, load);
     load.travel = largest_travel(step_.world.host().bodies, radius_of_body_, step_.frame.step);
-    bool changed = false;
-    for (Detector& d : detectors_)
+    out.clear();
+    for (const Detector& d : detectors_)
     {
+        ImpactSearch& search = out.emplace_back(search_of(d));
         if (!d.adapts) continue;
         load.has_manager = d.by_rows, load.search = ImpactSearch::AtEnd;
         ComponentCall question(step_, d.resolution);
         question.arguments.load = &load;
         question.run(Phase::Choose);
-        if (load.search == ImpactSearch::Locate && !d.gap) load.search = ImpactSearch::AtEnd;
-        if (load.search == ImpactSearch::Speculate && !d.by_rows) load.search = ImpactSearch::AtEnd;
-        changed = changed || load.search != search_of(d);
-        apply(load.search, d);
+        search = load.search;
+        if (search == ImpactSearch::Locate && !d.gap) search = ImpactSearch::AtEnd;
+        if (search == ImpactSearch::Speculate && !d.by_rows) search = ImpactSearch::AtEnd;
+    }
+}
+
+bool ContactBook::adapts() const
+{
+    return std::any_of(detectors_.begin(), detectors_.end(), [](const Detector& d) { return d.adapts; });
+}
+
+void ContactBook::search_as(const ContactBook& whole) { ask_search(whole.cache_.pairs(), imposed_); }
+
+bool ContactBook::choose_search()
+{
+    if (!adapts()) return false;
+    if (imposed_.empty())
+        ask_search(std::as_const(cache_).pairs(), searches_);
+    else
+        searches_ = imposed_;
+    bool changed = false;
+    for (std::size_t k = 0; k < detectors_.size(); ++k)
+    {
+        Detector& d = detectors_[k];
+        if (!d.adapts) continue;
+        changed = changed || searches_[k] != search_of(d);
+        apply(searches_[k], d);
         if (!d.persists()) continue;
         // A pair between two bounces is a contact like any other where impacts are not located.
         for (PairState& p : cache_.pairs())

@@ -36,18 +36,18 @@ struct Participation
     bool joins = false;
 };
 
-Participation participation(const world::World& world, std::uint32_t component)
+void find_participation(const world::World& world, std::uint32_t component, Participation& p)
 {
-    Participation p;
+    p.acts_on.clear(), p.reads.clear();
+    p.joins = false;
     for (const Role& role : world.table_of(component).schema().roles())
     {
         const bool in_space = std::any_of(role.facets.begin(), role.facets.end(),
                                           [](Facet f) { return f == Facet::Body || f == Facet::Shaft || f == Facet::Quantities; });
         if (!in_space) continue;
-        for (const Ref ref : world.participants(component, role)) (role.writes ? p.acts_on : p.reads).push_back(ref);
+        world.for_each_participant(component, role, [&](Ref ref) { (role.writes ? p.acts_on : p.reads).push_back(ref); });
         if (role.writes && !role.independent) p.joins = true;
     }
-    return p;
 }
 
 /// Quantities that became non-finite are quarantined and treated as static until a request sets them, just as bodies and shafts are.
@@ -58,14 +58,15 @@ Motion motion_of(const world::World& world, Ref ref)
     return ref.facet == Facet::Body ? host.bodies.motion[ref.index] : host.shafts.motion[ref.index];
 }
 
-bool is_dynamic(const world::World& world, Ref ref) { return motion_of(world, ref) == Motion::Dynamic; }
-
 class Builder
 {
 public:
-    Builder(const world::World& world, const Schedule& schedule) : world_(world), schedule_(schedule) {}
+    Builder(const world::World& world, const Schedule& schedule, const Selection* part, Groups& groups)
+        : world_(world), schedule_(schedule), part_(part), groups_(groups)
+    {
+    }
 
-    Groups build()
+    void build()
     {
         // Sets consist of ranks in the order of ids, not of indices, so that neither load order nor row numbers affect the groups.
         sets_.reset(world_.in_id_order().size());
@@ -74,10 +75,17 @@ public:
         link_rows();
         make_clusters();
         choose_solvers();
-        return std::move(groups_);
     }
 
 private:
+    /// Objects outside the part count as fixed.
+    Motion motion(Ref ref) const
+    {
+        if (part_ && part_->flags[world_.host().component_of(ref)] == 0) return Motion::Static;
+        return motion_of(world_, ref);
+    }
+    bool is_dynamic(Ref ref) const { return motion(ref) == Motion::Dynamic; }
+
     /// Calls visit(component, block, row) for each force, coupling, joint (Constrain) and graph connection, in this order.
     template <class Visit>
     void for_each_interaction(Visit visit) const
@@ -97,30 +105,29 @@ private:
     /// on one static floor, or hang on one prescribed hook, stay independent of one another.
     void join_members(std::uint32_t component)
     {
-        const Participation p = participation(world_, component);
+        Participation& p = participation_;
+        find_participation(world_, component, p);
         if (!p.joins) return;
         std::uint32_t first = kNoIndex;
         for (const Ref ref : p.acts_on)
         {
-            if (!is_dynamic(world_, ref)) continue;
+            if (!is_dynamic(ref)) continue;
             if (first == kNoIndex) first = world_.rank(ref);
             sets_.join(first, world_.rank(ref));
         }
     }
 
-    /// Each group has one object that represents its set.
-    std::size_t count_groups()
+    /// The next group of the list, empty, with the memory of what was there.
+    Group& next_group()
     {
-        const auto& all = world_.in_id_order();
-        const auto represents = [&](std::uint32_t i)
-        {
-            const Facet facet = world_.component(i).facet;
-            const bool is_object = facet == Facet::Body || facet == Facet::Shaft || facet == Facet::Quantities;
-            return is_object && motion_of(world_, world_.component(i).ref(i)) != Motion::Static &&
-                   sets_.find(world_.rank(i)) == world_.rank(i);
-        };
-        return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), represents));
+        if (count_ == groups_.all.size()) groups_.all.emplace_back();
+        Group& g = groups_.all[count_++];
+        for (auto* list : {&g.bodies, &g.shafts, &g.quantities, &g.prescribed_bodies, &g.prescribed_shafts, &g.upstream}) list->clear();
+        g.forces.clear(), g.couplings.clear(), g.rows.clear();
+        return g;
     }
+
+    std::span<const std::uint32_t> objects() const { return part_ ? part_->components : world_.in_id_order(); }
 
     /// Numbers the sets in the order in which the ids of their members appear, and sorts the objects into them. Prescribed objects were
     /// joined with nothing, so each has a group of its own; static ones have none.
@@ -129,20 +136,19 @@ private:
         groups_.group_of_body.assign(world_.host().bodies.size(), kNoIndex);
         groups_.group_of_shaft.assign(world_.host().shafts.size(), kNoIndex);
         groups_.group_of_quantities.assign(world_.host().quantities.size(), kNoIndex);
-        groups_.all.reserve(count_groups());
         std::vector<std::uint32_t> group_of_rank(world_.in_id_order().size(), kNoIndex);
-        for (const std::uint32_t i : world_.in_id_order())
+        for (const std::uint32_t i : objects())
         {
             const world::Component& c = world_.component(i);
             if (c.facet != Facet::Body && c.facet != Facet::Shaft && c.facet != Facet::Quantities) continue;
             const Ref ref = c.ref(i);
-            const Motion motion = motion_of(world_, ref);
-            if (motion == Motion::Static) continue;
+            const Motion how = motion(ref);
+            if (how == Motion::Static) continue;
             std::uint32_t& g = group_of_rank[sets_.find(world_.rank(i))];
             if (g == kNoIndex)
             {
-                g = static_cast<std::uint32_t>(groups_.all.size());
-                groups_.all.emplace_back();
+                g = static_cast<std::uint32_t>(count_);
+                (void)next_group();
             }
             Group& group = groups_.all[g];
             if (c.facet == Facet::Quantities)
@@ -153,11 +159,12 @@ private:
             }
             const bool body = c.facet == Facet::Body;
             (body ? groups_.group_of_body : groups_.group_of_shaft)[ref.index] = g;
-            if (motion == Motion::Kinematic)
+            if (how == Motion::Kinematic)
                 (body ? group.prescribed_bodies : group.prescribed_shafts).push_back(ref.index);
             else
                 (body ? group.bodies : group.shafts).push_back(ref.index);
         }
+        groups_.all.resize(count_);
     }
 
     /// Gives each group the rows that act on its members, and lists the groups that those rows read. A row that acts on two objects of
@@ -168,15 +175,16 @@ private:
             for_each_row(phase,
                          [&](std::uint32_t component, std::uint32_t block, Row row)
                          {
-                             const Participation p = participation(world_, component);
+                             Participation& p = participation_;
+                             find_participation(world_, component, p);
                              // A constraint row belongs to the group of the dynamic participants, which can follow it. If no participant
                              // is dynamic it stays with the prescribed ones, so that its violation can still be reported.
                              const bool something_moves =
-                                 std::any_of(p.acts_on.begin(), p.acts_on.end(), [&](Ref r) { return is_dynamic(world_, r); });
+                                 std::any_of(p.acts_on.begin(), p.acts_on.end(), [&](Ref r) { return is_dynamic(r); });
                              for (const Ref ref : p.acts_on)
                              {
                                  if (groups_.of(ref) == kNoIndex) continue;
-                                 if (phase == Phase::Constrain && something_moves && !is_dynamic(world_, ref)) continue;
+                                 if (phase == Phase::Constrain && something_moves && !is_dynamic(ref)) continue;
                                  Group& group = groups_.all[groups_.of(ref)];
                                  auto& rows = phase == Phase::Force ? group.forces : phase == Phase::Couple ? group.couplings : group.rows;
                                  rows.push_back({block, world_.rank(component), row});
@@ -192,6 +200,7 @@ private:
         for (Group& group : groups_.all)
             for (auto* list : {&group.forces, &group.couplings, &group.rows})
             {
+                if (list->size() < 2) continue;
                 std::sort(list->begin(), list->end());
                 list->erase(std::unique(list->begin(), list->end()), list->end());
             }
@@ -209,23 +218,43 @@ private:
         for (std::uint32_t g = 0; g < groups_.all.size(); ++g)
             for (const std::uint32_t up : groups_.all[g].upstream) clusters.join(g, up);
         std::vector<std::uint32_t> number(groups_.all.size(), kNoIndex);
+        groups_.clusters = 0;
         for (std::uint32_t g = 0; g < groups_.all.size(); ++g)
         {
             std::uint32_t& n = number[clusters.find(g)];
             if (n == kNoIndex) n = groups_.clusters++;
             groups_.all[g].cluster = n;
         }
+        sort_by_cluster();
         groups_.cluster_has_couplings.assign(groups_.clusters, 0);
         for (const Group& group : groups_.all)
             if (!group.couplings.empty()) groups_.cluster_has_couplings[group.cluster] = 1;
     }
 
-    std::uint32_t solver_of(Ref ref) const
+    void sort_by_cluster()
     {
-        const std::uint32_t component = world_.host().component_of(ref);
-        for (const Role& role : world_.table_of(component).schema().roles())
-            if (role.family == "Solver/" && role.one) return (*role.one)[world_.component(component).row].index;
-        return kNoIndex;
+        groups_.cluster_begin.assign(groups_.clusters + 1, 0), groups_.groups_by_cluster.resize(groups_.all.size());
+        for (const Group& group : groups_.all) ++groups_.cluster_begin[group.cluster + 1];
+        for (std::uint32_t c = 0; c < groups_.clusters; ++c) groups_.cluster_begin[c + 1] += groups_.cluster_begin[c];
+        std::vector<std::uint32_t> next = groups_.cluster_begin;
+        for (std::uint32_t g = 0; g < groups_.all.size(); ++g) groups_.groups_by_cluster[next[groups_.all[g].cluster]++] = g;
+    }
+
+    /// The role of a table's components that names their solver; null if there is none.
+    static const Role* solver_role(const world::Table& table)
+    {
+        for (const Role& role : table.schema().roles())
+            if (role.family == "Solver/" && role.one) return &role;
+        return nullptr;
+    }
+
+    std::uint32_t solver_of(Ref ref)
+    {
+        const world::Component& c = world_.component(world_.host().component_of(ref));
+        if (solver_roles_.size() < world_.tables().size())
+            for (const auto& table : world_.tables()) solver_roles_.push_back(solver_role(*table));
+        const Role* role = solver_roles_[c.table];
+        return role ? (*role->one)[c.row].index : kNoIndex;
     }
 
     /// All groups of a cluster share one solver because their stage times must agree. If members name different solvers, the one of the
@@ -262,12 +291,19 @@ private:
 
     const world::World& world_;
     const Schedule& schedule_;
-    Groups groups_;
+    const Selection* part_;
+    Groups& groups_;
+    std::size_t count_ = 0;  ///< of groups so far
     DisjointSets sets_;
+    Participation participation_;            ///< of the interaction that is looked at
+    std::vector<const Role*> solver_roles_;  ///< by table
 };
 
 }  // namespace
 
-Groups build_groups(const world::World& world, const Schedule& schedule) { return Builder(world, schedule).build(); }
+void build_groups(const world::World& world, const Schedule& schedule, Groups& groups, const Selection* part)
+{
+    Builder(world, schedule, part, groups).build();
+}
 
 }  // namespace plab::simulation

@@ -46,7 +46,14 @@ struct Groups
     std::vector<Group> all;
     std::vector<std::uint32_t> group_of_body, group_of_shaft, group_of_quantities;  ///< kNoIndex: static
     std::uint32_t clusters = 0;
+    std::vector<std::uint32_t> cluster_begin;         ///< by cluster, and one more: where its groups begin in groups_by_cluster
+    std::vector<std::uint32_t> groups_by_cluster;     ///< ascending within a cluster
     std::vector<std::uint8_t> cluster_has_couplings;  ///< by cluster: whether coupling sweeps are needed
+
+    std::span<const std::uint32_t> of_cluster(std::uint32_t cluster) const
+    {
+        return std::span(groups_by_cluster).subspan(cluster_begin[cluster], cluster_begin[cluster + 1] - cluster_begin[cluster]);
+    }
 
     std::uint32_t of(Ref ref) const
     {
@@ -57,7 +64,8 @@ struct Groups
     }
 };
 
-Groups build_groups(const world::World& world, const Schedule& schedule);
+/// Replaces `groups` by those of the present structure, in their memory. `part`: objects outside it are in no group; null: all are in.
+void build_groups(const world::World& world, const Schedule& schedule, Groups& groups, const Selection* part = nullptr);
 
 /// Disjoint sets (union-find) with the lowest member as representative, so that the result does not depend on the order of joins.
 class DisjointSets

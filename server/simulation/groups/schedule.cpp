@@ -16,23 +16,28 @@ bool measured_alone(const TypeInfo& type)
     return std::any_of(type.commands.begin(), type.commands.end(), one_at_a_time);
 }
 
-Schedule build_schedule(const world::World& world, const std::vector<std::uint8_t>* takes_part)
+Schedule build_schedule(const world::World& world, const Selection* part)
 {
     // Keyed by type name and command number: an order that is the same in every run.
     std::array<std::map<std::pair<std::string, std::size_t>, Block>, kPhaseCount> found;
-    for (const std::uint32_t i : world.in_id_order())
+    std::vector<std::vector<Block*>> of_table(world.tables().size());  // by command; null until a row needs it
+    for (const std::uint32_t i : part ? part->components : world.in_id_order())
     {
         const world::Component& c = world.component(i);
-        if (c.table == kNoIndex || c.quarantined || (takes_part && (*takes_part)[i] == 0)) continue;
+        if (c.table == kNoIndex || c.quarantined) continue;
         const TypeInfo& info = world.table_of(i).type().info;
-        const bool alone = measured_alone(info);
+        std::vector<Block*>& blocks = of_table[c.table];
+        blocks.resize(info.commands.size(), nullptr);
         for (std::size_t k = 0; k < info.commands.size(); ++k)
         {
             const CommandInfo& command = info.commands[k];
             if (!(c.commands & (1ull << k)) || !command.run) continue;
-            Block& block = found[static_cast<std::size_t>(command.phase)][{info.name, k}];
-            block.table = c.table, block.command = &command, block.alone = alone;
-            block.rows.push_back(c.row);
+            if (!blocks[k])
+            {
+                blocks[k] = &found[static_cast<std::size_t>(command.phase)][{info.name, k}];
+                blocks[k]->table = c.table, blocks[k]->command = &command, blocks[k]->alone = measured_alone(info);
+            }
+            blocks[k]->rows.push_back(c.row);
         }
     }
     Schedule schedule;

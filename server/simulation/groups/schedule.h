@@ -18,6 +18,13 @@ struct Block
     bool alone = false;  ///< the command is called, and timed, for one row at a time (measured_alone)
 };
 
+/// The components of a part of the scene, to which a stepper can be restricted. Objects outside it take no part in a step.
+struct Selection
+{
+    std::vector<std::uint8_t> flags;        ///< by directory index
+    std::vector<std::uint32_t> components;  ///< those that are flagged, in id order
+};
+
 /// Rebuilt whenever components are added, removed, swapped or quarantined.
 struct Schedule
 {
@@ -31,8 +38,7 @@ struct Schedule
 /// share the measured time of the whole block.
 bool measured_alone(const TypeInfo& type);
 
-/// Blocks in the order of type names, so that neither load order nor row numbers influence the state. `takes_part`: by directory index;
-/// null: all components.
-Schedule build_schedule(const world::World& world, const std::vector<std::uint8_t>* takes_part = nullptr);
+/// Blocks in the order of type names, so that neither load order nor row numbers influence the state. `part`: null: all components.
+Schedule build_schedule(const world::World& world, const Selection* part = nullptr);
 
 }  // namespace plab::simulation

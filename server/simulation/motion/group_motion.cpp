@@ -7,13 +7,47 @@
 namespace plab::simulation
 {
 
-void GroupMotion::rebuild(bool rewinds)
+void GroupMotion::rebuild(bool rewinds, bool members_only)
 {
-    rewinds_ = rewinds;
+    rewinds_ = rewinds, members_only_ = members_only && !rewinds;
     segment_begin_.assign(step_.groups.all.size(), 0.0);
     pool_.clear(step_.world);
     row_reports_.clear(step_.world.components().size());
-    for (world::MotionMemento* memento : {&start_, &segment_, &end_}) memento->save(step_.world.host());
+    if (members_only_)
+    {
+        fit_members(), save_members(start_);
+        return;
+    }
+    for (world::MotionMemento* memento : {&start_, &segment_, &end_})
+        if (rewinds_)
+            memento->save(step_.world.host());
+        else
+            memento->fit(step_.world.host());  // within a step it keeps the state at the start of the step
+}
+
+void GroupMotion::fit_members()
+{
+    std::vector<std::uint32_t> bodies, shafts, quantities;
+    const auto add = [](const std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& to)
+    { to.insert(to.end(), from.begin(), from.end()); };
+    for (const Group& g : step_.groups.all)
+        add(g.bodies, bodies), add(g.prescribed_bodies, bodies), add(g.shafts, shafts), add(g.prescribed_shafts, shafts),
+            add(g.quantities, quantities);
+    for (auto* rows : {&bodies, &shafts, &quantities}) std::sort(rows->begin(), rows->end());
+    start_.fit_rows(std::move(bodies), std::move(shafts), std::move(quantities));
+}
+
+void GroupMotion::save_members(world::MotionMemento& memento) const
+{
+    const world::HostTables& host = step_.world.host();
+    for (const Group& group : step_.groups.all)
+    {
+        for (const auto* list : {&group.bodies, &group.prescribed_bodies})
+            for (const std::uint32_t b : *list) memento.save_body(host, b);
+        for (const auto* list : {&group.shafts, &group.prescribed_shafts})
+            for (const std::uint32_t s : *list) memento.save_shaft(host, s);
+        for (const std::uint32_t q : group.quantities) memento.save_quantities(host, q);
+    }
 }
 
 void GroupMotion::clear_reports()
@@ -24,7 +58,10 @@ void GroupMotion::clear_reports()
 
 void GroupMotion::save_start()
 {
-    start_.save(step_.world.host());
+    if (members_only_)
+        save_members(start_);
+    else
+        start_.save(step_.world.host());
     if (!rewinds_) return;
     segment_.save(step_.world.host());
     std::fill(segment_begin_.begin(), segment_begin_.end(), 0.0);

@@ -32,7 +32,8 @@ public:
     /// `memory` must outlive this object.
     void remember_with(GroupMemory* memory) { memory_ = memory; }
     /// To be called after any structural change. `rewinds`: groups may be rewound within a step, so states have to be saved.
-    void rebuild(bool rewinds);
+    /// `members_only`: nothing but the members of groups moves or is looked at, so states of others need not be saved.
+    void rebuild(bool rewinds, bool members_only);
     /// Forces that all systems set up from now on get in addition to those of the schedule; null: none.
     void feel(ExtraForces* extra) { extra_ = extra; }
     const ExtraForces* extra() const { return extra_; }
@@ -82,13 +83,15 @@ private:
         friend auto operator<=>(const Unit&, const Unit&) = default;
     };
     void collect_units(std::span<const std::uint32_t> groups);
+    void fit_members();
+    void save_members(world::MotionMemento& memento) const;
 
     StepState& step_;
     GroupMemory* memory_ = nullptr;
     ExtraForces* extra_ = nullptr;
     world::MotionMemento start_, segment_, end_;
     std::vector<double> segment_begin_;  ///< s, by group
-    bool rewinds_ = false;
+    bool rewinds_ = false, members_only_ = false;
     SystemPool pool_;
     ShaftTorques reactions_;
     RowReportTable row_reports_;

@@ -153,6 +153,7 @@ struct TrialChoice
     Budget budget = Budget::Unlimited;
     double ns = 0;               ///< of Budget::Given
     bool must = false;           ///< refuse the request if the trial cannot be completed
+    bool everything = false;     ///< step the whole scene instead of what the request can affect, for comparison
     double energy_factor = 100;  ///< a swap whose first step multiplies the kinetic energy by more is refused; infinite: no limit
 
     bool is_wanted() const { return budget != Budget::None; }

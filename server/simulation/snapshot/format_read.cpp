@@ -138,7 +138,7 @@ private:
         {
             world::Component component;
             component.id = c.id, component.alive = true;
-            directory_->index_of_id[c.id] = static_cast<std::uint32_t>(directory_->components.size());
+            directory_->index_of_id.edit()[c.id] = static_cast<std::uint32_t>(directory_->components.size());
             directory_->components.push_back(std::move(component));
         }
         return read_cells(sections_, types_, *directory_, image);

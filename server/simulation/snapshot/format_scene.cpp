@@ -205,14 +205,14 @@ Result<model::SceneSpec> read_scene(const std::string& prefix, const std::vector
     out.settings.cameras = cameras.take();
     auto components = rows_of<model::ComponentSpec>(section("components"));
     if (!components) return components.errors();
-    out.components = components.take();
-    auto& list = out.components;
+    std::vector<model::ComponentSpec> list = components.take();
     for (auto done : {distribute(
                           section("groups"), list.size(), [&](std::uint32_t i) -> auto& { return list[i].group; }),
                       distribute(
                           section("commands"), list.size(), [&](std::uint32_t i) -> auto& { return list[i].commands; }),
                       read_fields(section("fields"), list), read_roles(prefix, sections, list)})
         if (!done) return done.errors();
+    out.components = std::move(list);
     return out;
 }
 

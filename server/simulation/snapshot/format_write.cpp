@@ -24,7 +24,7 @@ public:
           of_shaft_(image.shafts.size(), kNoIndex)
     {
         const auto& specs = image.scene->components;
-        const auto& index = image.directory->index_of_id;
+        const auto& index = *image.directory->index_of_id;
         for (std::uint32_t row = 0; row < specs.size(); ++row)
             if (const auto at = index.find(specs[row].id); at != index.end()) of_component_[at->second] = row;
         image.for_each(

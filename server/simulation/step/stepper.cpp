@@ -36,6 +36,12 @@ void Stepper::retire(std::uint32_t component)
 
 std::uint64_t Stepper::state_hash() const { return book_.cache().state_hash(step_.world, step_.world.state_hash(0xcbf29ce484222325ull)); }
 
+void Stepper::search_as(const Stepper& whole, Tick tick, double start_time, double step)
+{
+    continue_after(tick, start_time, step);
+    book_.search_as(whole.book_);
+}
+
 // The nodes of the step tree -------------------------------------------------------------------------------------------
 
 void Stepper::save_start() { motion_.save_start(); }

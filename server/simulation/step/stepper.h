@@ -24,8 +24,8 @@ class Stepper
 public:
     Stepper(world::World& world, int threads);
 
-    /// From the next rebuild on only the flagged components take part (by directory index); null: all. Must outlive this object.
-    void restrict_to(const std::vector<std::uint8_t>* components) { takes_part_ = components; }
+    /// From the next rebuild on only these components take part; null: all. Must outlive this object.
+    void restrict_to(const Selection* part) { part_ = part; }
     /// To be called after any structural change and after changes of parameters: schedule, groups, constraint graph,
     /// materials. On error (a contradictory graph) the world must be put back and rebuilt.
     Result<void> rebuild();
@@ -48,9 +48,15 @@ public:
     {
         step_.frame.tick = tick, step_.frame.start_time = start_time, step_.frame.step = step;
     }
+    /// For a part of a scene: lets the resolutions that adapt choose as they would at present in a step of the whole scene. To be called
+    /// before the rest of the scene is fixed; they write their outputs.
+    void search_as(const Stepper& whole, Tick tick, double start_time, double step);
+    bool adapts() const { return book_.adapts(); }
     std::uint64_t state_hash() const;
 
     // What was derived from the world's structure ---------------------------------------------------------------------
+    /// Those that take part, in id order.
+    std::span<const std::uint32_t> components() const { return part_ ? part_->components : step_.world.in_id_order(); }
     const Schedule& schedule() const { return step_.schedule; }
     const Groups& groups() const { return step_.groups; }
     const ConstraintGraph& graph() const { return step_.graph; }
@@ -133,7 +139,7 @@ private:
     CostBook cost_;
     double departed_work_ = 0, requests_work_ = 0;
 
-    const std::vector<std::uint8_t>* takes_part_ = nullptr;
+    const Selection* part_ = nullptr;
     const Interruption* interruption_ = nullptr;
     Progress* progress_ = nullptr;
     ImageSink* images_ = nullptr;

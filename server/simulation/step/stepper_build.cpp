@@ -72,10 +72,8 @@ void Stepper::connect_graph(Errors& errors)
 {
     add_drives(step_.world, step_.schedule, step_.graph);
     const std::vector<std::uint32_t> shaft_ranks = ranks_of_shafts(step_.world);
-    std::vector<std::uint32_t> component_ranks(step_.world.components().size(), kNoIndex);
-    for (const std::uint32_t i : step_.world.in_id_order()) component_ranks[i] = step_.world.rank(i);
     ShaftDirectory directory;
-    directory.shaft_rank = shaft_ranks, directory.component_rank = component_ranks;
+    directory.shaft_rank = shaft_ranks, directory.component_rank = step_.world.ranks();
     directory.shaft_id = [this](std::uint32_t s) { return step_.world.id_of(Ref{Facet::Shaft, s}); };
     directory.component_id = [this](std::uint32_t c) { return step_.world.id_of(c); };
     if (auto built = step_.graph.build(step_.world.host().shafts, directory); !built)
@@ -86,19 +84,20 @@ void Stepper::connect_graph(Errors& errors)
 
 Result<void> Stepper::rebuild()
 {
-    step_.schedule = build_schedule(step_.world, takes_part_);
+    step_.schedule = build_schedule(step_.world, part_);
     Errors errors;
     connect_materials(errors);
     connect_graph(errors);
     if (!errors.empty()) return errors;
-    step_.groups = build_groups(step_.world, step_.schedule);
+    build_groups(step_.world, step_.schedule, step_.groups, part_);
     step_.all_groups.resize(step_.groups.all.size());
     std::iota(step_.all_groups.begin(), step_.all_groups.end(), 0u);
-    if (Errors refused = book_.rebuild(); !refused.empty()) return refused;
+    if (Errors refused = book_.rebuild(part_ == nullptr); !refused.empty()) return refused;
     const std::size_t components = step_.world.components().size();
     step_.work.resize(components, 0.0), step_.contact_energy.resize(components), step_.reported.contradictory.resize(components, 0);
     const auto& detectors = book_.detectors();
-    motion_.rebuild(std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.locates; }));
+    motion_.rebuild(std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.locates; }),
+                    part_ != nullptr && detectors.empty());
     hard_.rebuild();
     forces_.rebuild();
     advance_.rebuild();
@@ -109,14 +108,22 @@ Result<void> Stepper::rebuild()
     return {};
 }
 
+/// Nobody asks a stepper of a part of the scene for its costs.
 void Stepper::rebuild_costs()
 {
-    std::vector<std::uint32_t> owners(step_.world.components().size(), kNoIndex);
-    for (const std::uint32_t i : step_.world.in_id_order())
-        if (const model::ComponentType* type = step_.world.type_of(i); type && measured_alone(type->info))
-            owners[i] = step_.world.component(i).table;
-    step_.meter.accounts().fit(owners.size(), step_.world.tables().size());
-    cost_.rebuild(owners, step_.world.tables().size());
+    const auto& tables = step_.world.tables();
+    const std::size_t components = step_.world.components().size();
+    std::vector<std::uint32_t> owners;
+    if (!part_)
+    {
+        std::vector<std::uint8_t> alone(tables.size());
+        for (std::size_t t = 0; t < tables.size(); ++t) alone[t] = measured_alone(tables[t]->type().info) ? 1 : 0;
+        owners.assign(components, kNoIndex);
+        for (const std::uint32_t i : step_.world.in_id_order())
+            if (const std::uint32_t table = step_.world.component(i).table; table != kNoIndex && alone[table] != 0) owners[i] = table;
+    }
+    step_.meter.accounts().fit(components, tables.size());
+    cost_.rebuild(owners, tables.size());
     motion_.scratch().measure_with(step_.meter);
 }
 

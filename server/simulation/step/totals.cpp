@@ -13,7 +13,7 @@ Totals totals_of(world::World& world, const Stepper& stepper, double time, Tick 
     Totals t;
     t.work = stepper.departed_work() + stepper.requests_work();
     const world::HostTables& host = world.host();
-    for (const std::uint32_t i : world.in_id_order())
+    for (const std::uint32_t i : stepper.components())
     {
         const world::Component& c = world.component(i);
         if (c.facet == Facet::Body && host.bodies.dynamic(c.host_index))
@@ -36,6 +36,20 @@ Totals totals_of(world::World& world, const Stepper& stepper, double time, Tick 
     return t;
 }
 
+Energies energies_of(world::World& world, const Stepper& stepper, double time, Tick tick)
+{
+    Energies out;
+    const world::HostTables& host = world.host();
+    for (const std::uint32_t i : stepper.components())
+    {
+        const world::Component& c = world.component(i);
+        if (c.facet == Facet::Body) out.kinetic += host.bodies.kinetic_energy(c.host_index);
+        if (c.facet == Facet::Shaft) out.kinetic += host.shafts.kinetic_energy(c.host_index);
+    }
+    out.stored = stored_energy_of(world, stepper, time, tick);
+    return out;
+}
+
 double stored_energy_of(world::World& world, const Stepper& stepper, double time, Tick tick)
 {
     StoredEnergy stored;
@@ -51,11 +65,12 @@ double stored_energy_of(world::World& world, const Stepper& stepper, double time
     return stored.joule;
 }
 
-double least_energy(const world::HostTables& host, std::span<const double> radius_of_body, double h)
+double least_energy(const world::HostTables& host, std::span<const std::uint32_t> bodies, std::span<const std::uint32_t> shafts,
+                    std::span<const double> radius_of_body, double h)
 {
     constexpr double kShare = 0.03;
     double sum = 0;
-    for (std::uint32_t b = 0; b < host.bodies.size(); ++b)
+    for (const std::uint32_t b : bodies)
     {
         if (!host.bodies.dynamic(b)) continue;
         const double radius = b < radius_of_body.size() && radius_of_body[b] > 0 && std::isfinite(radius_of_body[b])
@@ -63,7 +78,7 @@ double least_energy(const world::HostTables& host, std::span<const double> radiu
                                   : std::sqrt((host.bodies.inertia_B[b](0, 0) + host.bodies.inertia_B[b](1, 1)) / host.bodies.mass[b]);
         sum += 0.5 * host.bodies.mass[b] * (kShare * radius / h) * (kShare * radius / h);
     }
-    for (std::uint32_t s = 0; s < host.shafts.size(); ++s)
+    for (const std::uint32_t s : shafts)
         if (host.shafts.dynamic(s)) sum += 0.5 * host.shafts.inertia[s] * (kShare / h) * (kShare / h);
     return sum;
 }

@@ -42,11 +42,6 @@ void GroupSystem::make_shortlists(Selected& selected)
     activate();
     selected.shortlists.clear();
     const world::Table& table = *frame_.world->tables()[selected.block->table];
-    const auto is_active = [&](Ref r)
-    {
-        if (r.facet == Facet::Body) return scratch_->active_bodies[r.index] != 0;
-        return r.facet != Facet::Shaft || scratch_->active_shafts[r.index] != 0;
-    };
     for (const Role& role : table.schema().roles())
     {
         if (!role.many || !role.independent) continue;
@@ -56,7 +51,7 @@ void GroupSystem::make_shortlists(Selected& selected)
             if (all.size() <= kLong) continue;
             Shortlist& s = selected.shortlists.emplace_back();
             s.all = &all;
-            std::copy_if(all.begin(), all.end(), std::back_inserter(s.active), is_active);
+            scratch_->list_active(all, s.active);
         }
     }
     const auto by_address = [](const Shortlist& a, const Shortlist& b) { return std::less<>()(a.all, b.all); };

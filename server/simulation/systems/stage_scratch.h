@@ -21,6 +21,8 @@ public:
     void activate(const void* owner, std::uint64_t configuration, std::span<const std::uint32_t> bodies,
                   std::span<const std::uint32_t> shafts);
     bool is_active(const void* owner, std::uint64_t configuration) const { return owner_ == owner && configuration_ == configuration; }
+    /// Those members of a list of participants, in its order, that are active.
+    void list_active(const RefList& all, RefList& out);
     void book_body(std::uint32_t b) { accounted_bodies[b] = 1; }
     void book_shaft(std::uint32_t s) { accounted_shafts[s] = 1; }
 
@@ -35,13 +37,23 @@ public:
     void measure_with(CostMeter& meter) { meter_ = &meter; }
 
 private:
+    /// Where the objects of a long list of participants are in it; kNoIndex: not there.
+    struct Places
+    {
+        const RefList* all = nullptr;
+        std::vector<std::uint32_t> of_body, of_shaft;  ///< by host row
+        std::vector<std::uint32_t> others;             ///< of all other participants, which count as active
+    };
     void deactivate();
+    const Places& places_in(const RefList& all);
 
     CostMeter own_meter_;
     CostMeter* meter_ = &own_meter_;
     const void* owner_ = nullptr;
     std::uint64_t configuration_ = 0;
     std::vector<std::uint32_t> set_bodies_, set_shafts_;
+    std::vector<Places> places_;
+    std::vector<std::uint32_t> found_;
 };
 
 }  // namespace plab::simulation

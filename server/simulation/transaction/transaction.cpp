@@ -27,31 +27,6 @@ Transaction::Transaction(Run& run, RunContext& context, RunOperations& operation
     reply_.request = request.id, reply_.step = run.clock.tick;
 }
 
-Transaction::State Transaction::capture() const
-{
-    Stepper& stepper = run_->stepper();
-    return {run_->world().backup(),  stepper.contacts(),      stepper.work(),    stepper.contact_energy(),
-            stepper.departed_work(), stepper.requests_work(), stepper.reported()};
-}
-
-void Transaction::restore(const State& state, bool structure_changed)
-{
-    run_->world().restore(state.world);
-    // Opaque parts (a script's compiled chunk) cannot be part of the backup: they are prepared again from the restored parameters.
-    for (const std::set<std::uint32_t>* made : {&prepared_, &run_->changed_by_scripts})
-        for (const std::uint32_t i : *made)
-            if (i < run_->world().components().size() && run_->world().component(i).alive) (void)run_->world().prepare(i);
-    // Preparing overwrites host rows with values from parameters, but later values (a body's pose) are in the backup.
-    run_->world().host() = state.world.host;
-    if (structure_changed) (void)run_->stepper().rebuild();
-    run_->world().host() = state.world.host;
-    run_->stepper().contacts() = state.contacts;
-    run_->stepper().work() = state.work, run_->stepper().contact_energy() = state.contact_energy;
-    run_->stepper().reported() = state.reported;
-    run_->stepper().reported().contradictory.resize(run_->world().components().size(), 0);
-    run_->stepper().departed_work() = state.departed_work, run_->stepper().requests_work() = state.requests_work;
-}
-
 Result<std::uint32_t> Transaction::find_typed(const std::string& id) const
 {
     const std::uint32_t i = run_->world().find(id);
@@ -148,9 +123,10 @@ Result<void> Transaction::apply_one(const AddOperation& op)
     return run_->world().add(op.fragment);
 }
 
-void Transaction::note_added(const std::vector<model::ComponentSpec>& specs, std::size_t first)
+void Transaction::note_added(const model::ComponentList& specs, std::size_t first)
 {
     structural_ = true;
+    saved_.add_backup();
     for (std::size_t k = first; k < specs.size(); ++k) touched_.push_back(specs[k].id), added_.push_back(specs[k].id);
 }
 
@@ -172,6 +148,7 @@ Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
 Result<void> Transaction::apply_one(const RemoveOperation& op)
 {
     structural_ = true;
+    saved_.add_backup();
     const std::uint32_t top = run_->world().find(op.id);
     if (top == kNoIndex)
     {

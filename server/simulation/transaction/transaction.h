@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "simulation/run/run.h"
+#include "simulation/transaction/saved_state.h"
 #include "simulation/transaction/trial.h"
 
 namespace plab::simulation
@@ -26,17 +27,17 @@ public:
 
 /// A transaction: back up, apply, try, then commit or roll back.
 ///
-/// First everything that a step can change is copied (State). If the request swaps components, one trial step with the old components is
-/// made for comparison. Then the operations are applied one after the other, each on the result of the one before, the stepper is rebuilt
-/// for the new structure, and one trial step is made with the result (trial.h). Trial steps are always undone; they only yield
-/// measurements.
+/// First everything that the operations can change is saved (saved_state.h): for an exchange, the components that it names. If the request
+/// swaps components, one trial step with the old components is made for comparison. Then the operations are applied one after the other,
+/// each on the result of the one before, the stepper is rebuilt for the new structure, and one trial step is made with the result
+/// (trial.h). Trial steps are always undone; they only yield measurements.
 ///
 /// The request is refused if an operation or the rebuild fails, if the trial step fails although the step with the old components did
 /// not, if a swap creates energy, or if the trial exceeds its budget and the request demands a trial. Then everything is rolled back:
 /// world, contact caches, energy ledger, reported warnings and clock are bit for bit what they were, so a refused request leaves no trace
-/// in the run. The rollback restores all of that and not only what the operations named, because rebuilding may also have changed groups,
-/// contacts and shaft anchors of other objects. Opaque parts, such as the compiled chunk of a script, cannot be copied; they are prepared
-/// again from the restored parameters. Operations that concern only the clock need a copy of the clock only.
+/// in the run. That includes what rebuilding may have changed although no operation named it: contacts, materials and shaft anchors.
+/// Opaque parts, such as the compiled chunk of a script, cannot be copied; they are prepared again from the restored parameters.
+/// Operations that concern only the clock need a copy of the clock only.
 class Transaction
 {
 public:
@@ -45,26 +46,13 @@ public:
     Reply run();
 
 private:
-    /// Everything that a step can change, apart from opaque parts.
-    struct State
-    {
-        world::Backup world;
-        ContactCache contacts;
-        std::vector<double> work;
-        std::vector<ContactEnergy> contact_energy;
-        double departed_work, requests_work;
-        Reported reported;
-    };
-    State capture() const;
-    void restore(const State& state, bool structure_changed);
-
     Result<void> apply(const Operation& operation);
     template <class Op>
     Result<void> go_back(const Op& op);
     Result<void> apply_one(const AddOperation& op);
     Result<void> apply_one(const AddBlueprintOperation& op);
     /// For an addition: the components from the `first` one on are to be new.
-    void note_added(const std::vector<model::ComponentSpec>& specs, std::size_t first);
+    void note_added(const model::ComponentList& specs, std::size_t first);
     Result<void> apply_one(const RemoveOperation& op);
     Result<void> apply_one(const SwapOperation& op);
     Result<void> apply_one(const SetOperation& op);
@@ -80,6 +68,9 @@ private:
     using Clock = std::tuple<bool, std::int64_t, double, model::StepLength, Tick, double>;
     Clock read_clock() const;
     void write_clock(const Clock& clock);
+    /// Of the request, with patterns resolved.
+    const std::vector<Operation>& operations() const { return operations_.empty() ? request_->operations : operations_; }
+    bool changes_contacts() const;
     void apply_all();
     void run_on_clock();
     void run_on_scene(bool swaps);
@@ -111,13 +102,15 @@ private:
     RunOperations* whole_;
     const Request* request_;
     Reply reply_;
-    std::set<std::uint32_t> prepared_;   ///< components whose opaque parts were rebuilt, to be rebuilt again after a rollback
-    std::vector<Operation> operations_;  ///< of the request, with patterns resolved
-    std::uint64_t trial_begin_ = 0;      ///< ns
+    SavedState saved_;
+    std::set<std::uint32_t> prepared_;      ///< components whose opaque parts were rebuilt, to be rebuilt again after a rollback
+    std::vector<Operation> operations_;     ///< of the request, with patterns resolved
+    std::vector<std::string> known_types_;  ///< names of types, once they are needed
+    std::uint64_t trial_begin_ = 0;         ///< ns
     bool old_tried_ = false;
     TrialResult old_;
-    std::vector<std::size_t> held_before_;           ///< contact points, by swap
-    double energy_before_ = 0, energy_applied_ = 0;  ///< J, of the whole scene at the boundary
+    std::vector<std::size_t> held_before_;                                ///< contact points, by swap
+    double energy_before_ = 0, energy_applied_ = 0, kinetic_before_ = 0;  ///< J, of the whole scene at the boundary
     bool structural_ = false;
     std::vector<std::string> touched_;  ///< ids that were added, removed or changed
     std::vector<std::string> added_;    ///< by add operations

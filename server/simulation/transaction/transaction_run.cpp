@@ -32,6 +32,7 @@ std::size_t Transaction::held_points(std::uint32_t component) const
         };
         return std::any_of(stepper.detectors().begin(), stepper.detectors().end(), is_it);
     };
+    if (!concerns_contacts(run_->world(), component)) return 0;
     std::size_t n = 0;
     for (const PairState& p : stepper.contacts().pairs()) n += p.resting && !p.ahead && concerned(p.detector) ? p.count : 0;
     for (const ForcePair& p : stepper.contacts().force_pairs()) n += concerned(p.detector) ? p.count : 0;
@@ -95,9 +96,25 @@ void Transaction::write_clock(const Clock& clock)
         clock;
 }
 
+/// Whether the contacts may change, apart from additions and removals.
+bool Transaction::changes_contacts() const
+{
+    const auto concerned = [&](const std::string& id)
+    {
+        const auto component = find_typed(id);
+        return !component || concerns_contacts(run_->world(), *component);
+    };
+    for (const Operation& op : operations())
+    {
+        if (const auto* swap = std::get_if<SwapOperation>(&op); swap && concerned(swap->id)) return true;
+        if (const auto* set = std::get_if<SetOperation>(&op); set && concerned(set->id)) return true;
+    }
+    return false;
+}
+
 void Transaction::apply_all()
 {
-    for (const Operation& op : operations_.empty() ? request_->operations : operations_)
+    for (const Operation& op : operations())
         if (auto done = apply(op); !done)
         {
             reply_.errors = done.errors();
@@ -117,8 +134,9 @@ Result<void> Transaction::build_and_try(TrialScope& scope, bool swaps)
 {
     if (auto built = run_->stepper().rebuild(); !built) return model::first_of_alike(built.errors());
     report_contacts();
-    const Totals now = run_->totals();
+    const Energies now = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);
     energy_applied_ = now.kinetic + now.stored;
+    run_->stepper().requests_work() += now.kinetic - kinetic_before_;
     if (!request_->trial.is_wanted())
     {
         if (swaps) write_reports({});
@@ -135,23 +153,23 @@ void Transaction::run_on_scene(bool swaps)
         reply_.errors = expanded.errors();
         return;
     }
-    const State before = capture();
-    const Clock clock = read_clock();
-    const Totals first = run_->totals();
-    energy_before_ = first.kinetic + first.stored;
     trial_begin_ = now_ns();
+    saved_.begin(*run_, changes_contacts());
+    const Clock clock = read_clock();
+    const Energies first = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);
+    energy_before_ = first.kinetic + first.stored, kinetic_before_ = first.kinetic;
     TrialScope scope(run_->world());
     if (swaps && request_->trial.is_wanted()) mark_touched(scope), try_old(scope);
     apply_all();
-    if (reply_.errors.empty()) run_->stepper().requests_work() += run_->totals().kinetic - first.kinetic;
     if (reply_.errors.empty())
         if (auto done = build_and_try(scope, swaps); !done) reply_.errors = done.errors();
     if (reply_.errors.empty())
     {
+        saved_.end();
         run_->world().release_parked();
         return;
     }
-    restore(before, true);
+    saved_.restore(prepared_);
     write_clock(clock);
 }
 

@@ -81,6 +81,7 @@ Result<void> Transaction::make_missing(model::ComponentSpec& spec, const Schema&
         {
             model::SceneSpec fragment;
             fragment.components.push_back(part);
+            saved_.add_backup();
             if (auto added = run_->world().add(fragment); !added) return added;
             touched_.push_back(part.id);
         }
@@ -101,7 +102,8 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
     if (const std::string why = type.why_not_exchangeable(old); !why.empty())
         return Error{{}, element, "cannot be exchanged for " + op.type + ": " + why};
 
-    model::ComponentSpec spec = *world.scene().find(world.id_of(component));
+    const model::SceneSpec& scene = world.scene();
+    model::ComponentSpec spec = scene.components[scene.position_of(world.id_of(component), component)];
     spec.type = op.type;
     spec.fields.clear();
     std::vector<std::string> names;
@@ -157,7 +159,8 @@ Result<void> Transaction::apply_one(const SwapOperation& asked)
     if (!component) return component.errors();
     SwapReport report;
     report.id = run_->world().id_of(*component), report.from = run_->world().type_of(*component)->info.name;
-    auto name = model::full_type_name(asked.type, run_->world().types().names(), report.from.substr(0, report.from.rfind('/') + 1));
+    if (known_types_.empty()) known_types_ = run_->world().types().names();
+    auto name = model::full_type_name(asked.type, known_types_, report.from.substr(0, report.from.rfind('/') + 1));
     if (!name) return Error{{}, report.id + " (" + report.from + ")", name.error().reason};
     SwapOperation op = asked;
     op.type = report.to = name.take();

@@ -22,6 +22,7 @@ constexpr double kStepsOfBudget = 10;
 /// Share of the budget after which no step is repeated for the sake of timing. kMeasureUnlimited, in ns, applies if there is no budget.
 constexpr double kMeasureOld = 0.45, kMeasureNew = 0.95;
 constexpr double kMeasureUnlimited = 2e7;
+constexpr double kMostToMeasure = 4e6;  // ns, of a budget that the request does not name
 
 bool adds(const Operation& op) { return std::holds_alternative<AddOperation>(op) || std::holds_alternative<AddBlueprintOperation>(op); }
 
@@ -105,7 +106,8 @@ void Transaction::mark_touched(TrialScope& scope) const
         else
             scope.add_everything();
     };
-    for (const Operation& operation : operations_.empty() ? request_->operations : operations_)
+    if (request_->trial.everything) scope.add_everything();
+    for (const Operation& operation : operations())
     {
         if (const auto* swap = std::get_if<SwapOperation>(&operation))
             mark(swap->id);
@@ -145,7 +147,7 @@ double Transaction::budget_ns() const
 std::vector<std::uint32_t> Transaction::swapped() const
 {
     std::vector<std::uint32_t> out;
-    for (const Operation& op : operations_.empty() ? request_->operations : operations_)
+    for (const Operation& op : operations())
         if (const auto* swap = std::get_if<SwapOperation>(&op))
         {
             // A component that an earlier operation of this request adds does not exist yet: it has no error to compare.
@@ -158,7 +160,9 @@ std::vector<std::uint32_t> Transaction::swapped() const
 std::uint64_t Transaction::measure_until(double share) const
 {
     if (request_->trial.budget == TrialChoice::Budget::Unlimited) return now_ns() + static_cast<std::uint64_t>(kMeasureUnlimited);
-    return trial_begin_ + static_cast<std::uint64_t>(std::clamp(share * budget_ns(), 0.0, 1e18));
+    // The budget of a large scene is large because one step has to fit into it, not for the sake of timing.
+    const double ns = request_->trial.budget == TrialChoice::Budget::Automatic ? std::min(kMostToMeasure, budget_ns()) : budget_ns();
+    return trial_begin_ + static_cast<std::uint64_t>(std::clamp(share * ns, 0.0, 1e18));
 }
 
 void Transaction::try_old(TrialScope& scope)

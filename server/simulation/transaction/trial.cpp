@@ -14,6 +14,20 @@ namespace
 
 constexpr int kMostTrialRounds = 4;
 
+/// Notes changes in another log for a while: what a trial changes is no change by the request.
+class NoteScope
+{
+public:
+    NoteScope(world::World& world, world::UndoLog* log) : world_(world), before_(world.note_in(log)) {}
+    ~NoteScope() { (void)world_.note_in(before_); }
+    NoteScope(const NoteScope&) = delete;
+    NoteScope& operator=(const NoteScope&) = delete;
+
+private:
+    world::World& world_;
+    world::UndoLog* before_;
+};
+
 std::string failure_in(const std::vector<Event>& events)
 {
     for (const Event& e : events)
@@ -21,82 +35,114 @@ std::string failure_in(const std::vector<Event>& events)
     return {};
 }
 
-/// J, of prescribed objects: what they drive may well reach the same speed.
-double kinetic_of_prescribed(const world::HostTables& host)
+/// J, of the prescribed objects in the scope: what they drive may well reach the same speed.
+double kinetic_of_prescribed(const world::HostTables& host, const TrialScope& scope)
 {
     double sum = 0;
-    for (std::uint32_t b = 0; b < host.bodies.size(); ++b)
+    for (const std::uint32_t b : scope.bodies())
         if (host.bodies.motion[b] == Motion::Kinematic)
             sum += 0.5 * host.bodies.mass[b] * length_squared(host.bodies.velocity[b]) +
                    0.5 * dot(host.bodies.angular_velocity[b], host.bodies.angular_momentum[b]);
-    for (std::uint32_t s = 0; s < host.shafts.size(); ++s)
+    for (const std::uint32_t s : scope.shafts())
         if (host.shafts.motion[s] == Motion::Kinematic) sum += 0.5 * host.shafts.inertia[s] * host.shafts.speed[s] * host.shafts.speed[s];
     return std::isfinite(sum) ? sum : 0;
 }
 
 }  // namespace
 
-Trial::Trial(world::World& world, const Stepper& stepper, const TrialStep& step)
-    : world_(world), stepper_(stepper), step_(step), host_(world.host())
-{
-}
-
-void Trial::fix_all_others(const TrialScope& scope)
-{
-    if (scope.has_everything()) return;
-    Bodies& bodies = world_.host().bodies;
-    for (std::uint32_t b = 0; b < bodies.size(); ++b)
-        if (!scope.holds({Facet::Body, b})) bodies.motion[b] = Motion::Static, bodies.inverse_mass[b] = 0, bodies.inverse_inertia_B[b] = {};
-    Shafts& shafts = world_.host().shafts;
-    for (std::uint32_t s = 0; s < shafts.size(); ++s)
-        if (!scope.holds({Facet::Shaft, s})) shafts.motion[s] = Motion::Static, shafts.inverse_inertia[s] = 0;
-}
+Trial::Trial(world::World& world, const Stepper& stepper, const TrialStep& step) : world_(world), stepper_(stepper), step_(step) {}
 
 void Trial::keep_cells(const TrialScope& scope)
 {
     kept_.clear(), cells_.clear();
-    for (const std::uint32_t i : world_.in_id_order())
+    for (const std::uint32_t i : scope.components().components)
     {
-        if (scope.components()[i] == 0 || world_.component(i).table == kNoIndex) continue;
+        if (world_.component(i).table == kNoIndex) continue;
         kept_.push_back(i);
         world_.table_of(i).save(world_.component(i).row, world::kLiveKinds, cells_);
     }
 }
 
-/// Restores the values of the components, what was prepared from them, and the host tables.
-void Trial::put_back()
+/// The contacts of the scene may be many more than those of the scope, so they are looked through once.
+void Trial::keep_contacts(const TrialScope& scope)
+{
+    if (scope.has_everything())
+        contacts_.copy(stepper_.contacts());
+    else if (scope.bodies().empty())
+        contacts_.copy_if(
+            stepper_.contacts(), [](const PairKey&) { return false; }, [](Ref, Ref) { return false; });
+    else
+    {
+        const std::vector<std::uint8_t>& flags = scope.components().flags;
+        const std::vector<std::uint32_t>& order = world_.in_id_order();
+        contacts_.copy_if(
+            stepper_.contacts(), [&](const PairKey& key) { return flags[order[key.a]] != 0 || flags[order[key.b]] != 0; },
+            [&](Ref a, Ref b) { return scope.holds(a) || scope.holds(b); });
+    }
+}
+
+void Trial::load_cells()
 {
     ByteReader cells(cells_.bytes());
     for (const std::uint32_t i : kept_) world_.table_of(i).load(world_.component(i).row, world::kLiveKinds, cells);
+}
+
+/// Restores the values of the components, what was prepared from them, and the host tables.
+void Trial::put_back()
+{
+    load_cells();
+    prepare_again();
+    host_.restore(world_.host());
+}
+
+/// Brings the scope to the boundary for another step; all others stay fixed.
+void Trial::put_back_moved()
+{
+    load_cells();
+    prepare_again();
+    host_.restore_moved(world_.host());
+}
+
+/// Prepares what scripts have changed from the restored parameters. That may overwrite values which were restored: of the changed
+/// components by those of the log, and of those in the scope by the ones that were kept, which the log may have noted within the step.
+void Trial::prepare_again()
+{
+    if (prepared_.empty() && host_.changes().entries.empty()) return;
+    const NoteScope none(world_, nullptr);
     for (const std::uint32_t i : prepared_) (void)world_.prepare(i);
     prepared_.clear();
-    world_.host() = host_;
+    world_.restore_values(host_.changes());
+    load_cells();
 }
 
 /// Brings the partial stepper to the boundary, as one that continues from a snapshot would be.
-void Trial::set_up(Stepper& part, const TrialScope& scope) const
+void Trial::set_up(Stepper& part) const
 {
-    const auto concerns = [&](const auto& p) { return scope.holds(p.a) || scope.holds(p.b); };
-    part.contacts().copy(stepper_.contacts());
-    if (!scope.has_everything())
-    {
-        part.contacts().drop_if([&](const PairState& p) { return !concerns(p); });
-        std::erase_if(part.contacts().force_pairs(), [&](const ForcePair& p) { return !concerns(p); });
-    }
+    part.contacts().copy(contacts_);
     part.reported() = stepper_.reported();
     part.continue_after(stepper_.frame().tick, stepper_.frame().start_time, stepper_.frame().step);
+}
+
+/// How impacts are found may depend on all bodies of a detection, so it is chosen before the others are fixed.
+void Trial::choose_search(Stepper& part)
+{
+    host_.restore(world_.host());
+    part.search_as(stepper_, step_.tick, step_.start, step_.h);
+    load_cells();
+    host_.fix_others(world_.host());
 }
 
 void Trial::apply_changes(void* self, std::vector<ParameterChange>& changes)
 {
     auto& trial = *static_cast<Trial*>(self);
     bool structure = false;
+    const NoteScope noted(trial.world_, &trial.host_.changes());
     for (const ParameterChange& change : changes)
     {
         // A change that a script makes to a component outside the scope is ignored here, because only components in the scope can be
         // restored.
         const std::uint32_t i = trial.world_.find(change.component);
-        if (std::find(trial.kept_.begin(), trial.kept_.end(), i) == trial.kept_.end()) continue;
+        if (i == kNoIndex || trial.selection_->flags[i] == 0) continue;
         const Facet facet = trial.world_.component(i).facet;
         if (trial.world_.component(i).quarantined) continue;  // setting a field would end its quarantine, also after the trial
         const Value before = trial.world_.get(i, change.name);
@@ -117,7 +163,7 @@ bool Trial::grow(TrialScope& scope, const Stepper& part) const
     {
         for (const Ref r : {a, b})
         {
-            if (r.facet != Facet::Body || scope.holds(r) || host_.bodies.motion[r.index] == Motion::Static) continue;
+            if (r.facet != Facet::Body || scope.holds(r) || world_.host().bodies.motion[r.index] == Motion::Static) continue;
             scope.add(r);
             grown = true;
         }
@@ -133,14 +179,16 @@ bool Trial::grow(TrialScope& scope, const Stepper& part) const
     return grown;
 }
 
-TrialResult Trial::once(Stepper& part, const std::vector<std::uint32_t>& components, const Interruption& deadline)
+TrialResult Trial::once(Stepper& part, const TrialScope& scope, const std::vector<std::uint32_t>& components, const Interruption& deadline)
 {
     TrialResult out;
     const Totals first = totals_of(world_, part, step_.start, step_.tick);
     out.before = first.kinetic + first.stored;
-    out.moving = first.kinetic + kinetic_of_prescribed(world_.host());
-    out.least = least_energy(world_.host(), part.radius_of_body(), step_.h);
+    out.moving = first.kinetic + kinetic_of_prescribed(world_.host(), scope);
+    out.least = least_energy(world_.host(), scope.bodies(), scope.shafts(), stepper_.radius_of_body(), step_.h);
+    const std::uint64_t begin = now_ns();
     part.step(step_.tick, step_.start, step_.h);
+    first_ns_ = now_ns() - begin;
     out.given_up = deadline.has_interrupted();
     out.failure = failure_in(part.events());
     const Totals then = totals_of(world_, part, step_.start + step_.h, step_.tick + 1);
@@ -151,25 +199,26 @@ TrialResult Trial::once(Stepper& part, const std::vector<std::uint32_t>& compone
 }
 
 /// The first step of a new stepper has cold caches and allocates memory, so its time is not typical, and a single step shows no spread.
-/// No step is started that would hardly finish in time.
-Spread Trial::measure(Stepper& part, const TrialScope& scope, const Interruption& deadline, std::uint64_t until_ns)
+/// No step is started that would hardly finish in time; a warm step is expected to take at least a quarter of the first one's time.
+Spread Trial::measure(Stepper& part, const Interruption& deadline, std::uint64_t until_ns)
 {
     constexpr std::size_t kRepeats = 11;
     std::vector<double> ns;
-    std::uint64_t longest = 0;
+    std::uint64_t longest = first_ns_ / 4;
+    host_.fix_others(world_.host());
     for (std::uint64_t begin = now_ns(); ns.size() < kRepeats && begin + longest < until_ns && !deadline.due();)
     {
-        fix_all_others(scope);
-        set_up(part, scope);
+        set_up(part);
         const std::uint64_t before = now_ns();
         part.step(step_.tick, step_.start, step_.h);
         const std::uint64_t after = now_ns();
-        put_back();
+        put_back_moved();
         if (deadline.has_interrupted()) break;
         ns.push_back(static_cast<double>(after - before));
         const std::uint64_t end = now_ns();
         longest = std::max(longest, end - begin), begin = end;
     }
+    put_back();
     return spread_of(ns);
 }
 
@@ -182,27 +231,29 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         if (round + 1 == kMostTrialRounds) scope.add_everything();
         scope.close(stepper_);
         scope.choose_components();
-        keep_cells(scope);
-        fix_all_others(scope);
-        const world::HostTables fixed = world_.host();
+        keep_cells(scope), keep_contacts(scope);
+        host_.save(world_.host(), scope);
+        host_.fix_others(world_.host());
         Stepper part(world_, 1);
         part.restrict_to(scope.has_everything() ? nullptr : &scope.components());
         part.set_interruption(&deadline, &progress);
         part.on_changes(&Trial::apply_changes, this);
-        part_ = &part;
+        part_ = &part, selection_ = &scope.components();
         bool grown = false, tried = false;
         if (auto built = part.rebuild(); !built)
             out.failure = built.error().text();
         else
         {
-            world_.host() = fixed;  // a stepper that derives values from the structure may have written to the tables
-            set_up(part, scope);
-            out = once(part, components, deadline);
+            // The stepper may have written values that it derives from the structure.
+            host_.restore_derived(world_.host()), host_.restore_moved(world_.host());
+            if (part.adapts() && !scope.has_everything()) choose_search(part);
+            set_up(part);
+            out = once(part, scope, components, deadline);
             tried = !out.given_up;
         }
         put_back();  // before the scope grows: from here on nothing is fixed
         if (tried) grown = grow(scope, part);
-        if (tried && !grown && out.failure.empty()) out.cost = measure(part, scope, deadline, until_ns);
+        if (tried && !grown && out.failure.empty()) out.cost = measure(part, deadline, until_ns);
         part_ = nullptr;
         if (!grown) break;
     }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "simulation/requests/requests.h"
-#include "simulation/transaction/trial_scope.h"
+#include "simulation/transaction/trial_memento.h"
 
 namespace plab::simulation
 {
@@ -31,8 +31,9 @@ struct TrialResult
 };
 
 /// A trial uses a stepper of its own for the objects in the scope, starting from the present state of the world. All other objects are
-/// fixed meanwhile, and nothing inside the scene's own stepper is touched. So the cost of a trial depends only on the affected part of
-/// the scene, and the trial cannot change a bit of the run.
+/// fixed meanwhile, and nothing inside the scene's own stepper is touched. Only the objects in the scope, and the components that act on
+/// them, are saved and restored. So the cost of a trial depends on the affected part of the scene, apart from a few passes over lists of
+/// all components, and the trial cannot change a bit of the run.
 class Trial
 {
 public:
@@ -44,23 +45,30 @@ public:
                     std::uint64_t until_ns);
 
 private:
-    void fix_all_others(const TrialScope& scope);
-    void set_up(Stepper& part, const TrialScope& scope) const;
+    void set_up(Stepper& part) const;
+    void choose_search(Stepper& part);
+    void keep_contacts(const TrialScope& scope);
     void keep_cells(const TrialScope& scope);
     void put_back();
+    void put_back_moved();
+    void load_cells();
+    void prepare_again();
     bool grow(TrialScope& scope, const Stepper& part) const;
-    TrialResult once(Stepper& part, const std::vector<std::uint32_t>& components, const Interruption& deadline);
-    Spread measure(Stepper& part, const TrialScope& scope, const Interruption& deadline, std::uint64_t until_ns);
+    TrialResult once(Stepper& part, const TrialScope& scope, const std::vector<std::uint32_t>& components, const Interruption& deadline);
+    Spread measure(Stepper& part, const Interruption& deadline, std::uint64_t until_ns);
     static void apply_changes(void* self, std::vector<ParameterChange>& changes);
 
     world::World& world_;
     const Stepper& stepper_;  ///< of the scene
     TrialStep step_;
-    world::HostTables host_;
-    std::vector<std::uint32_t> kept_;  ///< components
+    TrialMemento host_;
+    ContactCache contacts_;            ///< of the scope
+    std::vector<std::uint32_t> kept_;  ///< components, in id order
     ByteWriter cells_;                 ///< their values
     std::set<std::uint32_t> prepared_;
-    Stepper* part_ = nullptr;  ///< the stepper in use during a trial
+    std::uint64_t first_ns_ = 0;            ///< duration of the first step
+    Stepper* part_ = nullptr;               ///< the stepper in use during a trial
+    const Selection* selection_ = nullptr;  ///< its components
 };
 
 }  // namespace plab::simulation

@@ -1,6 +1,8 @@
 #include "simulation/transaction/trial_scope.h"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 namespace plab::simulation
@@ -12,13 +14,41 @@ bool is_object(Facet facet) { return facet == Facet::Body || facet == Facet::Sha
 
 bool names_objects(const Role& role) { return std::any_of(role.facets.begin(), role.facets.end(), is_object); }
 
+/// For each body, those that it touches: known pairs, in either direction. Built once, so that a scope is closed in a time that is linear
+/// in the pairs, however long the chains of touching bodies are.
+class TouchingBodies
+{
+public:
+    TouchingBodies(const world::World& world, const ContactCache& contacts)
+    {
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+        const auto& order = world.in_id_order();
+        const auto body_of = [&](std::uint32_t rank) { return world.component(order[rank]).host_index; };
+        pairs.reserve(contacts.keys().size() + contacts.force_pairs().size());
+        for (const PairKey& key : contacts.keys()) pairs.emplace_back(body_of(key.a), body_of(key.b));
+        for (const ForcePair& p : contacts.force_pairs()) pairs.emplace_back(p.a.index, p.b.index);
+        begin_.assign(world.host().bodies.size() + 1, 0);
+        for (const auto& [a, b] : pairs) ++begin_[a], ++begin_[b];
+        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+        others_.resize(2 * pairs.size());
+        for (const auto& [a, b] : pairs) others_[--begin_[a]] = b, others_[--begin_[b]] = a;
+    }
+    template <class Visit>
+    void for_each_at(std::uint32_t body, Visit visit) const
+    {
+        for (std::uint32_t k = begin_[body]; k < begin_[body + 1]; ++k) visit(others_[k]);
+    }
+
+private:
+    std::vector<std::uint32_t> begin_, others_;  ///< by body, and one more
+};
+
 }  // namespace
 
 void TrialScope::fit()
 {
     const world::HostTables& host = world_->host();
     bodies_.resize(host.bodies.size(), 0), shafts_.resize(host.shafts.size(), 0), quantities_.resize(host.quantities.size(), 0);
-    fixed_.resize(host.bodies.size(), 0);
     visited_.resize(world_->components().size(), 0);
 }
 
@@ -31,6 +61,7 @@ bool TrialScope::mark(Ref object)
     if (object.facet == Facet::Quantities) list = &quantities_;
     if (!list || (*list)[object.index] != 0) return false;
     (*list)[object.index] = 1;
+    marked_.push_back(object);
     return true;
 }
 
@@ -42,7 +73,7 @@ void TrialScope::add(Ref object)
 
 void TrialScope::add_object(Ref object)
 {
-    if (!mark(object) && object.facet == Facet::Body) fixed_[object.index] = 1;
+    if (!mark(object) && object.facet == Facet::Body) fixed_.push_back(object.index);
 }
 
 void TrialScope::add(std::uint32_t component)
@@ -75,7 +106,7 @@ bool TrialScope::mark_participants(std::uint32_t component)
     {
         if (!names_objects(role)) continue;
         any = true;
-        for (const Ref r : world_->participants(component, role)) (void)mark(r);
+        world_->for_each_participant(component, role, [&](Ref r) { (void)mark(r); });
     }
     return any;
 }
@@ -98,46 +129,24 @@ bool TrialScope::holds(Ref object) const
     return object.facet == Facet::Quantities && in(quantities_);
 }
 
-std::size_t TrialScope::objects() const
-{
-    std::size_t n = 0;
-    for (const auto* list : {&bodies_, &shafts_, &quantities_}) n += static_cast<std::size_t>(std::count(list->begin(), list->end(), 1));
-    return n;
-}
+std::size_t TrialScope::objects() const { return marked_.size(); }
 
 /// Groups that read one another are advanced together, so a cluster is in the scope as a whole or not at all.
-bool TrialScope::close_over_clusters(const Groups& groups)
+void TrialScope::mark_cluster(const Groups& groups, std::uint32_t cluster)
 {
-    std::vector<std::uint8_t> in(groups.clusters, 0);
-    const auto for_each = [&](auto visit)
+    for (const std::uint32_t g : groups.of_cluster(cluster))
     {
-        for (const Group& g : groups.all)
-        {
-            for (const auto* list : {&g.bodies, &g.prescribed_bodies})
-                for (const std::uint32_t b : *list) visit(g, Ref{Facet::Body, b});
-            for (const auto* list : {&g.shafts, &g.prescribed_shafts})
-                for (const std::uint32_t s : *list) visit(g, Ref{Facet::Shaft, s});
-            for (const std::uint32_t q : g.quantities) visit(g, Ref{Facet::Quantities, q});
-        }
-    };
-    for_each([&](const Group& g, Ref r) { in[g.cluster] = in[g.cluster] != 0 || holds(r) ? 1 : 0; });
-    bool grown = false;
-    for_each([&](const Group& g, Ref r) { grown = (in[g.cluster] != 0 && mark(r)) || grown; });
-    return grown;
+        const Group& member = groups.all[g];
+        for (const auto* list : {&member.bodies, &member.prescribed_bodies})
+            for (const std::uint32_t b : *list) (void)mark({Facet::Body, b});
+        for (const auto* list : {&member.shafts, &member.prescribed_shafts})
+            for (const std::uint32_t s : *list) (void)mark({Facet::Shaft, s});
+        for (const std::uint32_t q : member.quantities) (void)mark({Facet::Quantities, q});
+    }
 }
 
 /// A prescribed object is not affected by forces, so it does not pass effects on to others.
 bool TrialScope::carries_on(Ref object) const { return object.facet == Facet::Body && world_->host().bodies.dynamic(object.index); }
-
-template <class Pairs>
-bool TrialScope::close_over_pairs(const Pairs& pairs)
-{
-    bool grown = false;
-    for (const auto& p : pairs)
-        for (const auto& [from, to] : {std::pair{p.a, p.b}, std::pair{p.b, p.a}})
-            if (fixed_[from.index] != 0 || (holds(from) && carries_on(from))) grown = mark(to) || grown;
-    return grown;
-}
 
 /// A detector that rewinds the whole world at a collision acts on an object in the scope: then everything is in the scope.
 bool TrialScope::rewinds_everything(const Stepper& stepper) const
@@ -146,14 +155,26 @@ bool TrialScope::rewinds_everything(const Stepper& stepper) const
     return std::any_of(stepper.detectors().begin(), stepper.detectors().end(), concerns);
 }
 
+/// From each object that is found, on to what moves with it, reads it or touches it.
 void TrialScope::close(const Stepper& stepper)
 {
     fit();
-    for (bool grown = !everything_; grown;)
+    std::optional<TouchingBodies> touching;
+    const auto mark_touching = [&](std::uint32_t body)
     {
-        grown = close_over_clusters(stepper.groups());
-        grown = close_over_pairs(stepper.contacts().pairs()) || grown;
-        grown = close_over_pairs(stepper.contacts().force_pairs()) || grown;
+        if (!touching) touching.emplace(*world_, stepper.contacts());
+        touching->for_each_at(body, [&](std::uint32_t other) { (void)mark({Facet::Body, other}); });
+    };
+    const Groups& groups = stepper.groups();
+    std::vector<std::uint8_t> whole(groups.clusters, 0);  // all of the cluster is in the scope
+    if (!everything_)
+        for (const std::uint32_t body : fixed_) mark_touching(body);
+    for (std::size_t k = 0; !everything_ && k < marked_.size(); ++k)
+    {
+        const Ref object = marked_[k];
+        const std::uint32_t g = groups.of(object);
+        if (g != kNoIndex && std::exchange(whole[groups.all[g].cluster], 1) == 0) mark_cluster(groups, groups.all[g].cluster);
+        if (carries_on(object)) mark_touching(object.index);
     }
     everything_ = everything_ || rewinds_everything(stepper);
 }
@@ -163,34 +184,91 @@ bool TrialScope::acts_on_scope(std::uint32_t component) const
     for (const Role& role : world_->table_of(component).schema().roles())
     {
         if (!names_objects(role)) continue;
-        for (const Ref r : world_->participants(component, role))
-            if (holds(r)) return true;
+        bool any = false;
+        world_->for_each_participant(component, role, [&](Ref r) { any = any || holds(r); });
+        if (any) return true;
     }
     return false;
 }
 
 void TrialScope::choose_with_parts(std::uint32_t component)
 {
-    if (std::exchange(components_[component], 1) != 0) return;
+    if (std::exchange(selection_.flags[component], 1) != 0) return;
+    selection_.components.push_back(component);
     for (const Role& role : world_->table_of(component).schema().roles())
     {
         if (names_objects(role)) continue;
-        for (const Ref r : world_->participants(component, role))
-            if (r.facet == Facet::Component && r.valid()) choose_with_parts(r.index);
+        world_->for_each_participant(component, role,
+                                     [&](Ref r)
+                                     {
+                                         if (r.facet == Facet::Component && r.valid()) choose_with_parts(r.index);
+                                     });
     }
 }
 
 void TrialScope::choose_components()
 {
     fit();
-    components_.assign(world_->components().size(), everything_ ? 1 : 0);
-    if (everything_) return;
-    for (const std::uint32_t i : world_->in_id_order())
+    if (everything_)
+        for (const auto& [facet, size] : {std::pair{Facet::Body, bodies_.size()}, std::pair{Facet::Shaft, shafts_.size()},
+                                          std::pair{Facet::Quantities, quantities_.size()}})
+            for (std::uint32_t i = 0; i < size; ++i) (void)mark({facet, i});
+    selection_.flags.assign(world_->components().size(), everything_ ? 1 : 0);
+    selection_.components.clear();
+    if (everything_)
+        selection_.components = world_->in_id_order();
+    else
+        choose_on_scope();
+    list_rows(), list_others();
+}
+
+/// The objects in the scope are listed already, and of the others only interactions have to be looked at.
+void TrialScope::choose_on_scope()
+{
+    for (const Ref object : marked_)
+        if (const std::uint32_t i = world_->host().component_of(object); i != kNoIndex) choose_with_parts(i);
+    for (const auto& table : world_->tables())
     {
+        if (table->type().info.facet != Facet::Component) continue;
+        for (const std::uint32_t i : table->component_of_row())
+            if (i != kNoIndex && acts_on_scope(i)) choose_with_parts(i);
+    }
+    std::sort(selection_.components.begin(), selection_.components.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return world_->rank(a) < world_->rank(b); });
+}
+
+void TrialScope::list_rows()
+{
+    for (auto* rows : {&body_rows_, &shaft_rows_, &quantities_rows_}) rows->clear();
+    for (const Ref r : marked_)
+        (r.facet == Facet::Body ? body_rows_ : r.facet == Facet::Shaft ? shaft_rows_ : quantities_rows_).push_back(r.index);
+    for (auto* rows : {&body_rows_, &shaft_rows_, &quantities_rows_}) std::sort(rows->begin(), rows->end());
+}
+
+void TrialScope::list_others()
+{
+    const world::HostTables& host = world_->host();
+    std::vector<std::uint8_t> body(host.bodies.size(), 0), shaft(host.shafts.size(), 0);
+    const auto see = [&](Ref r)
+    {
+        if (r.facet == Facet::Body) body[r.index] = 1;
+        if (r.facet == Facet::Shaft) shaft[r.index] = 1;
+    };
+    for (const std::uint32_t i : selection_.components)
+    {
+        if (everything_) break;
         const world::Component& c = world_->component(i);
         if (c.table == kNoIndex) continue;
-        if (is_object(c.facet) ? holds(c.ref(i)) : acts_on_scope(i)) choose_with_parts(i);
+        const world::Table& table = world_->table_of(i);
+        if (table.type().takes_part(Phase::Detect)) std::fill(body.begin(), body.end(), std::uint8_t{1});
+        for (const Role& role : table.schema().roles())
+            if (names_objects(role)) world_->for_each_participant(i, role, see);
     }
+    other_body_rows_.clear(), other_shaft_rows_.clear();
+    for (std::uint32_t b = 0; b < body.size(); ++b)
+        if (body[b] != 0 && !holds({Facet::Body, b})) other_body_rows_.push_back(b);
+    for (std::uint32_t s = 0; s < shaft.size(); ++s)
+        if (shaft[s] != 0 && !holds({Facet::Shaft, s})) other_shaft_rows_.push_back(s);
 }
 
 }  // namespace plab::simulation

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "simulation/step/stepper.h"
@@ -33,20 +34,31 @@ public:
     void choose_components();
 
     bool holds(Ref object) const;
-    /// Flags by directory index; valid after choose_components().
-    const std::vector<std::uint8_t>& components() const { return components_; }
     std::size_t objects() const;
+
+    // Valid after choose_components() --------------------------------------------------------------------------------
+    /// The components that take part in the trial.
+    const Selection& components() const { return selection_; }
+    /// Host rows of the objects in the scope, ascending.
+    std::span<const std::uint32_t> bodies() const { return body_rows_; }
+    std::span<const std::uint32_t> shafts() const { return shaft_rows_; }
+    std::span<const std::uint32_t> quantities() const { return quantities_rows_; }
+    /// Host rows of the bodies and shafts outside the scope that a component in it may see, ascending: its other participants, and all
+    /// bodies if it is a detection.
+    std::span<const std::uint32_t> other_bodies() const { return other_body_rows_; }
+    std::span<const std::uint32_t> other_shafts() const { return other_shaft_rows_; }
 
 private:
     void fit();
     void visit(std::uint32_t component);
     bool mark(Ref object);
     bool mark_participants(std::uint32_t component);
-    bool close_over_clusters(const Groups& groups);
+    void mark_cluster(const Groups& groups, std::uint32_t cluster);
     void add_object(Ref object);
-    template <class Pairs>
-    bool close_over_pairs(const Pairs& pairs);
     bool rewinds_everything(const Stepper& stepper) const;
+    void choose_on_scope();
+    void list_rows();
+    void list_others();
     bool carries_on(Ref object) const;
     void choose_with_parts(std::uint32_t component);
     bool acts_on_scope(std::uint32_t component) const;
@@ -54,8 +66,11 @@ private:
     const world::World* world_;
     bool everything_ = false;
     std::vector<std::uint8_t> bodies_, shafts_, quantities_;  ///< by host row
-    std::vector<std::uint8_t> fixed_;                 ///< static bodies that are changed, so that bodies resting on them are in the scope
-    std::vector<std::uint8_t> components_, visited_;  ///< by directory index
+    std::vector<Ref> marked_;                                 ///< the same, in the order in which they were found
+    std::vector<std::uint32_t> fixed_;   ///< static bodies that are changed, so that bodies resting on them are in the scope
+    std::vector<std::uint8_t> visited_;  ///< by directory index
+    Selection selection_;
+    std::vector<std::uint32_t> body_rows_, shaft_rows_, quantities_rows_, other_body_rows_, other_shaft_rows_;
 };
 
 }  // namespace plab::simulation
