@@ -128,14 +128,14 @@ TEST_CASE("a Hertzian contact pushes with k depth^1.5 and never pulls")
     rows.stiffness[0] = 1e6, rows.dissipation[0] = 0.3;
     b.contact.depth = 1e-4;
     b.bodies.velocity[0] = {0, 0, -0.5};
-    CHECK(b.push<touch_hunt_crossley>(rows).z == doctest::Approx(1 * (1 + 0.15)).epsilon(1e-13));
+    CHECK(b.push<evaluate_hunt_crossley>(rows).z == doctest::Approx(1 * (1 + 0.15)).epsilon(1e-13));
     CHECK(rows.surface.stored[0] == doctest::Approx(1e6 * 1e-10 / 2.5).epsilon(1e-13));
     b.bodies.velocity[0] = {0, 0, 100};
-    CHECK(b.push<touch_hunt_crossley>(rows).z == 0);
+    CHECK(b.push<evaluate_hunt_crossley>(rows).z == 0);
     b.contact.depth = -1e-4;
-    CHECK(b.push<touch_hunt_crossley>(rows).z == 0);
+    CHECK(b.push<evaluate_hunt_crossley>(rows).z == 0);
     b.bodies.velocity[0] = {}, b.contact.rest_depth = -1e-4, b.contact.preload = 9.81;
-    CHECK(b.push<touch_hunt_crossley>(rows).z == doctest::Approx(9.81).epsilon(1e-14));
+    CHECK(b.push<evaluate_hunt_crossley>(rows).z == doctest::Approx(9.81).epsilon(1e-14));
 }
 
 TEST_CASE("stiction springs stay in Coulomb's cone, equally in all directions")
