@@ -171,7 +171,7 @@ void Problem::add_line(const ConstraintRow& row, std::uint32_t index)
 void Problem::reserve(const IslandSize& size)
 {
     movers.reserve(size.movers), anchors.reserve(size.movers), sums.reserve(size.movers);
-    points.reserve(size.points), carried_.reserve(size.points);
+    points.reserve(size.points), marks.reserve(size.points), carried_.reserve(size.points);
     mover_of_body_.resize(size.bodies, kNoIndex), mover_of_shaft_.resize(size.shafts, kNoIndex);
     single.reserve(std::min(size.points, kSweptInOrder), size.movers);
     if (size.points > kSweptInOrder) fours.reserve(size.points, size.movers);
