@@ -244,6 +244,7 @@ Result<void> Transaction::apply_one(const PushOperation& op)
     const world::Component& c = run_->world().component(*component);
     world::HostTables& host = run_->world().host();
     if (!is_finite(op.impulse) || (op.point && !is_finite(*op.point))) return Error{{}, op.id, "an impulse must be finite"};
+    run_->world().note(*component);  // the host row changes directly
     if (c.facet == Facet::Body && host.bodies.dynamic(c.host_index))
         host.bodies.apply_impulse(c.host_index, op.impulse, op.point ? *op.point : host.bodies.position[c.host_index]);
     else if (c.facet == Facet::Shaft && host.shafts.dynamic(c.host_index))
