@@ -18,11 +18,6 @@ namespace
 /// Largest extra margin with which a persistent pair is detected, as a fraction of the smaller body's radius.
 constexpr double kMostShare = 0.1;
 
-<<<<<<< HEAD
-/// Keeps the contacts of one detector for which `counts` is true, and lists the pairs.
-template <class Counts>
-class SelectingCollector final : public ContactCollector
-=======
 /// Whether pairs are known, and rest, with one detector as with the other.
 bool keep_same_pairs(const Detector& x, const Detector& y)
 {
@@ -31,9 +26,9 @@ bool keep_same_pairs(const Detector& x, const Detector& y)
     return traits(x) == traits(y);
 }
 
-/// m: radius of the most strongly curved part of a shape, negative for surfaces that are touched from inside; infinite if it has none.
-double curve_radius(const Shapes& shapes, std::uint32_t shape)
->>>>>>> fswap
+/// Keeps the contacts of one detector for which `counts` is true, and lists the pairs.
+template <class Counts>
+class SelectingCollector final : public ContactCollector
 {
 public:
     /// `detector`: component.
@@ -41,7 +36,6 @@ public:
                        const Counts& counts)
         : ContactCollector(world, out), detector_(detector), first_(out.size()), runs_(runs), counts_(counts)
     {
-<<<<<<< HEAD
     }
     void add(const Contact& contact) override
     {
@@ -68,31 +62,6 @@ private:
     std::vector<FoundRun>& runs_;
     const Counts& counts_;
 };
-=======
-        const bool round = g.kind == GeometryKind::Sphere || g.kind == GeometryKind::Capsule || g.kind == GeometryKind::Cylinder;
-        if (round && g.size.x < std::fabs(least)) least = g.size.x;
-        const Surface surface = surface_of(g);
-        const bool inside = surface == Surface::Bore || surface == Surface::Bowl;
-        if (inside && surface_radius(g) < std::fabs(least)) least = -surface_radius(g);
-    };
-    add(shapes.geometry[shape]);
-    for (const std::uint32_t part : shapes.geometry[shape].parts) add(shapes.geometry[part]);
-    return least;
-}
->>>>>>> fswap
-
-/// m: radius of the sphere about the origin of a shape's frame that contains it.
-double bounding_radius(const Geometry& g)
-{
-    double r = 0;
-    if (g.kind == GeometryKind::Plane) return std::numeric_limits<double>::infinity();
-    if (g.kind == GeometryKind::Sphere) r = g.size.x;
-    if (g.kind == GeometryKind::Box) r = length(g.size);
-    if (g.kind == GeometryKind::Capsule) r = g.size.x + g.size.z;
-    if (g.kind == GeometryKind::Cylinder) r = std::hypot(g.size.x, g.size.z);
-    for (const Vec3& v : g.vertices) r = std::max(r, length(v));
-    return r;
-}
 
 /// m: gap that opens between two round bodies because they move straight on for h while they slide along one another. One step opens
 /// (v h)^2 / (2 (r_a + r_b)). After it they separate by twice that per step, and forces act against it one step later, so the gap can
@@ -123,13 +92,8 @@ Errors ContactBook::rebuild(bool sizes)
     order_number_ = step_.world.order_number();
     if (imposed_.size() != detectors_.size()) imposed_.clear();
     resting_.forget();
-<<<<<<< HEAD
     found_.clear(), runs_.clear();
-    measure_bodies();
-=======
-    found_.clear();
     if (sizes || !detectors_.empty()) measure_bodies();
->>>>>>> fswap
     list_participants();
     return {};
 }
@@ -171,27 +135,6 @@ std::span<const Shortlist> ContactBook::shortlists_of(std::size_t detector, cons
     return std::span(shortlists_).first(lists.size());
 }
 
-<<<<<<< HEAD
-=======
-/// Many bodies may share a shape, so each shape is measured once.
-void ContactBook::measure_bodies()
-{
-    const world::HostTables& host = step_.world.host();
-    std::vector<double> curves(host.shapes.size()), radii(host.shapes.size());
-    for (std::uint32_t k = 0; k < curves.size(); ++k)
-        curves[k] = curve_radius(host.shapes, k), radii[k] = bounding_radius(host.shapes.geometry[k]);
-    curve_radius_of_body_.assign(host.bodies.size(), HUGE_VAL), radius_of_body_.assign(host.bodies.size(), 0.0);
-    for (std::size_t b = 0; b < radius_of_body_.size(); ++b)
-        for (const Ref shape : host.bodies.shapes[b])
-        {
-            double& curve = curve_radius_of_body_[b];
-            if (std::fabs(curves[shape.index]) < std::fabs(curve)) curve = curves[shape.index];
-            const Geometry& g = host.shapes.geometry[shape.index];
-            radius_of_body_[b] = std::max(radius_of_body_[b], length(g.pose.p - host.bodies.center_B[b]) + radii[shape.index]);
-        }
-}
-
->>>>>>> fswap
 void ContactBook::query(const Detector& detector, ContactSink& sink, const IndexSet* active)
 {
     const auto index = static_cast<std::size_t>(&detector - detectors_.data());

@@ -138,16 +138,11 @@ private:
     void list_participants();
     std::span<const Shortlist> shortlists_of(std::size_t detector, const IndexSet& active);
     double curves_of(Ref a, Ref b) const { return std::fabs(curve_radius_of_body_[a.index] + curve_radius_of_body_[b.index]); }
-<<<<<<< HEAD
-    void measure_islands(ContactLoad& load);
+    void measure_islands(std::span<const PairState> pairs, ContactLoad& load);
+    void ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out);
     bool detect_with_gaps(std::uint32_t index);
     void list_runs(std::size_t from);
     bool ask(const Detector& detector, ContactCollector& sink, std::span<const PersistentPair> persistent, bool only_persistent);
-=======
-    void measure_islands(std::span<const PairState> pairs, ContactLoad& load);
-    void ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out);
-    void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
->>>>>>> fswap
     double gap_margin(const PairState& pair, double h) const;
     void drop_far(std::vector<FoundContact>& out, double h) const;
     double kinetic_energy(const std::vector<FoundContact>& contacts) const;

@@ -14,8 +14,8 @@ namespace
 /// A point of contact may lie outside of a body by this fraction of its radius where Painleve's paradox is excluded by the body's size.
 constexpr double kOutside = 0.01;
 
-/// m: radius of the most strongly curved shape of a body, negative for surfaces that are touched from inside; infinite if it has none.
-double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
+/// m: radius of the most strongly curved part of a shape, negative for surfaces that are touched from inside; infinite if it has none.
+double curve_radius(const Shapes& shapes, std::uint32_t shape)
 {
     double least = HUGE_VAL;
     const auto add = [&](const Geometry& g)
@@ -26,12 +26,8 @@ double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
         const bool inside = surface == Surface::Bore || surface == Surface::Bowl;
         if (inside && surface_radius(g) < std::fabs(least)) least = -surface_radius(g);
     };
-    for (const Ref shape : bodies.shapes[b])
-    {
-        const Geometry& g = shapes.geometry[shape.index];
-        add(g);
-        for (const std::uint32_t part : g.parts) add(shapes.geometry[part]);
-    }
+    add(shapes.geometry[shape]);
+    for (const std::uint32_t part : shapes.geometry[shape].parts) add(shapes.geometry[part]);
     return least;
 }
 
@@ -60,20 +56,24 @@ Vec3 extents_of(const Geometry& g)
 
 }  // namespace
 
+/// Many bodies may share a shape, so each shape is measured once.
 void ContactBook::measure_bodies()
 {
     const world::HostTables& host = step_.world.host();
     const Bodies& bodies = host.bodies;
-    curve_radius_of_body_.clear();
-    for (std::uint32_t b = 0; b < bodies.size(); ++b) curve_radius_of_body_.push_back(curve_radius(bodies, host.shapes, b));
-    radius_of_body_.assign(bodies.size(), 0.0);
+    std::vector<double> curves(host.shapes.size()), radii(host.shapes.size());
+    for (std::uint32_t k = 0; k < curves.size(); ++k)
+        curves[k] = curve_radius(host.shapes, k), radii[k] = radius_of(host.shapes.geometry[k]);
+    curve_radius_of_body_.assign(bodies.size(), HUGE_VAL), radius_of_body_.assign(bodies.size(), 0.0);
     extents_of_body_.assign(bodies.size(), {});
     for (std::size_t b = 0; b < bodies.size(); ++b)
         for (const Ref shape : bodies.shapes[b])
         {
+            double& curve = curve_radius_of_body_[b];
+            if (std::fabs(curves[shape.index]) < std::fabs(curve)) curve = curves[shape.index];
             const Geometry& g = host.shapes.geometry[shape.index];
             const Vec3 p_CS = g.pose.p - bodies.center_B[b], half = extents_of(g);
-            radius_of_body_[b] = std::max(radius_of_body_[b], length(p_CS) + radius_of(g));
+            radius_of_body_[b] = std::max(radius_of_body_[b], length(p_CS) + radii[shape.index]);
             const Mat3 R = rotation_matrix(g.pose.q);
             Vec3& extents = extents_of_body_[b];
             for (int i = 0; i < 3; ++i)
