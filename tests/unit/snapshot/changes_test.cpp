@@ -240,7 +240,9 @@ TEST_CASE("a refused snapshot changes nothing")
 
     auto foreign = std::make_shared<simulation::SnapshotContent>(*before);
     auto scene = std::make_shared<model::SceneSpec>(*before->world.scene);
-    scene->components[0].type = "Shape/Klein";
+    model::ComponentSpec klein = scene->components[0];
+    klein.type = "Shape/Klein";
+    scene->components.replace(0, std::move(klein));
     foreign->world.scene = scene;
     CHECK(!s->restore(simulation::Snapshot(foreign)).ok());
     CHECK(s->run() == before->run);
