@@ -2,12 +2,11 @@
 // medians and the longest of the pauses in ms and their CPU time, the objects that the trial steps, how many swaps were proved, and the CPU
 // time of the steps right after a swap and of the steps before the next one (medians). Names of cases, a number of bodies and swaps=N may
 // be given as arguments.
-#include <time.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <string>
 #include <vector>
 
