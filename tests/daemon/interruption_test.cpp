@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "support/process.h"
+#include "support/text.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -24,8 +25,6 @@ std::string long_scene()
       <component id="s" type="Solver/DormandPrince54" max_substeps="10000000"/></plab>)";
     return file;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::string read(const std::string& file)
 {

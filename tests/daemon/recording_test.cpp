@@ -15,6 +15,7 @@
 #include "idl/recording/reader.h"
 #include "idl/recording/recovery.h"
 #include "support/process.h"
+#include "support/text.h"
 
 namespace plab::test
 {
@@ -36,8 +37,6 @@ std::string fresh(const std::string& name)
     std::filesystem::remove(file);
     return file;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// Hashes that --hashes prints, a line for each step.
 std::vector<std::string> lines_of(const std::string& text)

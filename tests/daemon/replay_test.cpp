@@ -8,6 +8,7 @@
 #include "edited_recording.h"
 #include "idl/recording/format.h"
 #include "support/process.h"
+#include "support/text.h"
 
 namespace plab::test
 {
@@ -15,8 +16,6 @@ namespace
 {
 
 const std::string kGolden = std::string(PLAB_SOURCE_DIR) + "/tests/daemon/golden/format_2.mcap";
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 Outcome plabd(std::vector<std::string> arguments)
 {

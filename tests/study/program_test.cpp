@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "support/process.h"
+#include "support/text.h"
 
 using namespace plab::test;
 
@@ -36,8 +37,6 @@ std::string read(const std::string& file)
     text << in.rdbuf();
     return text.str();
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 nlohmann::json results(const std::string& where) { return nlohmann::json::parse(read(where + "/results.json")); }
 
