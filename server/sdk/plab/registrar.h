@@ -14,6 +14,7 @@
 #include "plab/context.h"
 #include "plab/dynamics.h"
 #include "plab/island.h"
+#include "plab/levels.h"
 #include "plab/picture.h"
 #include "plab/result.h"
 #include "plab/rows.h"
@@ -78,6 +79,9 @@ struct PhaseCall
     Impact* impact = nullptr;                   // Respond, Touch
     MassProperties* solid = nullptr;            // Measure
     StoredEnergy* stored = nullptr;             // Potential
+    ViewpointSink* viewpoints = nullptr;        // View
+    LevelControl* levels = nullptr;             // Decide
+    RequestSink* requests = nullptr;            // Decide
     const RenderScene* render_scene = nullptr;  // Draw
     ImageSink* images = nullptr;                // Draw
 };
@@ -164,6 +168,9 @@ PLAB_ARGUMENT(ContactLoad&, load, "ContactLoad");
 PLAB_ARGUMENT(Impact&, impact, "Impact");
 PLAB_ARGUMENT(MassProperties&, solid, "MassProperties");
 PLAB_ARGUMENT(StoredEnergy&, stored, "StoredEnergy");
+PLAB_ARGUMENT(ViewpointSink&, viewpoints, "Viewpoints");
+PLAB_ARGUMENT(LevelControl&, levels, "Levels");
+PLAB_ARGUMENT(RequestSink&, requests, "Requests");
 PLAB_ARGUMENT(const RenderScene&, render_scene, "RenderScene");
 PLAB_ARGUMENT(ImageSink&, images, "Images");
 #undef PLAB_ARGUMENT

@@ -53,6 +53,7 @@ struct Field
     bool may_be_infinite = false;
     bool hosted = false;    ///< the live value is in the host's table of the facet; the column has only the initial value
     bool is_error = false;  ///< an output that accounting reports as the error of this interaction
+    bool is_input = false;  ///< a state that is set from outside while the scene runs, and that changes nothing else when it is set
     std::vector<Rule> rules;
     std::string doc;
     ColumnBase* column = nullptr;
@@ -95,6 +96,8 @@ public:
     /// The host keeps the live value (Bodies, Shafts) under this name; see the facet fields in server/docs/notation.md.
     FieldBuilder& hosted() { return field_->hosted = true, *this; }
     FieldBuilder& reported_as_error() { return field_->is_error = true, *this; }
+    /// A request that sets nothing but inputs costs no more than writing them: no trial, no new schedule, no other component is prepared.
+    FieldBuilder& input() { return field_->is_input = true, *this; }
 
 private:
     FieldBuilder& rule(Rule r) { return field_->rules.push_back(std::move(r)), *this; }

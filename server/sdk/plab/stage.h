@@ -23,6 +23,8 @@ enum class Phase : std::uint8_t
     Measure,    ///< Init: mass properties of a shape
     Prepare,    ///< Init, and after a parameter changed: derive host rows from parameters, check rules across fields
     Connect,    ///< Init, and after any structural change: contribute to structures that are built from all components
+    View,       ///< PreStep, before the step: a viewer states from where it looks
+    Decide,     ///< PreStep, before the step: what a component asks of the scene, as a client would: other levels of detail, any request
     Drive,      ///< PreStep: once per step; may change its own declared state
     Force,      ///< Step: add wrenches; a pure function of time and state, at every solver stage
     Choose,     ///< Step: a resolution that adapts chooses how impacts of this step are found
@@ -50,6 +52,8 @@ constexpr Stage stage_of(Phase phase)
         case Phase::Prepare:
         case Phase::Connect:
             return Stage::Init;
+        case Phase::View:
+        case Phase::Decide:
         case Phase::Drive:
             return Stage::PreStep;
         case Phase::Force:
@@ -75,9 +79,9 @@ constexpr std::string_view name_of(Stage stage)
 
 constexpr std::string_view name_of(Phase phase)
 {
-    constexpr std::string_view names[] = {"measure",   "prepare", "connect",   "drive", "force",  "choose", "couple",
-                                          "constrain", "touch",   "advance",   "solve", "detect", "gap",    "locate",
-                                          "respond",   "finish",  "potential", "draw",  "restore"};
+    constexpr std::string_view names[] = {"measure", "prepare", "connect",   "view",   "decide",    "drive", "force",
+                                          "choose",  "couple",  "constrain", "touch",  "advance",   "solve", "detect",
+                                          "gap",     "locate",  "respond",   "finish", "potential", "draw",  "restore"};
     return names[static_cast<int>(phase)];
 }
 

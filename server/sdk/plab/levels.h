@@ -1,0 +1,79 @@
+/// Levels of detail: what a governor sees in Phase::Decide and what it can ask for, and the viewers for whom the scene is shown.
+///
+/// A *level* is one algorithm of a family, with its parameters; a *ladder* is a list of levels from the cheapest to the most exact one.
+/// server/docs/levels.md explains them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "plab/ref.h"
+#include "plab/tables.h"
+
+namespace plab
+{
+
+/// From where somebody looks at the scene. In W, SI units.
+struct Viewpoint
+{
+    std::uint32_t component = kNoIndex;  ///< directory index of the viewer
+    Vec3 position, velocity;             ///< m, m/s
+    Vec3 direction{1, 0, 0};             ///< unit
+    Vec3 up{0, 0, 1};                    ///< not parallel to the direction
+    double field_of_view = 0.7;          ///< rad, vertical
+    double width = 1280, height = 720;   ///< pixels
+};
+
+/// Phase::View: receives the viewers of the scene.
+class ViewpointSink
+{
+public:
+    virtual ~ViewpointSink() = default;
+    virtual void add(Row row, const Viewpoint& viewpoint) = 0;
+};
+
+/// A component whose level a governor chooses, as it is at the present boundary.
+struct GovernedComponent
+{
+    std::uint32_t component = kNoIndex;  ///< directory index
+    std::int32_t level = -1;             ///< position in the ladder; -1: it has an algorithm that the ladder does not name
+    double since = 0;                    ///< s, when it got this level
+    Vec3 center;                         ///< W, m: of a ball around all objects on which it acts
+    double radius = 0;                   ///< m, of that ball; infinite: it acts on something without bounds
+    double speed = 0;                    ///< m/s, the largest speed of a point of these objects
+    std::uint32_t objects = 0;           ///< their number; static ones do not count
+};
+
+/// What Phase::Decide offers to governors. Each row has a ladder and a list of components, which the host derives from the fields `watches`
+/// and `levels` of the row whenever the structure of the scene changes.
+class LevelControl
+{
+public:
+    virtual ~LevelControl() = default;
+    virtual std::int32_t levels(Row row) const = 0;
+    /// In the order of ids, looked up at the present boundary; valid until the call returns.
+    virtual std::span<const GovernedComponent> watched(Row row) = 0;
+    virtual std::span<const Viewpoint> viewpoints() const = 0;
+    virtual std::string_view id_of(std::uint32_t component) const = 0;
+    /// s of CPU per step that a component costs at a level, its solver included, as far as it has been measured (an input of the run that
+    /// is recorded with it) or is known of the type. NaN: not known.
+    virtual double cost(Row row, std::size_t index, std::int32_t level) const = 0;
+    /// m (or rad, if it acts on shafts only): the distance by which its objects depart within `interval` (s) at a level from where the most
+    /// exact level of the ladder takes them. Measured by trial steps from the present state, which change nothing. NaN: it cannot be told.
+    virtual double error(Row row, std::size_t index, std::int32_t level, double interval) = 0;
+    /// Asks for another level, from the coming step on. `reason`: in words, for people.
+    virtual void choose(Row row, std::size_t index, std::int32_t level, std::string reason) = 0;
+};
+
+/// Phase::Decide: requests that a component makes in its own name, in the words of a client's request (server/docs/requests.md). They take
+/// effect before the coming step, each as one transaction, in the order in which they were asked. A refusal is an event.
+class RequestSink
+{
+public:
+    virtual ~RequestSink() = default;
+    virtual void ask(Row row, std::string_view verb, std::string_view target, std::string_view argument, std::string reason) = 0;
+};
+
+}  // namespace plab
