@@ -17,7 +17,7 @@ const char* const kGears =
 publish::ErrorFigure shadow(const Scene& s, const std::string& id)
 {
     const std::uint32_t i = s.simulation().world().find(id);
-    auto figure = publish::shadow_error(s.simulation(), i, publish::finer_than(s.simulation().world().type_of(i)->info.name));
+    auto figure = publish::shadow_error(s.simulation(), i, model::finer_than(s.simulation().world().type_of(i)->info.name));
     REQUIRE_MESSAGE(figure.ok(), reasons(figure));
     return *figure;
 }
