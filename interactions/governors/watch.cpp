@@ -45,10 +45,16 @@ Look::Look(const StepContext& context, Row row, WatchRows& rows, LevelControl& c
         if (g.level >= 0) ++rows.count[row][static_cast<std::size_t>(g.level)];
 }
 
-/// Entries are in the order of ids, so that they can be searched.
+/// Entries stay in the order of ids, so that they can be searched.
 Look::~Look()
 {
-    std::sort(rows_.changed[row_].begin(), rows_.changed[row_].end(), [](const Entry& a, const Entry& b) { return a.name < b.name; });
+    Entries& changed = rows_.changed[row_];
+    const auto before = [](const Entry& a, const Entry& b) { return a.name < b.name; };
+    std::sort(fresh_.begin(), fresh_.end(), before);
+    std::erase_if(changed, [&](const Entry& e) { return std::binary_search(fresh_.begin(), fresh_.end(), e, before); });
+    const auto old = static_cast<std::ptrdiff_t>(changed.size());
+    changed.insert(changed.end(), fresh_.begin(), fresh_.end());
+    std::inplace_merge(changed.begin(), changed.begin() + old, changed.end(), before);
 }
 
 double Look::since(std::size_t index) const
@@ -67,11 +73,7 @@ bool Look::choose(std::size_t index, std::int32_t level, std::string reason)
     const GovernedComponent& g = watched_[index];
     if (g.level == level) return false;
     if (level < g.level && !rested(index)) return false;
-    const std::string id(control_.id_of(g.component));
-    Entries& changed = rows_.changed[row_];
-    // What is appended is sorted in at the end of the look; a component is changed once in a look.
-    std::erase_if(changed, [&](const Entry& e) { return e.name == id; });
-    changed.push_back({id, context_.time});
+    fresh_.push_back({std::string(control_.id_of(g.component)), context_.time});
     if (g.level >= 0) --rows_.count[row_][static_cast<std::size_t>(g.level)];
     ++rows_.count[row_][static_cast<std::size_t>(level)];
     ++rows_.changes[row_];

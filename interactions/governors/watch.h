@@ -52,6 +52,7 @@ private:
     LevelControl& control_;
     std::span<const GovernedComponent> watched_;
     std::int32_t finest_ = 0;
+    Entries fresh_;  ///< changes of this look
 };
 
 /// "12.3": three significant digits, for reasons.

@@ -24,10 +24,10 @@ Result<void> split_values(const std::string& text, wire::Operation& out)
         const std::size_t equals = word.find('=');
         if (equals == 0) return reason("a value has no name: " + model::quoted(word));
         if (equals != std::string_view::npos)
-            out.values.emplace_back(std::string(word.substr(0, equals)), std::string(word.substr(equals + 1)));
+            out.values.push_back({std::string(word.substr(0, equals)), std::string(word.substr(equals + 1))});
         else
         {
-            std::string& to = out.values.empty() ? out.argument : out.values.back().second;
+            std::string& to = out.values.empty() ? out.argument : out.values.back().text;
             to += (to.empty() ? "" : " ") + std::string(word);
         }
     }

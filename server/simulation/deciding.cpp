@@ -132,6 +132,7 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
         return false;
     }
     run_.watch->begin_anew();
+    note_reassigned();
     for (std::size_t k = 0; k < reply.swaps.size() && decision.verb.empty(); ++k)
     {
         const SwapReport& swap = reply.swaps[k];
@@ -154,6 +155,12 @@ void Simulation::refuse_decision(std::uint32_t by, const std::string& what, cons
     e.tick = tick(), e.time = time(), e.kind = "decide.refused", e.severity = Severity::Warning, e.component = by;
     e.message = what + ": " + why;
     decided_.events.push_back(std::move(e));
+}
+
+void Simulation::note_reassigned()
+{
+    for (const std::uint32_t i : run_.levels().take_reassigned())
+        if (i < run_.world().components().size() && run_.world().component(i).alive) run_.changes.touched.push_back(run_.world().id_of(i));
 }
 
 /// A script may have changed what a governor watches.

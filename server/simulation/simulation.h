@@ -114,6 +114,8 @@ private:
     bool take_effect(const Decision& decision, const Request& request, const std::vector<std::string>& reasons);
     void refuse_decision(std::uint32_t by, const std::string& what, const std::string& why);
     void read_changed_governors();
+    /// Observers see the governor of a component with it.
+    void note_reassigned();
     Result<std::vector<ObjectMotion>> motion_with(std::uint32_t component, const Level& level);
     double error_of_level(std::uint32_t component, const Level& level, const Level& finest, double interval);
 

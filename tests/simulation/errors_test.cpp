@@ -1,6 +1,7 @@
 // One error for each interaction that can be compared along its ladder: by a shadow step, which leaves the run as it is.
 #include "publish/error_probe.h"
-#include "publish/ladders.h"
+
+#include "model/ladders.h"
 #include "support/scene.h"
 
 using namespace plab;

@@ -153,6 +153,10 @@ Result<void> LevelBook::rebuild()
         return Error{
             {}, world_.id_of(governor.component) + " (" + world_.type_of(governor.component)->info.name + ")", done.error().reason};
     }
+    watcher_.resize(watcher.size(), kNoIndex);
+    for (const std::uint32_t i : world_.in_id_order())
+        if (watcher_[i] != watcher[i]) reassigned_.push_back(i);
+    watcher_ = std::move(watcher);
     const world::HostTables& host = world_.host();
     radius_of_shaft_.assign(governors_.empty() ? 0 : host.shafts.size(), 0.0);
     for (std::size_t s = 0; s < radius_of_shaft_.size(); ++s)
@@ -268,21 +272,36 @@ std::vector<Request> LevelBook::measurements(double time, double dt, double step
     return out;
 }
 
+LevelInfo LevelBook::info(const Governor& g, const Watched& w) const
+{
+    LevelInfo out;
+    out.component = w.component, out.governor = g.component;
+    out.level = level_of(world_, w.component, g.ladder), out.levels = static_cast<std::int32_t>(g.ladder.levels.size());
+    out.text = out.level < 0 ? world_.type_of(w.component)->info.name : g.ladder.levels[static_cast<std::size_t>(out.level)].text;
+    const Change& change = changes_[w.component];
+    if (change.id == world_.id_of(w.component)) out.reason = change.reason, out.since = change.since;
+    return out;
+}
+
 std::vector<LevelInfo> LevelBook::levels() const
 {
     std::vector<LevelInfo> out;
     for (const Governor& g : governors_)
-        for (const Watched& w : g.watched)
-        {
-            LevelInfo& info = out.emplace_back();
-            info.component = w.component, info.governor = g.component;
-            info.level = level_of(world_, w.component, g.ladder), info.levels = static_cast<std::int32_t>(g.ladder.levels.size());
-            info.text =
-                info.level < 0 ? world_.type_of(w.component)->info.name : g.ladder.levels[static_cast<std::size_t>(info.level)].text;
-            const Change& change = changes_[w.component];
-            if (change.id == world_.id_of(w.component)) info.reason = change.reason, info.since = change.since;
-        }
+        for (const Watched& w : g.watched) out.push_back(info(g, w));
     return out;
+}
+
+std::optional<LevelInfo> LevelBook::level(std::uint32_t component) const
+{
+    if (component >= watcher_.size() || watcher_[component] == kNoIndex) return {};
+    for (const Governor& g : governors_)
+    {
+        if (g.component != watcher_[component]) continue;
+        const auto before = [&](const Watched& w, std::uint32_t c) { return world_.rank(w.component) < world_.rank(c); };
+        const auto found = std::lower_bound(g.watched.begin(), g.watched.end(), component, before);
+        if (found != g.watched.end() && found->component == component) return info(g, *found);
+    }
+    return {};
 }
 
 }  // namespace plab::simulation

@@ -8,7 +8,9 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simulation/levels/ladder.h"
@@ -64,6 +66,10 @@ public:
 
     /// All watched components, by governor and then by id.
     std::vector<LevelInfo> levels() const;
+    /// Of one component; empty: no governor watches it.
+    std::optional<LevelInfo> level(std::uint32_t component) const;
+    /// Components that have come under a governor, or have left it, since the last call.
+    std::vector<std::uint32_t> take_reassigned() { return std::exchange(reassigned_, {}); }
     bool watches_anything() const { return !governors_.empty(); }
     bool is_governor(std::uint32_t component) const;
 
@@ -93,12 +99,14 @@ private:
     void add_objects(std::uint32_t component, std::vector<Ref>& out, int depth) const;
     GovernedComponent look(const Governor& governor, const Watched& watched) const;
     Reals costs_by_level(const Governor& governor) const;
+    LevelInfo info(const Governor& governor, const Watched& watched) const;
 
     world::World& world_;
     const Stepper& stepper_;
-    std::vector<Governor> governors_;  ///< in id order
-    std::vector<Change> changes_;      ///< by directory index
-    bool deciding_ = false;            ///< trials exchange components and put them back meanwhile
+    std::vector<Governor> governors_;                  ///< in id order
+    std::vector<Change> changes_;                      ///< by directory index
+    std::vector<std::uint32_t> watcher_, reassigned_;  ///< governor of each component, by directory index; components
+    bool deciding_ = false;                            ///< trials exchange components and put them back meanwhile
     std::vector<double> radius_of_shaft_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> owner_of_part_;  ///< a component, and one that names it in a role; sorted
 };

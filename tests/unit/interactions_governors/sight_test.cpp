@@ -101,10 +101,9 @@ TEST_CASE("a box hides a ball only if no ray from the eye reaches it, and hides 
             const Vec3 to = ball.center + ball.radius * normalized(dice.vector(1));
             reached += meets(eye, to, box) ? 0 : 1;
         }
-        if (is_hidden(eye, ball, box))
-            ++hidden, CHECK(reached == 0);
-        else
-            seen += reached > 0 ? 1 : 0;
+        const bool is_gone = is_hidden(eye, ball, box);
+        if (is_gone) CHECK(reached == 0);
+        hidden += is_gone ? 1 : 0, seen += !is_gone && reached > 0 ? 1 : 0;
         // A point directly behind the centre of the box.
         const Vec3 behind = eye + (box.pose.p - eye) * 1.0001 + normalized(box.pose.p - eye) * length(box.half);
         const Vec3 local = rotate_back(q, eye - box.pose.p);
