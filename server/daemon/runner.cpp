@@ -151,6 +151,7 @@ void Run::step()
     }
     if (options_.hashes) std::printf("%" PRId64 " %016" PRIx64 "\n", s_.tick(), s_.state_hash());
     report_events(s_);
+    service_.note_own_requests();
     service_.publish(true);
     if (trace_) trace_->sample(s_);
     table_.note(s_);

@@ -50,6 +50,8 @@ public:
     /// Answers requests that took effect or failed: to clients, as events, as log lines. False if one of the command line was
     /// refused, because the run is then not the one that was asked for.
     bool answer();
+    /// Journal of the requests that the simulation made itself before the last step: measurements, and what components decided.
+    void note_own_requests();
     /// Records for observers: after a step, or (`stepped` false) after requests between steps.
     void publish(bool stepped);
     /// While paused: sends what new observers must see.
@@ -93,8 +95,6 @@ private:
     std::optional<Origin> origin_of(std::uint64_t request);
     std::vector<std::string> words_of(const simulation::Snapshot& snapshot) const;
     void write_journal(const Origin& origin, const simulation::Reply& reply);
-    /// A request that the simulation made itself: a measurement, or what a component decided.
-    void note_own(const simulation::Reply& reply);
     void make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause);
     void send_snapshots();
     void send_named_snapshots(const Origin& origin);

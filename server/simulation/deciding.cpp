@@ -77,7 +77,7 @@ void Simulation::measure_for_governors()
         recent_steps_.clear();
         Reply reply = carry_out(request);
         reply.made = std::make_shared<const Request>(std::move(request));
-        replies_.push_back(std::move(reply));
+        own_requests_.push_back(std::move(reply));
     }
 }
 
@@ -145,7 +145,7 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
         decided_.events.push_back(std::move(e));
     }
     reply.made = std::make_shared<const Request>(request), reply.decided_by = run_.world().id_of(decision.by);
-    replies_.push_back(std::move(reply));
+    own_requests_.push_back(std::move(reply));
     return true;
 }
 

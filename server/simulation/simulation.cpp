@@ -165,6 +165,7 @@ Reply Simulation::outlived(const Request& request) const
 bool Simulation::step()
 {
     (void)apply_due();
+    own_requests_.clear();
     if (paused()) return false;
     measure_for_governors();
     if (!run_step()) return false;
@@ -176,6 +177,7 @@ bool Simulation::step()
 
 bool Simulation::step_once()
 {
+    own_requests_.clear();
     if (!run_step()) return false;
     ++run_.clock.tick;
     return true;

@@ -60,6 +60,9 @@ public:
     bool apply_due();
     /// The replies since the last call, in order.
     std::vector<Reply> take_replies();
+    /// The requests that the simulation made itself before the last step, with their replies: measurements for governors, and what components
+    /// decided (Reply::made).
+    const std::vector<Reply>& own_requests() const { return own_requests_; }
     /// What requests, scripts (when they set parameters) and failures changed about components since the last call.
     Changes take_changes();
     /// Reads the requests that components of the scene make in their own name (Phase::Decide).
@@ -129,7 +132,7 @@ private:
     RunContext context_;
     Run run_;
     History history_;
-    std::vector<Reply> replies_;
+    std::vector<Reply> replies_, own_requests_;
     ImageSink* images_ = nullptr;
     struct ScriptChange
     {

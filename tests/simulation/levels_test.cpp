@@ -256,7 +256,7 @@ TEST_CASE("a budget of time: what was measured is an input, and with the same in
     {
         live.step();
         // The replay gets the measurements as requests, and makes none itself: step_once() measures nothing.
-        for (const Reply& reply : live.simulation().take_replies())
+        for (const Reply& reply : live.simulation().own_requests())
         {
             if (!reply.made || !reply.decided_by.empty()) continue;
             ++measurements;
