@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "cost_model.h"
 #include "sight.h"
 
 namespace plab::governors
@@ -28,72 +29,65 @@ double importance_of(const GovernedComponent& g, std::span<const Viewpoint> eyes
     return most;
 }
 
-/// s per step of a component at each level. What has not been measured is guessed, with a factor that makes a finer level look expensive.
-Reals costs_of(const Reals& measured, std::int32_t levels)
-{
-    constexpr double kDearer = 4, kCheaper = 0.5;
-    Reals out(static_cast<std::size_t>(levels), -1.0);
-    for (std::size_t k = 0; k < std::min(out.size(), measured.size()); ++k) out[k] = measured[k];
-    for (std::size_t k = 1; k < out.size(); ++k)
-        if (out[k] < 0 && out[k - 1] >= 0) out[k] = kDearer * out[k - 1];
-    for (std::size_t k = out.size(); k-- > 1;)
-        if (out[k - 1] < 0 && out[k] >= 0) out[k - 1] = kCheaper * out[k];
-    return out;
-}
+/// The new level of each watched component.
+using Plan = std::vector<std::int32_t>;
 
-/// Compares the change that was expected with the one that came.
-void learn(Row row, BudgetRows& rows)
-{
-    constexpr double kLeast = 0.1, kMost = 50;
-    if (rows.cost_before[row] <= 0) return;
-    const double expected = rows.predicted[row], came = rows.step_cost[row] - rows.cost_before[row];
-    rows.cost_before[row] = 0;
-    constexpr double kNoise = 0.05;  // of the step: smaller changes cannot be told from noise
-    if (std::fabs(expected) * rows.scale[row] < kNoise * rows.step_cost[row]) return;
-    rows.scale[row] = std::clamp(0.5 * (rows.scale[row] + came / expected), kLeast, kMost);
-}
-
-struct Plan
-{
-    std::vector<std::int32_t> level;  ///< by watched component
-    double change = 0;                ///< s, of the step, without scale
-};
-
-/// One level at a time for all, then another one, because the first level down usually costs the least exactness.
-Plan plan_savings(const Look& look, const std::vector<std::size_t>& order, const Reals& costs, double needed)
+Plan present_levels(const Look& look)
 {
     Plan plan;
-    for (const GovernedComponent& g : look.watched()) plan.level.push_back(g.level);
-    for (bool any = true; any && -plan.change < needed;)
+    for (const GovernedComponent& g : look.watched()) plan.push_back(g.level);
+    return plan;
+}
+
+/// One level at a time for all, the least important ones first, then another one: the first level down usually costs the least exactness.
+/// `needed`: s.
+Plan plan_savings(const Look& look, const std::vector<std::size_t>& order, const CostModel& model, double needed)
+{
+    Plan plan = present_levels(look);
+    double saved = 0;
+    for (bool any = true; any && saved < needed;)
     {
         any = false;
         for (const std::size_t k : order)
         {
-            if (-plan.change >= needed) break;
-            const std::int32_t l = plan.level[k];
-            if (l <= 0) continue;
-            const double saved = costs[static_cast<std::size_t>(l)] - costs[static_cast<std::size_t>(l - 1)];
-            if (saved <= 0) continue;
-            --plan.level[k], plan.change -= saved, any = true;
+            if (saved >= needed) break;
+            if (plan[k] <= 0) continue;
+            const auto l = static_cast<std::size_t>(plan[k]);
+            saved += std::max(0.0, model.cost(l) - model.cost(l - 1)) / static_cast<double>(plan.size());
+            --plan[k], any = true;
         }
     }
     return plan;
 }
 
-/// The most important ones get one finer level each, as far as there is room.
-Plan plan_spending(const Look& look, const std::vector<std::size_t>& order, const Reals& costs, double room)
+/// The most important ones get one finer level each, as far as there is room (s). What a level costs is taken to be as much as it may well
+/// be, so that a level that is not known yet is tried by a few components first.
+Plan plan_spending(const Look& look, const std::vector<std::size_t>& order, const CostModel& model, double room)
 {
-    Plan plan;
-    for (const GovernedComponent& g : look.watched()) plan.level.push_back(g.level);
+    Plan plan = present_levels(look);
+    double spent = 0;
+    bool first = true;
     for (auto k = order.rbegin(); k != order.rend(); ++k)
     {
-        const std::int32_t l = plan.level[*k];
-        if (l < 0 || l >= look.finest() || !look.rested(*k)) continue;
-        const double more = std::max(0.0, costs[static_cast<std::size_t>(l + 1)] - costs[static_cast<std::size_t>(l)]);
-        if (plan.change + more > room) break;
-        ++plan.level[*k], plan.change += more;
+        if (plan[*k] < 0 || plan[*k] >= look.finest() || !look.rested(*k)) continue;
+        const auto l = static_cast<std::size_t>(plan[*k]);
+        const double dear = model.cost(l + 1) + model.deviation(l + 1);
+        spent += std::max(0.0, dear - model.cost(l)) / static_cast<double>(plan.size());
+        if (spent > (first ? 2 * room : room)) break;
+        ++plan[*k], first = false;
     }
     return plan;
+}
+
+/// Of the components that are on the ladder.
+Reals fractions_of(const Look& look)
+{
+    Reals out(static_cast<std::size_t>(look.finest() + 1), 0.0);
+    double all = 0;
+    for (const GovernedComponent& g : look.watched())
+        if (g.level >= 0) ++out[static_cast<std::size_t>(g.level)], ++all;
+    for (double& f : out) f = all > 0 ? f / all : 0;
+    return out;
 }
 
 }  // namespace
@@ -109,13 +103,8 @@ void BudgetRows::describe(Schema& schema)
         .or_else(0.15)
         .not_negative();
     schema.state(step_cost, "step_cost", unit::second, "what a step costs, as measured; set by the host").input();
-    schema
-        .state(level_costs, "level_costs", unit::second,
-               "what a component costs at each level, as measured; set by the host; negative: not known")
-        .input();
-    schema.state(scale, "scale", unit::one, "the cost of a change of level relative to the component's own cost, as learnt").initially(1);
-    schema.state(cost_before, "cost_before", unit::second, "what a step cost when levels were changed last; 0: the change has been judged");
-    schema.state(predicted, "predicted", unit::second, "the change of the cost that was expected then");
+    schema.state(costs, "costs", unit::second,
+                 "cost of a step with all components at each level, as learnt, and then the covariance (s^2) of these costs");
     schema.output(spent, "spent", unit::one, "cost of a step relative to the budget");
     schema.output(given_up, "given_up", unit::one, "number of components that are not at the most exact level");
 }
@@ -126,29 +115,28 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
     const double budget = governors.budget[row] > 0 ? governors.budget[row] : governors.share[row] * context.dt;
     const double cost = governors.step_cost[row];
     governors.spent[row] = cost / budget;
-    learn(row, governors);
     Look look(context, row, governors.watch, control);
-    const auto count = static_cast<std::int64_t>(look.watched().size());
+    const std::size_t count = look.watched().size();
+    if (count == 0) return;
+    CostModel model(governors.costs[row], static_cast<std::size_t>(look.finest() + 1));
+    model.update(fractions_of(look), cost);
     std::vector<double> importance;
     for (const GovernedComponent& g : look.watched()) importance.push_back(importance_of(g, control.viewpoints()));
-    std::vector<std::size_t> order(importance.size());
+    std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return importance[a] < importance[b]; });
-    const Reals costs = costs_of(governors.level_costs[row], control.levels(row));
-    const double scale = governors.scale[row], goal = budget * (1 - 0.5 * governors.headroom[row]);
+    const double goal = budget * (1 - 0.5 * governors.headroom[row]);
     const bool over = cost > budget;
     Plan plan;
     if (over)
-        plan = plan_savings(look, order, costs, (cost - goal) / scale);
+        plan = plan_savings(look, order, model, cost - goal);
     else if (cost < budget * (1 - governors.headroom[row]))
-        plan = plan_spending(look, order, costs, (goal - cost) / scale);
+        plan = plan_spending(look, order, model, goal - cost);
     const std::string why =
         (over ? "a step takes " : "there is room: a step takes ") + brief(1e3 * cost) + " ms of " + brief(1e3 * budget) + " ms";
-    bool any = false;
-    for (std::size_t k = 0; k < plan.level.size(); ++k)
-        if (plan.level[k] >= 0) any = look.choose(k, plan.level[k], why + "; importance " + brief(importance[k])) || any;
-    if (any) governors.cost_before[row] = cost, governors.predicted[row] = plan.change;
-    governors.given_up[row] = count - static_cast<std::int64_t>(governors.watch.count[row].empty() ? 0 : governors.watch.count[row].back());
+    for (std::size_t k = 0; k < plan.size(); ++k)
+        if (plan[k] >= 0) (void)look.choose(k, plan[k], why + "; importance " + brief(importance[k]));
+    governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(count) - governors.watch.count[row].back());
 }
 
 void ErrorRows::describe(Schema& schema)

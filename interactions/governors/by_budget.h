@@ -6,16 +6,13 @@
 namespace plab::governors
 {
 
-/// Governor/Budget. The host measures what steps cost and sets it as inputs, which are recorded with the run (plab/levels.h).
+/// Governor/Budget. The host measures what steps cost and sets it as an input, which is recorded with the run (plab/levels.h).
 struct BudgetRows
 {
     WatchRows watch;
     Column<double> budget, share, headroom;
-    Column<double> step_cost;    ///< s, input
-    Column<Reals> level_costs;   ///< s, by level, input; negative: not known
-    Column<double> scale;        ///< by how much more a change of level saves than the component's own cost says
-    Column<double> cost_before;  ///< s, step_cost at the last change; 0: it has been judged
-    Column<double> predicted;    ///< s, the change of step_cost that was expected then, without scale
+    Column<double> step_cost;  ///< s, input
+    Column<Reals> costs;       ///< what is known of the cost of each level (cost_model.h)
     Column<double> spent;
     Column<std::int64_t> given_up;
 

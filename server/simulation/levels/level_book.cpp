@@ -225,48 +225,19 @@ void LevelBook::note_change(std::uint32_t component, std::string reason, double 
     if (component < changes_.size()) changes_[component] = {world_.id_of(component), std::move(reason), time};
 }
 
-/// s per step, by level: mean of the components that have it at present; -1 where there are none.
-Reals LevelBook::costs_by_level(const Governor& governor) const
-{
-    const CostBook& book = stepper_.cost();
-    Reals sum(governor.ladder.levels.size(), 0.0);
-    std::vector<std::size_t> count(sum.size(), 0);
-    for (const Watched& w : governor.watched)
-    {
-        const std::int32_t level = level_of(world_, w.component, governor.ladder);
-        if (level < 0) continue;
-        const std::uint32_t table = world_.component(w.component).table;
-        const auto owners = world_.tables()[table]->component_of_row();
-        const double rows =
-            static_cast<double>(owners.size() - static_cast<std::size_t>(std::count(owners.begin(), owners.end(), kNoIndex)));
-        const Spread spread = book.owns(w.component) ? book.of_component(w.component) : book.of_table(table);
-        if (spread.samples == 0) continue;
-        sum[static_cast<std::size_t>(level)] += spread.median * 1e-9 / (book.owns(w.component) ? 1 : rows);
-        ++count[static_cast<std::size_t>(level)];
-    }
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] = count[k] > 0 ? sum[k] / static_cast<double>(count[k]) : -1;
-    return sum;
-}
-
 std::vector<Request> LevelBook::measurements(double time, double dt, double step_cost) const
 {
     std::vector<Request> out;
     for (const Governor& g : governors_)
     {
         const Schema& schema = world_.table_of(g.component).schema();
-        const Field *step = schema.find_field("step_cost"), *costs = schema.find_field("level_costs");
-        if (!step || !costs || !step->is_input || !costs->is_input) continue;
+        const Field* step = schema.find_field("step_cost");
+        if (!step || !step->is_input) continue;
         const double every = std::max(dt, real_of(world_, g.component, "every"));
         if (std::floor(time / every + 1e-9) == std::floor((time - dt) / every + 1e-9)) continue;
-        Reals by_level = costs_by_level(g);
-        const Value before = world_.get(g.component, "level_costs");
-        if (const auto* known = std::get_if<Reals>(&before); known && known->size() == by_level.size())
-            for (std::size_t k = 0; k < by_level.size(); ++k)
-                if (by_level[k] < 0) by_level[k] = (*known)[k];
         Request request;
         request.trial.budget = TrialChoice::Budget::None;
         request.operations.push_back(SetOperation{world_.id_of(g.component), "step_cost", Value(step_cost)});
-        request.operations.push_back(SetOperation{world_.id_of(g.component), "level_costs", Value(std::move(by_level))});
         out.push_back(std::move(request));
     }
     return out;

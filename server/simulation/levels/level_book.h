@@ -59,9 +59,8 @@ public:
     /// What was carried out, for observers.
     void note_change(std::uint32_t component, std::string reason, double time);
 
-    /// Inputs for governors that have the fields `step_cost` (s per step) and `level_costs` (s per step and component, by level; negative:
-    /// not known), as often as their field `every` (s) states.
-    /// `step_cost`: s.
+    /// Inputs for governors that have the field `step_cost` (s), as often as their field `every` (s) states: what steps have cost by the
+    /// clock.
     std::vector<Request> measurements(double time, double dt, double step_cost) const;
 
     /// All watched components, by governor and then by id.
@@ -98,7 +97,6 @@ private:
     void find_parts();
     void add_objects(std::uint32_t component, std::vector<Ref>& out, int depth) const;
     GovernedComponent look(const Governor& governor, const Watched& watched) const;
-    Reals costs_by_level(const Governor& governor) const;
     LevelInfo info(const Governor& governor, const Watched& watched) const;
 
     world::World& world_;

@@ -1,0 +1,49 @@
+#include "cost_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::governors
+{
+namespace
+{
+
+/// Of a level that has not been seen: each finer one is taken to cost three times as much.
+constexpr double kDearer = 3;
+/// Standard deviations relative to the cost: of such a guess, of a measurement, and of what a cost changes from one look to the next.
+constexpr double kGuess = 1, kNoise = 0.1, kDrift = 0.03;
+
+}  // namespace
+
+double CostModel::deviation(std::size_t level) const { return std::sqrt(std::max(0.0, state_[n_ + level * n_ + level])); }
+
+void CostModel::begin(std::span<const double> fraction, double cost)
+{
+    // The level that most components have costs about what was measured.
+    const auto most = static_cast<std::size_t>(std::max_element(fraction.begin(), fraction.end()) - fraction.begin());
+    state_.assign(n_ + n_ * n_, 0.0);
+    for (std::size_t k = 0; k < n_; ++k)
+    {
+        state_[k] = cost * std::pow(kDearer, static_cast<double>(k) - static_cast<double>(most));
+        covariance(k, k) = kGuess * kGuess * state_[k] * state_[k];
+    }
+}
+
+void CostModel::update(std::span<const double> fraction, double cost)
+{
+    if (!is_known()) begin(fraction, cost);
+    Reals gain(n_, 0.0);  // P f, then the gain
+    double expected = 0, variance = kNoise * kNoise * cost * cost;
+    for (std::size_t i = 0; i < n_; ++i)
+    {
+        // Only a level in use drifts away from what is known of it.
+        if (fraction[i] > 0) covariance(i, i) += kDrift * kDrift * state_[i] * state_[i];
+        for (std::size_t k = 0; k < n_; ++k) gain[i] += covariance(i, k) * fraction[k];
+    }
+    for (std::size_t i = 0; i < n_; ++i) expected += fraction[i] * state_[i], variance += fraction[i] * gain[i];
+    for (std::size_t i = 0; i < n_; ++i)
+        for (std::size_t k = 0; k < n_; ++k) covariance(i, k) -= gain[i] * gain[k] / variance;
+    for (std::size_t i = 0; i < n_; ++i) state_[i] = std::max(0.0, state_[i] + gain[i] / variance * (cost - expected));
+}
+
+}  // namespace plab::governors
