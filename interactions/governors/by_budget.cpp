@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <queue>
+#include <tuple>
 
 #include "cost_model.h"
 #include "sight.h"
@@ -39,42 +41,60 @@ Plan present_levels(const Look& look)
     return plan;
 }
 
-/// One level at a time for all, the least important ones first, then another one: the first level down usually costs the least exactness.
-/// `needed`: s.
-Plan plan_savings(const Look& look, const std::vector<std::size_t>& order, const CostModel& model, double needed)
+/// A change of one level, and what it is worth.
+struct Offer
+{
+    double worth = 0;  ///< importance per second of a step
+    std::size_t component = 0;
+    double seconds = 0;  ///< by which the step changes
+};
+
+/// Gives up the least importance for each second that is saved, one level after the other, until `needed` (s) is saved.
+Plan plan_savings(const Look& look, const std::vector<double>& importance, const CostModel& model, double needed)
 {
     Plan plan = present_levels(look);
-    double saved = 0;
-    for (bool any = true; any && saved < needed;)
+    const auto dearer = [](const Offer& a, const Offer& b) { return std::tie(a.worth, a.component) > std::tie(b.worth, b.component); };
+    std::priority_queue<Offer, std::vector<Offer>, decltype(dearer)> offers(dearer);
+    const auto offer = [&](std::size_t k)
     {
-        any = false;
-        for (const std::size_t k : order)
-        {
-            if (saved >= needed) break;
-            if (plan[k] <= 0) continue;
-            const auto l = static_cast<std::size_t>(plan[k]);
-            saved += std::max(0.0, model.cost(l) - model.cost(l - 1)) / static_cast<double>(plan.size());
-            --plan[k], any = true;
-        }
+        if (plan[k] <= 0) return;
+        const auto l = static_cast<std::size_t>(plan[k]);
+        const double saved = (model.cost(l) - model.cost(l - 1)) / static_cast<double>(plan.size());
+        if (saved > 0) offers.push({importance[k] / saved, k, saved});
+    };
+    for (std::size_t k = 0; k < plan.size(); ++k) offer(k);
+    for (double saved = 0; saved < needed && !offers.empty();)
+    {
+        const Offer best = offers.top();
+        offers.pop();
+        saved += best.seconds, --plan[best.component];
+        offer(best.component);
     }
     return plan;
 }
 
-/// The most important ones get one finer level each, as far as there is room (s). What a level costs is taken to be as much as it may well
-/// be, so that a level that is not known yet is tried by a few components first.
-Plan plan_spending(const Look& look, const std::vector<std::size_t>& order, const CostModel& model, double room)
+/// Buys the most importance for each second, one level for each component, as far as there is room (s). What a level costs is taken to be
+/// as much as it may well be, so that a level that is not known yet is tried by a few components first.
+Plan plan_spending(const Look& look, const std::vector<double>& importance, const CostModel& model, double room)
 {
     Plan plan = present_levels(look);
-    double spent = 0;
-    bool first = true;
-    for (auto k = order.rbegin(); k != order.rend(); ++k)
+    std::vector<Offer> offers;
+    for (std::size_t k = 0; k < plan.size(); ++k)
     {
-        if (plan[*k] < 0 || plan[*k] >= look.finest() || !look.rested(*k)) continue;
-        const auto l = static_cast<std::size_t>(plan[*k]);
+        if (plan[k] < 0 || plan[k] >= look.finest() || !look.rested(k)) continue;
+        const auto l = static_cast<std::size_t>(plan[k]);
         const double dear = model.cost(l + 1) + model.deviation(l + 1);
-        spent += std::max(0.0, dear - model.cost(l)) / static_cast<double>(plan.size());
-        if (spent > (first ? 2 * room : room)) break;
-        ++plan[*k], first = false;
+        const double spent = std::max(1e-12, dear - model.cost(l)) / static_cast<double>(plan.size());
+        offers.push_back({importance[k] / spent, k, spent});
+    }
+    std::sort(offers.begin(), offers.end(),
+              [](const Offer& a, const Offer& b) { return a.worth != b.worth ? a.worth > b.worth : a.component < b.component; });
+    double spent = 0;
+    for (const Offer& o : offers)
+    {
+        const bool first = spent == 0;
+        if (spent + o.seconds > (first ? 2 * room : room)) continue;
+        spent += o.seconds, ++plan[o.component];
     }
     return plan;
 }
@@ -99,6 +119,10 @@ void BudgetRows::describe(Schema& schema)
         .or_else(0)
         .not_negative();
     schema.param(share, "share", unit::one, "of the step's length, if no budget is given").or_else(0.8).positive();
+    schema
+        .param(clock, "clock", unit::one, "what counts: time of the `processor` that the stepping thread uses, or time by the `wall` clock")
+        .or_else("processor")
+        .one_of({"processor", "wall"});
     schema.param(headroom, "headroom", unit::one, "fraction of the budget that is left free before levels become finer")
         .or_else(0.15)
         .not_negative();
@@ -122,16 +146,13 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
     model.update(fractions_of(look), cost);
     std::vector<double> importance;
     for (const GovernedComponent& g : look.watched()) importance.push_back(importance_of(g, control.viewpoints()));
-    std::vector<std::size_t> order(count);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return importance[a] < importance[b]; });
     const double goal = budget * (1 - 0.5 * governors.headroom[row]);
     const bool over = cost > budget;
     Plan plan;
     if (over)
-        plan = plan_savings(look, order, model, cost - goal);
+        plan = plan_savings(look, importance, model, cost - goal);
     else if (cost < budget * (1 - governors.headroom[row]))
-        plan = plan_spending(look, order, model, goal - cost);
+        plan = plan_spending(look, importance, model, goal - cost);
     const std::string why =
         (over ? "a step takes " : "there is room: a step takes ") + brief(1e3 * cost) + " ms of " + brief(1e3 * budget) + " ms";
     for (std::size_t k = 0; k < plan.size(); ++k)

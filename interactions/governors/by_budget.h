@@ -11,6 +11,7 @@ struct BudgetRows
 {
     WatchRows watch;
     Column<double> budget, share, headroom;
+    Column<std::string> clock;
     Column<double> step_cost;  ///< s, input
     Column<Reals> costs;       ///< what is known of the cost of each level (cost_model.h)
     Column<double> spent;
@@ -19,8 +20,9 @@ struct BudgetRows
     void describe(Schema& schema);
 };
 
-/// Above the budget, components become cheaper, the least important ones first, until the step is expected to fit. Below it, the most
-/// important ones become finer as far as there is room. Importance is the angle under which a viewer sees the component.
+/// Above the budget, components become cheaper where the least importance is lost for each second that is saved, until the step is expected
+/// to fit. Below it, they become finer where a second buys the most importance, as far as there is room. Importance is the angle under
+/// which a viewer sees the component.
 void keep_budget(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control);
 
 /// Governor/Error: the cheapest level whose error stays below a bound.

@@ -69,10 +69,16 @@ void Simulation::measure_for_governors()
 {
     if (!deciding_ || !run_.levels().watches_anything() || recent_steps_.empty()) return;
     // Most steps shall keep within a budget, so what counts is the cost that nine of ten steps do not exceed.
-    std::vector<float> sorted = recent_steps_;
-    const auto nine_of_ten = sorted.begin() + static_cast<std::ptrdiff_t>(9 * (sorted.size() - 1) / 10);
-    std::nth_element(sorted.begin(), nine_of_ten, sorted.end());
-    for (Request& request : run_.levels().measurements(time(), dt(), static_cast<double>(*nine_of_ten) * 1e-9))
+    const auto nine_of_ten = [this](double StepCost::*clock)
+    {
+        std::vector<double> values;
+        for (const StepCost& step : recent_steps_) values.push_back(step.*clock);
+        const auto at = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
+        std::nth_element(values.begin(), at, values.end());
+        return *at;
+    };
+    const StepCost cost{nine_of_ten(&StepCost::wall), nine_of_ten(&StepCost::processor)};
+    for (Request& request : run_.levels().measurements(time(), dt(), cost))
     {
         recent_steps_.clear();
         Reply reply = carry_out(request);

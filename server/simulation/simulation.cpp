@@ -199,7 +199,7 @@ bool Simulation::run_step()
     const double start = run_.clock.time_at(run_.clock.tick);
     run_.stepper().draw_for(images_);
     run_.watch->before_step(run_.view());
-    const std::uint64_t begin = now_ns();
+    const std::uint64_t begin = now_ns(), thread_begin = run_.levels().watches_anything() ? thread_ns() : 0;
     context_.progress.begin(Activity::Step, run_.clock.tick, begin);
     run_.stepper().step(run_.clock.tick, start, run_.clock.time_at(run_.clock.tick + 1) - start);
     if (may_be_given_up && run_.stepper().gave_up()) take_back_step();
@@ -208,7 +208,8 @@ bool Simulation::run_step()
     const auto took = static_cast<double>(now_ns() - begin);
     context_.note_cost(took);
     constexpr std::size_t kMostRecent = 1024;
-    if (run_.levels().watches_anything() && recent_steps_.size() < kMostRecent) recent_steps_.push_back(static_cast<float>(took));
+    if (run_.levels().watches_anything() && recent_steps_.size() < kMostRecent)
+        recent_steps_.push_back({took * 1e-9, static_cast<double>(thread_ns() - thread_begin) * 1e-9});
     run_.events = std::move(decided_.events);
     run_.events.insert(run_.events.end(), run_.stepper().events().begin(), run_.stepper().events().end());
     decided_.events.clear();

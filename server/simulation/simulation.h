@@ -152,7 +152,7 @@ private:
     };
     Decided decided_;
     std::string last_refusal_;
-    std::vector<float> recent_steps_;  ///< ns, of the steps since the last measurement for governors
+    std::vector<StepCost> recent_steps_;  ///< since the last measurement for governors
 };
 
 }  // namespace plab::simulation

@@ -225,7 +225,7 @@ void LevelBook::note_change(std::uint32_t component, std::string reason, double 
     if (component < changes_.size()) changes_[component] = {world_.id_of(component), std::move(reason), time};
 }
 
-std::vector<Request> LevelBook::measurements(double time, double dt, double step_cost) const
+std::vector<Request> LevelBook::measurements(double time, double dt, const StepCost& cost) const
 {
     std::vector<Request> out;
     for (const Governor& g : governors_)
@@ -237,7 +237,8 @@ std::vector<Request> LevelBook::measurements(double time, double dt, double step
         if (std::floor(time / every + 1e-9) == std::floor((time - dt) / every + 1e-9)) continue;
         Request request;
         request.trial.budget = TrialChoice::Budget::None;
-        request.operations.push_back(SetOperation{world_.id_of(g.component), "step_cost", Value(step_cost)});
+        request.operations.push_back(SetOperation{world_.id_of(g.component), "step_cost",
+                                                  Value(text_of(world_, g.component, "clock") == "wall" ? cost.wall : cost.processor)});
         out.push_back(std::move(request));
     }
     return out;

@@ -28,6 +28,12 @@ struct Decision
     std::vector<std::string> reasons;    ///< one for each of them, or for the request
 };
 
+/// s, what a step costs: time that passes, and time of the processor that the stepping thread used.
+struct StepCost
+{
+    double wall = 0, processor = 0;
+};
+
 /// A watched component as an observer sees it.
 struct LevelInfo
 {
@@ -59,9 +65,9 @@ public:
     /// What was carried out, for observers.
     void note_change(std::uint32_t component, std::string reason, double time);
 
-    /// Inputs for governors that have the field `step_cost` (s), as often as their field `every` (s) states: what steps have cost by the
-    /// clock.
-    std::vector<Request> measurements(double time, double dt, double step_cost) const;
+    /// Inputs for governors that have the field `step_cost` (s), as often as their field `every` (s) states: what steps have cost, by the
+    /// wall clock if their field `clock` says "wall".
+    std::vector<Request> measurements(double time, double dt, const StepCost& cost) const;
 
     /// All watched components, by governor and then by id.
     std::vector<LevelInfo> levels() const;
