@@ -10,8 +10,9 @@
 ///
 /// Candidate pairs are kept in a priority queue ordered by time. There are two kinds of candidates:
 ///   - A resolution that tests only the end of the step supplies pairs that overlap there. The overlap gives a bracket (clear at the
-///     start of the piece, overlapping at its end), and bisection or a similar method narrows it down to the time of impact. Bodies that
-///     pass through each other within the step are missed.
+///     start of the piece, overlapping at its end), and bisection or a similar method narrows it down to the time of impact. A pair that
+///     touches at the start of the piece, and closes or is pressed together, meets there: no search. Bodies that pass through each other
+///     within the step are missed.
 ///   - A resolution that certifies supplies all pairs that may meet anywhere in the piece (swept bounding boxes). The time of such a
 ///     candidate starts as a lower bound: motion_bound.h proves that the pair cannot meet before. From there conservative advancement
 ///     goes on: measure the distance, compute how long the pair is certain to stay apart, advance by that time, and repeat until the
