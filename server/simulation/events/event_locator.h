@@ -203,7 +203,7 @@ private:
     void accelerations_at_contacts(const Candidate& candidate, double time);
     bool presses(Candidate& candidate, const DistanceSample& sample);
     void find_touching(const Candidate& candidate);
-    bool meets_at_begin(const Candidate& candidate, double begin);
+    bool meets_at_begin(Candidate& candidate, double begin);
 
     // event_answer.cpp
     void advance_group(std::uint32_t group, double time, WorkBook book, bool trial);

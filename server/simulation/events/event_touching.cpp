@@ -70,8 +70,7 @@ bool EventLocator::presses(Candidate& candidate, const DistanceSample& sample)
     return candidate.pressed = -0.5 * c.normal_acceleration * left * left > sample.slack;
 }
 
-/// Lists in pressed_ the contacts of a pair that touch within rounding and do not separate, with the bodies as they are. Surfaces along
-/// which the pair only slides do not count.
+/// Lists in pressed_ the contacts of a pair that touch within rounding and do not separate, with the bodies as they are.
 void EventLocator::find_touching(const Candidate& candidate)
 {
     const auto deepest = std::max_element(at_end_.begin(), at_end_.end(),
@@ -86,17 +85,16 @@ void EventLocator::find_touching(const Candidate& candidate)
                   [&](const FoundContact& f)
                   {
                       const Contact& c = f.contact;
-                      const bool separates = contacts_.normal_velocity(c) > kNoGapRate * speeds_at(c.a, c.point, c.b, c.point);
-                      return separates || (candidate.ignored > 0 && c.depth <= candidate.ignored);
+                      return contacts_.normal_velocity(c) > kNoGapRate * speeds_at(c.a, c.point, c.b, c.point);
                   });
     sort_contacts(pressed_, step_.world);
 }
 
 /// Whether a pair that is clear where its piece begins, at `begin` s, and overlaps at the end of the step, touches there already, and
-/// closes or is pressed together by forces. Then it meets at this time. Halving would only approach the beginning, down to the resolution
-/// of times, and advance in each trial whatever rests on the pair: a stack would take the work of a step for a few of its bodies. The
-/// bodies are at `begin`; at_end_ has the contacts at the end of the step.
-bool EventLocator::meets_at_begin(const Candidate& candidate, double begin)
+/// closes or is pressed together by forces. Then it meets at this time, and its contacts are those that touch. Halving would only approach
+/// the beginning, down to the resolution of times, and advance in each trial whatever rests on the pair: a stack would take the work of a
+/// step for a few of its bodies. The bodies are at `begin`; at_end_ has the contacts at the end of the step.
+bool EventLocator::meets_at_begin(Candidate& candidate, double begin)
 {
     const double left = step_.frame.step - begin;
     if (!contacts_.detectors()[candidate.detector].responds || !(left > kShortest * step_.frame.step)) return false;
@@ -105,13 +103,18 @@ bool EventLocator::meets_at_begin(const Candidate& candidate, double begin)
     { return p.time == begin && p.detector == candidate.detector && p.a == candidate.a && p.b == candidate.b; };
     if (std::any_of(met_at_begin_.begin(), met_at_begin_.end(), is_this)) return false;
     find_touching(candidate);
-    if (pressed_.empty()) return false;
     const auto slack = [&](const Contact& c) { return slack_of(c.a, c.b, speeds_at(c.a, c.point, c.b, c.point)); };
     const auto closes = [&](const FoundContact& f) { return -contacts_.normal_velocity(f.contact) * left > slack(f.contact); };
-    if (std::any_of(pressed_.begin(), pressed_.end(), closes)) return true;
-    accelerations_at_contacts(candidate, begin);
     const auto sinks = [&](const FoundContact& f) { return -0.5 * f.contact.normal_acceleration * left * left > slack(f.contact); };
-    return std::any_of(pressed_.begin(), pressed_.end(), sinks);
+    // Surfaces along which the pair only slides do neither.
+    bool meets = std::any_of(pressed_.begin(), pressed_.end(), closes);
+    if (!meets && !pressed_.empty())
+    {
+        accelerations_at_contacts(candidate, begin);
+        meets = std::any_of(pressed_.begin(), pressed_.end(), sinks);
+    }
+    if (meets) candidate.contacts = pressed_;
+    return meets;
 }
 
 }  // namespace plab::simulation
