@@ -112,6 +112,10 @@ bool EventLocator::meets_at_begin(Candidate& candidate, double begin)
     {
         accelerations_at_contacts(candidate, begin);
         meets = std::any_of(pressed_.begin(), pressed_.end(), sinks);
+        // In Painleve's paradox an impact ends the slip however slowly it closes, but it has to close. Here it does not yet.
+        for (FoundContact& f : pressed_) contacts_.fill_material(f);
+        meets =
+            meets && std::none_of(pressed_.begin(), pressed_.end(), [&](const FoundContact& f) { return contacts_.is_paradox(f.contact); });
     }
     if (meets) candidate.contacts = pressed_;
     return meets;
