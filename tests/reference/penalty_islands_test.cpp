@@ -1,9 +1,11 @@
 // Spring contacts combined with other things: joints, kinematic bodies, hard contacts, rewinding, several threads.
+#include <algorithm>
 #include <numbers>
 
 #include "support/gravity.h"
 #include "support/ground.h"
 #include "support/scene.h"
+#include "support/text.h"
 
 using namespace plab;
 using plab::test::kGround;
@@ -125,6 +127,33 @@ TEST_CASE("an undamped spring in a mixed island neither gains nor loses energy o
     const double early = swing(2);
     (void)swing(20);
     CHECK(std::fabs(swing(22) / early - 1) < 0.05);
+}
+
+TEST_CASE("an undamped spring in a mixed island swings as far after 20 s as at first, whatever finds its hard contact, and when")
+{
+    for (const char* resolution : {"LocalRoot", "LocalBisection"})
+        for (const double gap : {0.0, 1e-7})
+        {
+            CAPTURE(std::string(resolution));
+            CAPTURE(gap);
+            Scene s(kGround + box("b", "mass=\"4\" position=\"0 0 " + plab::test::text(0.1 + gap) + "\"") +
+                        unit_ball("a", "position=\"0 0 0.2999\" linear_velocity=\"0 0 -0.02\"") +
+                        contact_of("hard", "b ground",
+                                   std::string("response=\"Response/Impulse\" resolution=\"Resolution/") + resolution + "\"") +
+                        contact_of("soft", "a b", spring("1e4", "response.steps_per_contact=\"40\"")) + kGravity,
+                    "dt=\"1/60\"");
+            REQUIRE_MESSAGE(s.loaded(), s.error());
+            const auto swing = [&](double until)
+            {
+                double highest = -1, lowest = 1;
+                for (double z = 0; s.simulation().time() < until; highest = std::max(highest, z), lowest = std::min(lowest, z))
+                    s.step(), z = s.vec("a", "position").z;
+                return highest - lowest;
+            };
+            const double early = swing(2);
+            s.run(20);
+            CHECK(std::fabs(swing(22) / early - 1) < 5e-3);
+        }
 }
 
 TEST_CASE("rewinding the whole world divides a spring's contact into pieces and changes nothing")

@@ -12,6 +12,7 @@ namespace
 {
 
 const char* const kLocating[] = {"LocalRoot", "ConservativeAdvancement", "LocalBisection", "Bisection"};
+const char* const kHalving[] = {"LocalBisection", "Bisection"};
 const char* const kResponses[] = {"Impulse", "Rows"};
 
 /// Bound on the number of detections of locating in one step of these scenes: a multiple of a few impacts. A test ends there.
@@ -146,6 +147,84 @@ TEST_CASE("a released stack is at rest in its first step after one event, and ne
         row.step();
         CHECK(row.count("contact.begin") == 3);
         CHECK(row.count("contact.rest") == 3);
+    }
+}
+
+TEST_CASE("bisection: a released stack is at rest in its first step, each cube in an event when it is released")
+{
+    constexpr int kHigh = 10;
+    const auto stack = [](double half, const char* resolution, const char* response)
+    {
+        std::string cubes, bodies;
+        for (int i = 0; i < kHigh; ++i)
+        {
+            cubes += box("c" + std::to_string(i), {half, half, half}, at({0, 0, (2 * i + 1) * half}));
+            bodies += "c" + std::to_string(i) + " ";
+        }
+        return kGround + cubes + gravity(bodies) + contact(resolution, response, bodies + "ground", 0, 0.8);
+    };
+    // m: with 0.15 and 0.05, rounding of the positions lets some of the cubes overlap and leaves a gap to others.
+    for (const double half : {0.5, 0.15, 0.05})
+        for (const char* resolution : kHalving)
+            for (const char* response : kResponses)
+            {
+                CAPTURE(half);
+                CAPTURE(std::string(resolution));
+                CAPTURE(std::string(response));
+                Scene s(stack(half, resolution, response), "dt=\"1/60\"");
+                REQUIRE_MESSAGE(s.loaded(), s.error());
+                s.keep_events = true;
+                s.step();
+                CHECK(s.simulation().stepper().report().events == kHigh);
+                // One trial at the beginning finds that a pair is clear there, and another one that it touches.
+                CHECK(s.simulation().stepper().report().trials <= 2 * kHigh);
+                CHECK(s.count("contact.rest") == kHigh);
+                for (const Event& e : s.events) CHECK(e.time == 0);
+                s.step();
+                CHECK(s.simulation().stepper().report().events == 0);
+                CHECK(distance(s.vec("c" + std::to_string(kHigh - 1), "position"), {0, 0, (2 * kHigh - 1) * half}) < 2e-4);
+            }
+}
+
+TEST_CASE("bisection: the impulse passes through touching balls at the time of the first impact, without a search for each pair")
+{
+    constexpr int kBalls = 5;
+    constexpr double kRadius = 0.125, kSpeed = 1.1;  // positions without rounding
+    std::string row = sphere("b0", kRadius, at({-2 * kRadius, 0, 0}, {kSpeed, 0, 0})), bodies = "b0 ";
+    for (int i = 1; i < kBalls; ++i)
+        row += sphere("b" + std::to_string(i), kRadius, at({2 * kRadius * i, 0, 0})), bodies += "b" + std::to_string(i) + " ";
+    for (const char* resolution : kHalving)
+    {
+        CAPTURE(std::string(resolution));
+        Scene s(row + contact(resolution, "Impulse", bodies, 1, 0));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.keep_events = true;
+        int trials = 0;
+        for (; s.simulation().time() < 0.25; trials += s.simulation().stepper().report().trials) s.step();
+        const std::vector<Event> impacts = events_of(s, "contact.impact");
+        REQUIRE(impacts.size() == kBalls - 1);
+        CHECK(near(impacts.front().time, 2 * kRadius / kSpeed, 1e-15));
+        for (const Event& e : impacts) CHECK(e.time == impacts.front().time);
+        CHECK(trials <= 50 + 2 * (kBalls - 1));
+        for (int i = 0; i < kBalls; ++i)
+            CHECK(near(s.vec("b" + std::to_string(i), "linear_velocity").x, i == kBalls - 1 ? kSpeed : 0, 1e-15));
+    }
+}
+
+TEST_CASE("bisection: a ball that leaves the floor when its piece begins meets it when it comes back")
+{
+    constexpr double kUp = 0.015;
+    for (const char* resolution : kHalving)
+    {
+        CAPTURE(std::string(resolution));
+        Scene s(kGround + sphere("ball", 0.125, at({0, 0, 0.125}, {0, 0, kUp})) + gravity("ball") +
+                contact(resolution, "Impulse", "ball ground", 1, 0));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.keep_events = true;
+        s.step();
+        const std::vector<Event> impacts = events_of(s, "contact.impact");
+        REQUIRE(impacts.size() == 1);
+        CHECK(near(impacts.front().time, 2 * kUp / 9.81, 1e-12));
     }
 }
 

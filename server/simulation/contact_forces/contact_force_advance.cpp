@@ -27,6 +27,10 @@ constexpr double kLeastMargin = 1e-8;
 /// Longest piece, as a fraction of the time in which a body passes through half of another's thickness: so contacts are detected often
 /// enough that no body passes through another unnoticed.
 constexpr double kUnseen = 0.25;
+/// Half periods in which the estimated speed amplitude of an oscillation is forgotten. In a mixed island it must hardly fall between two
+/// turns of an oscillation: pieces that are longer after the largest speed than before it would add energy in every period. The time
+/// stepping is symplectic only with pieces of one length.
+constexpr double kMemory = 1, kMixedMemory = 16;
 
 /// m: half of the smallest width. For a hull half of the smallest half-width along its axes, as it may be thinner in other directions.
 double thinnest(const Geometry& g)
@@ -296,6 +300,7 @@ void ContactForces::advance_island(const Island& island, double from, double to,
     piece.system->begin(from, from, book, nullptr);
     piece.system->move_prescribed();
     order_ = std::max(1, step_.world.type_of(piece.solver)->info.order);
+    memory_ = kMemory;
     start(from);
     // Pieces of free flight and switching events are not limited by max_substeps.
     while (piece.t < to && piece.finite && piece.pieces < kMostPieces && !step_.frame.give_up()) one_piece(piece);
@@ -309,6 +314,7 @@ void ContactForces::advance_island(const Island& island, double from, double to,
 void ContactForces::advance_mixed(const Island& island, double from, double to, WorkBook book, bool trial)
 {
     order_ = 2;
+    memory_ = kMixedMemory;
     start(from);
     int pieces = 0;
     for (double t = from; t < to && pieces < kMostPieces && !step_.frame.give_up(); ++pieces)

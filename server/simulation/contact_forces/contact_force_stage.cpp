@@ -279,10 +279,10 @@ void ContactForces::commit(double t, double h)
     {
         const Contact& c = found_[i].contact;
         // In an oscillation at the frequency w, the rate of change of force times mobility is w^2 times the speed, which gives the speed
-        // amplitude. The estimate decays within half a period.
+        // amplitude. The estimate decays within memory_ half periods.
         const double rate = std::numbers::pi / known->half_period;
         const double speed = h > 0 ? length(c.impulse - known->force) * known->rates.mobility / (h * rate * rate) : 0.0;
-        known->swing_speed = std::max(speed, known->swing_speed * (1 - std::min(0.5, h / known->half_period)));
+        known->swing_speed = std::max(speed, known->swing_speed * (1 - std::min(0.5, h / (memory_ * known->half_period))));
         // The reference is the largest of the speed so far and the speed of an oscillation whose amplitude is the static deflection.
         known->peak_swing_speed = std::max({known->peak_swing_speed, known->swing_speed, length(c.impulse) * known->rates.mobility / rate});
         known->stretch = c.stretch, known->force = c.impulse, known->depth = c.depth;

@@ -251,6 +251,7 @@ private:
     std::vector<Anchor> anchors_;        ///< by body; valid for bodies_
     double margin_ = 0;                  ///< m: gaps up to this are detected within a piece
     int order_ = 1;                      ///< order of the solver
+    double memory_ = 1;                  ///< half periods in which the speed amplitude of an oscillation is forgotten
     bool taken_ = false;                 ///< the forces of this piece of a mixed island have been evaluated
     double time_ahead_ = 0;              ///< s: how far ahead of the state springs are evaluated (mixed islands)
     std::vector<PersistentPair> persistent_;

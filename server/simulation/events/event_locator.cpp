@@ -196,8 +196,8 @@ void EventLocator::take(std::uint32_t slot, double until)
 /// than several answers for a few pairs each.
 void EventLocator::recall_unpressed(Ref stopped, double until)
 {
-    std::erase_if(unpressed_, [&](const UnpressedPair& t) { return t.version != version_of(t.a, t.b); });
-    const auto meets = [&](const UnpressedPair& t) { return (t.a == stopped || t.b == stopped) && t.time <= until; };
+    std::erase_if(unpressed_, [&](const PairAtTime& t) { return t.version != version_of(t.a, t.b); });
+    const auto meets = [&](const PairAtTime& t) { return (t.a == stopped || t.b == stopped) && t.time <= until; };
     const auto found = std::find_if(unpressed_.begin(), unpressed_.end(), meets);
     if (found == unpressed_.end() || std::any_of(found + 1, unpressed_.end(), meets)) return;
     const std::uint32_t again = new_slot();
@@ -273,6 +273,7 @@ void EventLocator::process()
     in_scope_.sort();
     disturbed_ = in_scope_.members();
     scope_ = detector.local || first.at_end ? disturbed_ : step_.all_groups;
+    if (first.at_begin) met_at_begin_.push_back({first.detector, first.a, first.b, time, first.version});
     if (first.at_end)
     {
         // Answered where the step ends: nothing is rewound, only velocities change.
@@ -389,7 +390,7 @@ void EventLocator::run(std::vector<FoundContact>& found)
     all_certify_ = std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
     meets_force_contact_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_force; });
     begin_budget();
-    queue_.clear(), free_.clear(), unpressed_.clear();
+    queue_.clear(), free_.clear(), unpressed_.clear(), met_at_begin_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
     versions_.assign(step_.groups.all.size(), 0);
     met_.assign(step_.world.host().bodies.size(), {});

@@ -10,8 +10,9 @@
 ///
 /// Candidate pairs are kept in a priority queue ordered by time. There are two kinds of candidates:
 ///   - A resolution that tests only the end of the step supplies pairs that overlap there. The overlap gives a bracket (clear at the
-///     start of the piece, overlapping at its end), and bisection or a similar method narrows it down to the time of impact. Bodies that
-///     pass through each other within the step are missed.
+///     start of the piece, overlapping at its end), and bisection or a similar method narrows it down to the time of impact. A pair that
+///     touches at the start of the piece, and closes or is pressed together, meets there: no search. Bodies that pass through each other
+///     within the step are missed.
 ///   - A resolution that certifies supplies all pairs that may meet anywhere in the piece (swept bounding boxes). The time of such a
 ///     candidate starts as a lower bound: motion_bound.h proves that the pair cannot meet before. From there conservative advancement
 ///     goes on: measure the distance, compute how long the pair is certain to stay apart, advance by that time, and repeat until the
@@ -45,6 +46,11 @@ public:
     void run(std::vector<FoundContact>& found);
 
 private:
+    /// A closing or separation speed below this fraction of the two speeds that it is the difference of counts as zero.
+    static constexpr double kNoGapRate = 1e-14;
+    /// Times closer than this fraction of the step are not told apart.
+    static constexpr double kShortest = 0x1p-48;
+
     struct Candidate
     {
         std::uint32_t detector = 0;
@@ -55,6 +61,7 @@ private:
         bool nothing = false;                ///< located: they do not meet
         bool stuck = false;                  ///< overlaps already where the piece begins: there is no clear side to bracket from
         bool at_end = false;                 ///< not located: answered where the step ends
+        bool at_begin = false;               ///< located: it touches where its piece begins, and closes or is pressed together
         bool pressed = false;                ///< located: it touches without closing, and forces press it together
         Vec3 relief;                         ///< m/s^2, if pressed: change of b's acceleration if b is stopped by a
         double ignored = 0;                  ///< m: overlaps up to this depth belong to surfaces that the pair only slides along
@@ -102,12 +109,11 @@ private:
         Vec3 point_a, point_b;
         bool exact = false;  ///< the gap is the distance of the shapes, and the points are the closest ones
     };
-    /// A pair that touched at `time` while no force pressed it together.
-    struct UnpressedPair
+    struct PairAtTime
     {
         std::uint32_t detector;
         Ref a, b;
-        double time;
+        double time;  ///< s since the start of the step
         std::uint64_t version;
     };
     /// Whether a body takes part in the present event.
@@ -185,14 +191,19 @@ private:
     void extend_uncertified(Advancement& a) const;
     void fill_trial(const Candidate& candidate, Advancement& a);
     std::optional<bool> choose_time(Candidate& candidate, Advancement& a);
-    bool answered_at(const Candidate& candidate, double time) const;
     DistanceSample sample_at(const Candidate& candidate, double time);
-    bool presses(Candidate& candidate, const DistanceSample& sample);
     void scope_of_pair(const Candidate& candidate);
     static Vec3 turn_between(const DistanceSample& first, const DistanceSample& then);
     bool settle_in_bracket(Candidate& candidate, const DistanceSample& clear, const DistanceSample& over, bool certify);
-    bool settle_at_begin(Candidate& candidate, const DistanceSample& sample);
     bool found_when_given_up(Candidate& candidate, const DistanceSample& sample);
+
+    // event_touching.cpp: pairs that touch where their search begins.
+    bool settle_at_begin(Candidate& candidate, const DistanceSample& sample);
+    bool answered_at(const Candidate& candidate, double time) const;
+    void accelerations_at_contacts(const Candidate& candidate, double time);
+    bool presses(Candidate& candidate, const DistanceSample& sample);
+    void find_touching(const Candidate& candidate);
+    bool meets_at_begin(Candidate& candidate, double begin);
 
     // event_answer.cpp
     void advance_group(std::uint32_t group, double time, WorkBook book, bool trial);
@@ -246,10 +257,11 @@ private:
     bool rewound_ = false;                       ///< the last answer rewound groups
     bool answers_at_end_ = false;                ///< the work budget is spent: nothing is located any more
     WorkBudget budget_;
-    std::vector<PairKey> live_;          ///< pairs in the queue, sorted
-    std::vector<ShapeGap> shape_gaps_;   ///< of the last distance query, if a body has several shapes
-    std::vector<FoundContact> pressed_;  ///< one contact
-    std::vector<UnpressedPair> unpressed_;
+    std::vector<PairKey> live_;              ///< pairs in the queue, sorted
+    std::vector<ShapeGap> shape_gaps_;       ///< of the last distance query, if a body has several shapes
+    std::vector<FoundContact> pressed_;      ///< one contact
+    std::vector<PairAtTime> unpressed_;      ///< they touched at the time while no force pressed them together
+    std::vector<PairAtTime> met_at_begin_;   ///< answered in this step at a time at which their piece began
     std::vector<Met> met_;                   ///< by body; reset outside gather()
     std::vector<std::uint32_t> met_bodies_;  ///< the bodies that take part in the present event
     DisjointSets left_islands_;

@@ -4,8 +4,7 @@
 //   - search() by conservative advancement from the clear side: each distance query gives a time span in which nothing can meet
 //     (motion_bound.h), and the pair is advanced by that span until the gap is zero within rounding. As soon as a sample overlaps, the
 //     two last samples are a bracket.
-// Pairs that touch without closing need care: a body that slides or rests must not produce an event in every step, but one that forces
-// press into the surface must. presses() decides from the relative normal acceleration.
+// Pairs that touch where their search begins: event_touching.cpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,13 +20,9 @@ namespace
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// m: a gap of exactly 0 counts as an overlap; a resolution distinguishes the two by the sign, so it gets this much below 0.
 constexpr double kNothing = 1e-300;
-/// A closing or separation speed below this fraction of the two speeds that it is the difference of counts as zero.
-constexpr double kNoGapRate = 1e-14;
 /// If a pair touches and does not close, and no bound says for how long it stays so, it is advanced by this fraction of the rest of the
 /// piece without a guarantee; twice as far each time, so that the end of the piece is reached after about twenty queries.
 constexpr double kUncertified = 0x1p-20;
-/// Times closer than this fraction of the step are not told apart.
-constexpr double kShortest = 0x1p-48;
 /// Number of advancement steps towards a contact before the end of the piece is sampled, to find a bracket.
 constexpr int kFirstSteps = 4;
 
@@ -98,7 +93,11 @@ void EventLocator::locate(Candidate& candidate)
     }
     if (!overlaps)
     {
-        bracket(candidate, trial);
+        candidate.at_begin = meets_at_begin(candidate, trial.begin);
+        if (candidate.at_begin)
+            trial.end = trial.begin;
+        else
+            bracket(candidate, trial);
         candidate.time = trial.begin;
         candidate.bracket = trial.end - trial.begin;
     }
@@ -162,21 +161,6 @@ Vec3 EventLocator::turn_between(const DistanceSample& first, const DistanceSampl
     return cross(first.query.normal, then.query.normal) / (then.time - first.time);
 }
 
-/// Handles a pair that overlaps already where the search begins. True if that decides the candidate.
-bool EventLocator::settle_at_begin(Candidate& candidate, const DistanceSample& sample)
-{
-    if (sample.query.gap >= -sample.contact_gap - overlap_tolerance(candidate.a, candidate.b)) return false;
-    // There is no time of impact to find: a pair that closes is answered here; one that separates is left alone until the end of the step.
-    candidate.time = sample.time;
-    candidate.stuck = sample.rate <= 0 || !contacts_.detectors()[candidate.detector].responds;
-    candidate.at_end = !candidate.stuck;
-    if (candidate.stuck) return true;
-    candidate.time = step_.frame.step;
-    const DistanceSample last = sample_at(candidate, step_.frame.step);
-    candidate.nothing = !(last.query.gap < 0 && last.rate < 0);
-    return true;
-}
-
 /// Lets the resolution find the zero of the gap between a clear and an overlapping sample. With `certify` it succeeds only if the pair is
 /// certain not to have met earlier.
 bool EventLocator::settle_in_bracket(Candidate& candidate, const DistanceSample& clear, const DistanceSample& over, bool certify)
@@ -220,49 +204,6 @@ void EventLocator::search(Candidate& candidate)
     candidate.nothing = !meets(candidate);
     candidate.located = !budget_.is_spent();
     for (const std::uint32_t g : scope_) motion_.restore_end(g);
-}
-
-/// Whether the pair has had an impact at exactly this time: a second answer would not separate it either.
-bool EventLocator::answered_at(const Candidate& candidate, double time) const
-{
-    const PairState* pair =
-        contacts_.cache().find(contacts_.detectors()[candidate.detector].component, candidate.a, candidate.b, step_.world);
-    return pair && pair->impacts_tick == step_.frame.tick && pair->bounces.time == step_.frame.start_time + time;
-}
-
-/// Whether forces press a touching pair together so strongly that it would sink in by more than rounding during the rest of the step.
-/// This is asked once per contact time: after the answer the pair is at rest.
-bool EventLocator::presses(Candidate& candidate, const DistanceSample& sample)
-{
-    if (answered_at(candidate, sample.time)) return false;
-    const double left = step_.frame.step - sample.time;
-    pressed_.assign(1, {});
-    Contact& c = pressed_.front().contact;
-    c.a = candidate.a, c.b = candidate.b, c.normal = sample.query.normal, c.point = (sample.query.point_a + sample.query.point_b) * 0.5;
-    const auto held = [&](Ref r) { return step_.groups.of(r) != kNoIndex && rests_[step_.groups.of(r)] != 0; };
-    if (held(c.a) || held(c.b))
-    {
-        // A supported body does not fall as forces alone would make it. Its mean acceleration follows from the known end of the step.
-        const Bodies& bodies = step_.world.host().bodies;
-        const Vec3 arm_a = c.point - bodies.position[c.a.index], arm_b = c.point - bodies.position[c.b.index];
-        // The lever arms move with their bodies but do not rotate: the contact point of a rolling ball rotates away from the ground, yet
-        // the gap does not open.
-        const auto rate = [&]
-        {
-            const Vec3 a = bodies.velocity[c.a.index] + cross(bodies.angular_velocity[c.a.index], arm_a);
-            const Vec3 b = bodies.velocity[c.b.index] + cross(bodies.angular_velocity[c.b.index], arm_b);
-            return dot(b - a, c.normal);
-        };
-        const double before = rate();
-        advance_groups_to(step_.frame.step);
-        c.normal_acceleration = (rate() - before) / left;
-        advance_groups_to(sample.time);
-    }
-    else
-        rate_of_approach(pressed_, sample.time);
-    c.normal_acceleration += dot(met_[c.b.index].relief - met_[c.a.index].relief, c.normal);
-    candidate.relief = c.normal * -c.normal_acceleration;
-    return candidate.pressed = -0.5 * c.normal_acceleration * left * left > sample.slack;
 }
 
 /// Whether the pair meets, as far as the present sample decides it; empty: not decided, the pair has to be advanced.
