@@ -38,7 +38,7 @@ TEST_CASE("C1: head-on spheres, mass ratios to 1e9, to rounding")
                      [](const Algorithm& algorithm)
                      {
                          std::array<double, 4> worst{};
-                         for (const double heavy : {1.0, 7.0, 1e3, 1e4, 1e6, 1e9})
+                         for (const double heavy : {1.0, 1e3, 1e6, 1e9})
                              for (const double e : {0.0, 0.5, 1.0})
                                  for (std::size_t ball = 0; ball < 2; ++ball)
                                  {
@@ -47,6 +47,17 @@ TEST_CASE("C1: head-on spheres, mass ratios to 1e9, to rounding")
                                  }
                          return worst;
                      });
+}
+
+TEST_CASE("C1: SoftStep returns all of an elastic impact, to rounding, for any mass ratio")
+{
+    // The energy limits what is returned; that sums of it differ by rounding must not cost a share of 2^-24.
+    for (int i = 0; i <= 90; ++i)
+    {
+        const double heavy = std::pow(10, 0.1 * i);
+        CAPTURE(heavy);
+        for (const double error : head_on({"None", "Rows", "SoftStep"}, heavy, 1)) CHECK(error <= 1e-14);
+    }
 }
 
 namespace

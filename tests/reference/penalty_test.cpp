@@ -355,8 +355,10 @@ std::string falling_cube(int units)
     const double mass = 1e-15 * (1 + units * 0x1p-52), stiffness = 1e-15 * 9.81 / std::pow(5e-11, 1.5);
     return kGround + std::string(plab::test::kGravity) + "<component id=\"a.shape\" type=\"Shape/Box\" half_extents=\"5e-7 5e-7 5e-7\"/>" +
            "<component id=\"a\" type=\"State/RigidBody\" shape=\"a.shape\" position=\"0 0 1e-6\" mass=\"" + text(mass) + "\"/>" +
-           contact("a ground", "HuntCrossley\" response.restitution=\"0.2\" response.friction=\"0.5\" response.steps_per_contact=\"20\"" +
-                                   " response.stiffness=\"" + text(stiffness) + "\"");
+           contact("a ground",
+                   "HuntCrossley\" response.restitution=\"0.2\" response.friction=\"0.5\" response.steps_per_contact=\"20\""
+                   " response.stiffness=\"" +
+                       text(stiffness) + "\"");
 }
 
 }  // namespace

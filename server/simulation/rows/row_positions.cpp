@@ -137,7 +137,7 @@ void RowSystem::relax_positions(const StepContext& context, ProjectionReport& re
         if (stagnates && error < kContradiction) break;
         if (stalled && std::fabs(error - before) < 1e-10 * error) break;
         stalled = stalled || stagnates;
-        if (stalled && equations_.compliant()) return fit_positions(context, error > before, report);
+        if (stalled && equations_.compliant()) return fit_positions(context, report);
         fresh = !factored_ || stalled || error > kGoodContraction * before;
         save_poses();
         if (solve_positions(fresh ? RowEquations::kCompliance : 0)) (void)move_members(context);
@@ -160,10 +160,10 @@ double RowSystem::square_of_errors(double share) const
     return sum;
 }
 
-/// `worse`: the last step has raised the errors, and is taken back.
-void RowSystem::fit_positions(const StepContext& context, bool worse, ProjectionReport& report)
+/// Starts where Newton's last step did, which may have gone far away.
+void RowSystem::fit_positions(const StepContext& context, ProjectionReport& report)
 {
-    if (worse) restore_poses(context);
+    restore_poses(context);
     weights_.clear();
     for (const RowEquations::Slot& slot : equations_.slots())
         weights_.push_back(slot.mobility > 0 && rows_[slot.row].kind == RowKind::Equality ? 1 / slot.mobility : 0.0);

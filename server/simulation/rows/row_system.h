@@ -8,7 +8,7 @@
 ///   speeds      v += M^-1 J^T nu,  J M^-1 J^T nu = rate - J v,     once, up to rounding
 ///
 /// Of all states that satisfy the rows this is the one at the least distance, measured with the masses. Both are solved as the equations
-/// of row_equations.h with g = 0, which never multiply J M^-1 J^T out.
+/// of row_equations.h with g = 0, which never multiply J M^-1 J^T out. Contradictory rows are fitted: row_positions.cpp.
 ///
 /// Sources: D. Baraff, "Linear-time dynamics using Lagrange multipliers", SIGGRAPH 1996 (M and J kept apart, in tree order); E. Hairer,
 /// G. Wanner, "Solving ordinary differential equations II", VII.2 (projection preserves the order).
@@ -157,7 +157,7 @@ private:
     bool regularize_near_singular(double dt);
     double speed_norm() const;
     void relax_positions(const StepContext& context, ProjectionReport& report);
-    void fit_positions(const StepContext& context, bool worse, ProjectionReport& report);
+    void fit_positions(const StepContext& context, ProjectionReport& report);
     void satisfy_trees(const StepContext& context);
     bool solve_positions(double compliance);
     double square_of_errors(double share) const;
