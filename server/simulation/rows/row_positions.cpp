@@ -139,7 +139,7 @@ void RowSystem::relax_positions(const StepContext& context, ProjectionReport& re
         stalled = stalled || stagnates;
         if (stalled && equations_.compliant()) return fit_positions(context, report);
         fresh = !factored_ || stalled || error > kGoodContraction * before;
-        save_poses();
+        if (fresh && equations_.compliant()) save_poses();
         if (solve_positions(fresh ? RowEquations::kCompliance : 0)) (void)move_members(context);
         factored_ = true;
         before = error;
