@@ -49,10 +49,10 @@ Outcome outcome_of(const std::string& line, int status)
     {
         const int signal = WTERMSIG(status);
         const bool time = signal == SIGXCPU || signal == SIGALRM || signal == SIGKILL;
-        return {Verdict::Silent, 0, time ? "hangs" : "crashes with signal " + std::to_string(signal)};
+        return {Verdict::Silent, 0, time ? "hangs" : "crashes with signal " + std::to_string(signal), {}};
     }
     const auto outcome = from_line(line);
-    return outcome ? *outcome : Outcome{Verdict::Silent, 0, "no answer"};
+    return outcome ? *outcome : Outcome{Verdict::Silent, 0, "no answer", {}};
 }
 
 }  // namespace
@@ -60,9 +60,9 @@ Outcome outcome_of(const std::string& line, int status)
 Outcome run_cell(const Case& which, std::size_t algorithm, std::size_t value)
 {
     int ends[2];
-    if (pipe(ends) != 0) return {Verdict::Silent, 0, "no pipe"};
+    if (pipe(ends) != 0) return {Verdict::Silent, 0, "no pipe", {}};
     const pid_t child = fork();
-    if (child < 0) return {Verdict::Silent, 0, "no process"};
+    if (child < 0) return {Verdict::Silent, 0, "no process", {}};
     if (child == 0)
     {
         (void)close(ends[0]);

@@ -1,9 +1,10 @@
 // Stiff and extreme cases by algorithms: prints the matrix, checks it against expected.txt, renews table and document.
 //
-//   stability [--all] [--case NAME] [--print] [--update] [--write FILE.md]
+//   stability [--all] [--case NAME] [--algorithm NAME] [--value VALUE] [--print] [--update] [--write FILE.md]
 //
-// Without --all or --case: the quick cells. --print shows the matrix; without it only differences from the table are shown, and the
-// program fails if there are any. --update stores the measured results. --write renders the table.
+// Without --all or a selection: the quick cells. --case, --algorithm and --value select cells by the parts of their names in expected.txt,
+// as in --case mass_head_on --algorithm "Rows, SoftStep" --value 1e+04. --print shows the matrix; without it only differences from the
+// table are shown, and the program fails if there are any. --update stores the measured results. --write renders the table.
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -22,7 +23,10 @@ namespace
 struct StabilityOptions
 {
     bool all = false, print = false, update = false;
-    std::string only, write;
+    std::string which_case, algorithm, value;  ///< of the cells to run; empty: all
+    std::string write;
+
+    bool selects() const { return !which_case.empty() || !algorithm.empty() || !value.empty(); }
 };
 
 bool parse(int argc, char** argv, StabilityOptions& out)
@@ -38,7 +42,11 @@ bool parse(int argc, char** argv, StabilityOptions& out)
         else if (a == "--update")
             out.update = true;
         else if (a == "--case" && more)
-            out.only = argv[++i];
+            out.which_case = argv[++i];
+        else if (a == "--algorithm" && more)
+            out.algorithm = argv[++i];
+        else if (a == "--value" && more)
+            out.value = argv[++i];
         else if (a == "--write" && more)
             out.write = argv[++i];
         else
@@ -49,18 +57,21 @@ bool parse(int argc, char** argv, StabilityOptions& out)
 
 bool takes_part(const StabilityOptions& options, const Case& c, std::size_t r, std::size_t v)
 {
-    if (!options.only.empty()) return c.name == options.only;
+    const auto fits = [](const std::string& selected, const std::string& name) { return selected.empty() || selected == name; };
+    if (options.selects())
+        return fits(options.which_case, c.name) && fits(options.algorithm, c.algorithms[r]) && fits(options.value, c.values[v]);
     return options.all || c.quick(r, v);
 }
 
-/// Runs the selected cells of one case; counts those that differ from the table.
-int run(const StabilityOptions& options, const Case& c, Table& table)
+/// Runs the selected cells of one case; counts them in `cells`, and returns the number of those that differ from the table.
+int run(const StabilityOptions& options, const Case& c, Table& table, int& cells)
 {
     int differences = 0;
     for (std::size_t r = 0; r < c.algorithms.size(); ++r)
         for (std::size_t v = 0; v < c.values.size(); ++v)
         {
             if (!takes_part(options, c, r, v)) continue;
+            ++cells;
             const Outcome measured = run_cell(c, r, v);
             const Outcome* expected = table.find(key_of(c, r, v));
             const bool same = expected && agree(*expected, measured);
@@ -97,16 +108,22 @@ int main(int argc, char** argv)
     StabilityOptions options;
     if (!parse(argc, argv, options))
     {
-        std::fprintf(stderr, "usage: stability [--all] [--case NAME] [--print] [--update] [--write FILE.md]\n");
+        std::fprintf(stderr,
+                     "usage: stability [--all] [--case NAME] [--algorithm NAME] [--value VALUE] [--print] [--update] [--write FILE.md]\n");
         return 2;
     }
     load_plugins();
     auto cases = all_cases();
     Table table = Table::read(kTableFile);
-    int differences = 0;
-    const bool only_write = !options.write.empty() && !options.all && !options.update && options.only.empty();
+    int differences = 0, cells = 0;
+    const bool only_write = !options.write.empty() && !options.all && !options.update && !options.selects();
     if (!only_write)
-        for (const Case& c : cases) differences += run(options, c, table);
+        for (const Case& c : cases) differences += run(options, c, table, cells);
+    if (options.selects() && cells == 0)
+    {
+        std::fprintf(stderr, "no cell has this case, algorithm and value\n");
+        return 2;
+    }
     if (options.update && !table.write(kTableFile, cases)) return 2;
     if (!options.write.empty())
     {

@@ -74,7 +74,7 @@ std::string cell_text(const Outcome* cell, Notes& notes)
     if (cell->verdict == Verdict::Refused) out = "refused";
     if (cell->verdict == Verdict::Diverged) out = "**diverged**";
     if (cell->verdict == Verdict::Silent) out = "**SILENT** " + figure(*cell);
-    return out + notes.mark(cell->how);
+    return out + notes.mark(reason_of(*cell));
 }
 
 std::string section(const Case& c, const Table& table)
@@ -120,7 +120,7 @@ std::string page(const std::vector<Case>& cases, const Table& table)
         "| refused | not accepted, with a message |\n"
         "| **diverged** | beyond all bounds, and an event reported it |\n"
         "| **SILENT** | beyond all bounds without an event, a hang or a crash: a defect |\n"
-        "| a note with *slow* | the cell's budget of force evaluations was used up |\n\n"
+        "| a note with *slow* | the cell's budget of force evaluations was used up at about that share of the time |\n\n"
         "Events that report a failure, beside those of the component that failed, such as `solver.gave_up` or `contact.stiff`:\n\n"
         "| event | meaning |\n|---|---|\n"
         "| `state.not_finite` | an object left the range of numbers in which a step can compute (1e150); it is put back to the start of "

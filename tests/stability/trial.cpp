@@ -59,27 +59,26 @@ std::size_t Trial::count(const std::string& kind) const
     return found == counts_.end() ? 0 : found->second;
 }
 
-std::string Trial::how() const
+/// An outcome with what was reported, and how far a slow cell came.
+Outcome Trial::outcome(Verdict verdict, double error) const
 {
-    std::string out;
-    for (const auto& [kind, n] : troubles_) out += (out.empty() ? "" : ", ") + kind;
-    if (finished_) return out;
-    char text[64];
-    std::snprintf(text, sizeof text, "%sslow: %.0f %% of the time", out.empty() ? "" : ", ", 100 * simulation_->time() / until_);
-    return out + text;
+    Outcome out{verdict, error, {}, {}};
+    for (const auto& [kind, n] : troubles_) out.how += (out.how.empty() ? "" : ", ") + kind;
+    if (!finished_) out.reached = 100 * simulation_->time() / until_;
+    return out;
 }
 
 Outcome Trial::judge(double error, Bounds bounds) const
 {
-    if (refusal_.find(".so") != std::string::npos) return {Verdict::Silent, 0, "not run: a plugin is not there"};
-    if (!loaded()) return {Verdict::Refused, 0, refusal_};
-    if (count("state.not_finite") > 0) return {Verdict::Diverged, error, how()};
+    if (refusal_.find(".so") != std::string::npos) return {Verdict::Silent, 0, "not run: a plugin is not there", {}};
+    if (!loaded()) return {Verdict::Refused, 0, refusal_, {}};
+    if (count("state.not_finite") > 0) return outcome(Verdict::Diverged, error);
     if (std::isfinite(error) && error <= bounds.bounded)
-        return {error <= bounds.stable && !warned() && finished_ ? Verdict::Stable : Verdict::Degraded, error, how()};
-    if (warned()) return {Verdict::Diverged, error, how()};
+        return outcome(error <= bounds.stable && !warned() && finished_ ? Verdict::Stable : Verdict::Degraded, error);
+    if (warned()) return outcome(Verdict::Diverged, error);
     // An informational event about this.
-    if (count("manager.not_converged") > 0) return {Verdict::Diverged, error, "manager.not_converged"};
-    return {Verdict::Silent, error, how()};
+    if (count("manager.not_converged") > 0) return {Verdict::Diverged, error, "manager.not_converged", {}};
+    return outcome(Verdict::Silent, error);
 }
 
 std::vector<std::string> algorithms_of(const std::string& family)

@@ -59,7 +59,7 @@ public:
 
 private:
     void step();
-    std::string how() const;
+    Outcome outcome(Verdict verdict, double error) const;
 
     std::unique_ptr<simulation::Simulation> simulation_;
     std::string refusal_;

@@ -46,9 +46,22 @@ bool ContactForces::any_switch(const std::vector<Seen>& before, const std::vecto
     return std::any_of(after.begin(), after.end(), [&](const Seen& s) { return switches(s, before); });
 }
 
+namespace
+{
+
+/// s: when the gap closes (or the overlap opens) again that is `depth0` now, grows at `rate0` first, and has become `-depth1` after h, if
+/// it is a parabola, as in a free fall: depth0 + rate0 t - c t^2 = 0, with depth0 and rate0 >= 0 and c > 0.
+double time_of_return(double depth0, double rate0, double depth1, double h)
+{
+    const double c = (depth0 + rate0 * h + depth1) / (h * h);
+    return (rate0 + std::sqrt(rate0 * rate0 + 4 * c * depth0)) / (2 * c);
+}
+
+}  // namespace
+
 /// Estimates the first time in (low, high) at which one of the contacts that have switched at `high` does so. Inverse Hermite
-/// interpolation: time as a cubic polynomial of the depth, from depths and speeds at both ends, evaluated at the depth of the switch. The
-/// middle if the speeds do not allow that.
+/// interpolation: time as a cubic polynomial of the depth, from depths and speeds at both ends, evaluated at the depth of the switch. A
+/// contact that moves away from its switch at `low` returns to it: a parabola. The middle if the speeds do not allow that.
 double ContactForces::guess(double low, double high, const std::vector<Seen>& at_low, const std::vector<Seen>& at_high)
 {
     const double h = high - low;
@@ -64,12 +77,14 @@ double ContactForces::guess(double low, double high, const std::vector<Seen>& at
         {
             const double open = known ? known->open_depth : 0.0;
             const double d0 = then->found.contact.depth - open, d1 = s.found.contact.depth - open, travel = d1 - d0;
-            const double u = -d0 / travel;
+            const double u = -d0 / travel, away = known ? -then->separation_speed : then->separation_speed;
             t = u * h;
             // s: time for the whole depth interval at the speed of each end.
             const double slow0 = travel / -then->separation_speed, slow1 = travel / -s.separation_speed;
             if (slow0 > 0 && slow1 > 0 && slow0 < 3 * h && slow1 < 3 * h)
                 t = u * (1 - u) * (1 - u) * slow0 + u * u * (3 - 2 * u) * h + u * u * (u - 1) * slow1;
+            else if (away > 0)
+                t = time_of_return(std::fabs(d0), away, std::fabs(d1), h);
         }
         if (!(t > 0 && t < h)) t = 0.5 * h;
         first = std::exchange(none, false) ? low + t : std::min(first, low + t);
@@ -77,7 +92,8 @@ double ContactForces::guess(double low, double high, const std::vector<Seen>& at
     return first;
 }
 
-/// Whether one of the contacts that have switched in `beyond` is at its switching depth at the present state, up to rounding.
+/// Whether one of the contacts that have switched in `beyond` is at its switching depth at the present state, up to rounding, and on its
+/// way across: a contact that has just opened is at that depth as well, but on its way back.
 bool ContactForces::is_there(const std::vector<Seen>& now, const std::vector<Seen>& beyond)
 {
     for (const Seen& s : beyond)
@@ -85,7 +101,8 @@ bool ContactForces::is_there(const std::vector<Seen>& now, const std::vector<See
         if (!switches(s, at_start_)) continue;
         const Seen* here = find_seen(now, s.found);
         const ForceContact* known = find_pushing(s.found);
-        if (here && std::fabs(here->found.contact.depth - (known ? known->open_depth : 0.0)) <= rounding(s.found.contact)) return true;
+        if (!here || (known ? here->separation_speed < 0 : here->separation_speed > 0)) continue;
+        if (std::fabs(here->found.contact.depth - (known ? known->open_depth : 0.0)) <= rounding(s.found.contact)) return true;
     }
     return false;
 }

@@ -1,11 +1,11 @@
-// Projection onto the rows in the norm of M: q += M^-1 J^T mu with J M^-1 J^T mu = -phi, repeated until phi is at rounding level; then
-// the same for speeds with the right-hand side rate - J v. If rows contradict one another, the iteration ends at the least-squares
-// solution of phi, where each row is weighted by its own mobility.
+// Projection onto the rows in the norm of M: positions (row_positions.cpp), then speeds, v += M^-1 J^T nu with
+// J M^-1 J^T nu = rate - J v. If rows contradict one another, both end at a least-squares solution, where each row is weighted by its own
+// mobility.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "plab/rotation.h"
+#include "simulation/rows/projection_limits.h"
 #include "simulation/rows/row_system.h"
 
 namespace plab::simulation
@@ -13,24 +13,14 @@ namespace plab::simulation
 namespace
 {
 
-constexpr double kProjectionEpsilon = std::numeric_limits<double>::epsilon();
-/// Errors below this share of the numbers whose difference they are count as rounding.
-constexpr double kProjectionRounding = 16 * kProjectionEpsilon;
 /// A speed that changes those numbers by less than this share of their size in one step counts as rounding, too.
 constexpr double kShareOfPlace = 1e-3;
-/// If the iteration cannot reduce the error below this share, the rows contradict one another.
-constexpr double kContradiction = 1e-8;
 constexpr double kSpeedContradiction = 1e-4;
 /// Members satisfy their rows if no relative error is above this: the accuracy that a projection achieves.
 constexpr double kOnRows = 1e-12;
 /// Smaller relative misfits of speeds are left to the projection at the end of the advance.
 constexpr double kMisfit = 1e-8;
-constexpr int kMostIterations = 40;
 constexpr int kMostSpeedCorrections = 8;
-/// A correction must reduce the error to this share, or the matrix is factored again at the present state.
-constexpr double kGoodContraction = 1e-3;
-/// rad per Newton step: for larger rotations the linearisation is not valid.
-constexpr double kMostTurn = 0.5;
 
 }  // namespace
 
@@ -163,35 +153,6 @@ double RowSystem::measure_speeds(double dt)
     return worst;
 }
 
-void RowSystem::move_members(const StepContext& context)
-{
-    const auto members = equations_.members();
-    double turn = 0;
-    for (std::size_t i = 0; i < members.size(); ++i)
-    {
-        const double* x = equations_.result(i);
-        if (members[i].participant.facet == Facet::Body) turn = std::fmax(turn, length(Vec3{x[3], x[4], x[5]}));
-    }
-    const double share = turn > kMostTurn ? kMostTurn / turn : 1.0;
-    bool any_shaft = false;
-    for (std::size_t i = 0; i < members.size(); ++i)
-    {
-        const double* x = equations_.result(i);
-        const std::uint32_t index = members[i].participant.index;
-        if (members[i].participant.facet == Facet::Shaft)
-        {
-            host_->shafts.angle[index] += share * x[0];
-            any_shaft = true;
-            continue;
-        }
-        Bodies& bodies = host_->bodies;
-        bodies.position[index] += share * Vec3{x[0], x[1], x[2]};
-        bodies.orientation[index] = normalized(bodies.orientation[index] * exp_rotation(share * Vec3{x[3], x[4], x[5]}));
-        bodies.refresh_spin(index);
-    }
-    if (any_shaft) graph_->derive(host_->shafts, context.active_shafts);
-}
-
 void RowSystem::change_speeds(const StepContext& context)
 {
     const auto members = equations_.members();
@@ -216,44 +177,6 @@ void RowSystem::change_speeds(const StepContext& context)
         bodies.refresh_spin(index);
     }
     if (any_shaft) graph_->derive(host_->shafts, context.active_shafts);
-}
-
-/// One Newton correction. Returns true if the matrix was factored at the present state for it.
-bool RowSystem::correct_positions(const StepContext& context, double compliance)
-{
-    const bool fresh = !factored_ || compliance != RowEquations::kCompliance;
-    if (fresh) equations_.factor(compliance);
-    factored_ = compliance == RowEquations::kCompliance;
-    equations_.clear_right_hand_side();
-    const auto slots = equations_.slots();
-    for (std::size_t s = 0; s < slots.size(); ++s)
-        if (rows_[slots[s].row].kind == RowKind::Equality) equations_.wanted(s) = -rows_[slots[s].row].error;
-    if (equations_.solve()) move_members(context);
-    return fresh;
-}
-
-/// Newton's method, which keeps the same factorisation while the error still contracts well. The compliance is not refined away here:
-/// above rounding level the iteration removes its effect, and at rounding level the compliance keeps rounding errors from being amplified
-/// into directions that hardly change any row. If the iteration stalls before the rows are satisfied, it continues as least squares
-/// (kSoftCompliance).
-void RowSystem::relax_positions(const StepContext& context, ProjectionReport& report)
-{
-    double before = std::numeric_limits<double>::infinity();
-    bool soft = false, fresh = true;
-    for (;; ++report.iterations)
-    {
-        collect(context);
-        equations_.set_rows(rows_, pieces_);
-        const double error = measure_positions();
-        if (!(error > kProjectionRounding) || report.iterations == kMostIterations) break;
-        const bool stagnates = fresh && error > 0.5 * before;
-        if (stagnates && error < kContradiction) break;
-        if (soft && std::fabs(error - before) < 1e-10 * error) break;
-        soft = soft || stagnates;
-        if (error > kGoodContraction * before) factored_ = false;
-        fresh = correct_positions(context, soft ? RowEquations::kSoftCompliance : RowEquations::kCompliance);
-        before = error;
-    }
 }
 
 /// One correction. A factorisation from a nearby state is usually good enough; if it is not, its result must not be applied to the

@@ -8,7 +8,7 @@
 ///   speeds      v += M^-1 J^T nu,  J M^-1 J^T nu = rate - J v,     once, up to rounding
 ///
 /// Of all states that satisfy the rows this is the one at the least distance, measured with the masses. Both are solved as the equations
-/// of row_equations.h with g = 0, which never multiply J M^-1 J^T out.
+/// of row_equations.h with g = 0, which never multiply J M^-1 J^T out. Contradictory rows are fitted: row_positions.cpp.
 ///
 /// Sources: D. Baraff, "Linear-time dynamics using Lagrange multipliers", SIGGRAPH 1996 (M and J kept apart, in tree order); E. Hairer,
 /// G. Wanner, "Solving ordinary differential equations II", VII.2 (projection preserves the order).
@@ -138,6 +138,13 @@ private:
         double coefficient = 0;
     };
 
+    /// Of a member, before a step of the projection.
+    struct Pose
+    {
+        Vec3 position;
+        Quat orientation;
+        double angle = 0;  ///< of a shaft, rad
+    };
     struct Reaction
     {
         std::uint32_t component = 0;
@@ -150,8 +157,14 @@ private:
     bool regularize_near_singular(double dt);
     double speed_norm() const;
     void relax_positions(const StepContext& context, ProjectionReport& report);
-    bool correct_positions(const StepContext& context, double compliance);
-    void move_members(const StepContext& context);
+    void fit_positions(const StepContext& context, ProjectionReport& report);
+    void satisfy_trees(const StepContext& context);
+    bool solve_positions(double compliance);
+    double square_of_errors(double share) const;
+    double move_members(const StepContext& context);
+    void save_poses();
+    void restore_poses(const StepContext& context);
+    double measure_rows(const StepContext& context);
     void match_speeds(const StepContext& context, ProjectionReport& report);
     void correct_speeds(const StepContext& context, bool least_squares);
     void change_speeds(const StepContext& context);
@@ -187,6 +200,8 @@ private:
     std::vector<double> position_error_, speed_error_;  ///< by row, after the last projection
     std::vector<double> speed_work_;                    ///< J by row, of the last projection of speeds
     std::vector<std::uint32_t> redundant_;              ///< by piece
+    std::vector<Pose> poses_;                           ///< by member
+    std::vector<double> weights_;                       ///< of F, by slot (row_positions.cpp)
     std::vector<double> held_speed_;                    ///< by row that a manager holds: J v of the dynamic members at the start
     std::vector<Reaction> reactions_;
     bool may_yield_ = false;

@@ -202,6 +202,63 @@ TEST_CASE("pins too far apart converge to the least-squares position, are named,
     CHECK(std::fabs(m.energy()) < 1e-5);
 }
 
+namespace
+{
+
+/// A rod of 1 m without mass between the origin of `b` and a point of the world.
+void rod_to(Mechanism& m, const Vec3& from, Ref b)
+{
+    m.add(
+        [=](const Bodies& bodies, const Shafts&, RowSink& sink)
+        {
+            const Vec3 d = bodies.position[b.index] - from, v = bodies.velocity[b.index];
+            const double length_now = length(d), rate = dot(d, v) / length_now;
+            ConstraintRow row;
+            row.count = 1;
+            row.blocks[0] = {b, d * (1 / length_now), {}};
+            row.error = length_now - 1;
+            row.bias = -(length_squared(v) - rate * rate) / length_now;
+            sink.add(row);
+        });
+}
+
+}  // namespace
+
+TEST_CASE("two rods too short pull the body to the middle, whatever the last digits of its position are")
+{
+    // The sum of the squares of the errors is least at (1.5, 0, 0), where each rod lacks 0.5 m. To first order nothing holds the body
+    // there in y and z: an undamped Newton step from z is of length 1/z.
+    for (const double z : {0.0, 1e-15, -3e-12, 1e-9, 2e-6, 1e-3, -0.1, 0.7, 5.0})
+        for (const double x : {1.0, 1.0 + 1e-15, 0.3, 2.9})
+        {
+            CAPTURE(z);
+            CAPTURE(x);
+            Mechanism m;
+            const Ref body = m.body(1, {.1, .1, .1}, {x, 0.5 * z, z});
+            rod_to(m, {0, 0, 0}, body), rod_to(m, {3, 0, 0}, body);
+            m.build();
+            const auto report = m.rows.project(StepContext{});
+            CHECK_FALSE(report.converged);
+            CHECK(report.contradictory == std::vector<std::uint32_t>{0, 1});
+            CHECK(std::fabs(report.position_error - .5) < 1e-9);
+            CHECK(length(m.host.bodies.position[0] - Vec3{1.5, 0, 0}) < 1e-5);
+        }
+}
+
+TEST_CASE("a body that hangs from one between rods too short keeps its joint exactly")
+{
+    Mechanism m;
+    const Ref body = m.body(1, {.1, .1, .1}, {1, 0, 1e-3}), bob = m.body(2, {.1, .1, .1}, {1.2, 0.1, -1});
+    rod_to(m, {0, 0, 0}, body), rod_to(m, {3, 0, 0}, body);
+    m.ball(body, {0, 0, 0}, bob, {0, 0, 1});
+    m.build();
+    const auto report = m.rows.project(StepContext{});
+    CHECK(report.contradictory == std::vector<std::uint32_t>{0, 1});
+    CHECK(std::fabs(report.position_error - .5) < 1e-6);
+    const Bodies& b = m.host.bodies;
+    CHECK(length(b.position[1] + rotate(b.orientation[1], Vec3{0, 0, 1}) - b.position[0]) < 1e-14);
+}
+
 TEST_CASE("a body placed far from its joint is brought back, also after a rotation of nearly half a turn")
 {
     Mechanism m;
