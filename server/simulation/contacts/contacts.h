@@ -14,6 +14,7 @@
 
 #include "simulation/contacts/contact_force_pair.h"
 #include "simulation/contacts/point_block.h"
+#include "simulation/contacts/rest_state.h"
 #include "simulation/systems/group_system.h"
 
 namespace plab::simulation
@@ -35,6 +36,20 @@ public:
 private:
     const Column<double>* real_ = nullptr;
     const Column<std::int64_t>* whole_ = nullptr;
+    Row row_ = 0;
+};
+
+/// An output that counts something, which a component may declare under some name. The host writes it.
+class DeclaredCount
+{
+public:
+    DeclaredCount() = default;
+    DeclaredCount(const world::World& world, std::uint32_t component, std::string_view name);
+    void set(std::int64_t count) const { if (output_) (*output_)[row_] = count; }
+    void add(std::int64_t count) const { if (output_) (*output_)[row_] += count; }
+
+private:
+    Column<std::int64_t>* output_ = nullptr;
     Row row_ = 0;
 };
 
@@ -232,6 +247,13 @@ public:
     std::vector<ForcePair>& parked_force_pairs() { return parked_force_pairs_; }
     const std::vector<ForcePair>& parked_force_pairs() const { return parked_force_pairs_; }
     void forget_parked() { parked_pairs_.clear(), parked_force_pairs_.clear(); }
+    /// Which bodies rest, and the pairs of islands that sleep. Those are missing in pairs() until bring_back() merges them into it;
+    /// each_pair() goes through all of them, sleeping ones last.
+    RestState& rest() { return rest_; }
+    const RestState& rest() const { return rest_; }
+    void bring_back(const world::World& world);
+    template <class Job>
+    void each_pair(const Job& job) const;
     /// Hash of everything that later steps depend on, mixed into `start`.
     std::uint64_t state_hash(const world::World& world, std::uint64_t start) const;
 
@@ -248,7 +270,24 @@ private:
     std::vector<ForcePair> force_pairs_, parked_force_pairs_;
     std::uint64_t next_id_ = 1;
     bool may_have_rest_depth_ = true;
+    RestState rest_;
 };
+
+/// An island that sleeps: bodies at rest, and the pairs that hold them together and to what does not move.
+struct SleepingIsland
+{
+    std::vector<std::uint32_t> bodies;  ///< by rank
+    std::vector<PairState> pairs;       ///< in the order of ContactCache::pairs()
+    std::uint32_t points = 0;           ///< contact points of all pairs
+};
+
+template <class Job>
+void ContactCache::each_pair(const Job& job) const
+{
+    for (const PairState& p : pairs_) job(p);
+    for (const auto& island : rest_.islands)
+        for (const PairState& p : island->pairs) job(p);
+}
 
 template <class Ends>
 void ContactCache::drop_if(Ends ends)
@@ -279,6 +318,7 @@ void ContactCache::copy_if(const ContactCache& from, Keep keep, KeepForces keep_
         if (keep_forces(p.a, p.b)) force_pairs_.push_back(p);
     parked_pairs_ = from.parked_pairs_, parked_force_pairs_ = from.parked_force_pairs_;
     next_id_ = from.next_id_, may_have_rest_depth_ = from.may_have_rest_depth_;
+    rest_ = from.rest_;
 }
 
 /// Detectors of a scene, in id order.
