@@ -117,7 +117,7 @@ private:
     std::vector<PersistentQuery> persistent_;
     std::vector<Narrow> narrow_;  // by chunk; the first serves a pass without threads
     std::span<const BroadPhase::Pair> candidates_;
-    bool is_searched_ = false;  // for all candidates, since the scene was rebuilt
+    bool is_searched_ = false;            // for all candidates, since the scene was rebuilt
     std::vector<std::uint32_t> active_;   // members that are advanced, if not all are
     std::vector<std::uint32_t> asked_;    // their parts
     std::vector<BroadPhase::Pair> near_;  // pairs that may collide within the step: parts, then members

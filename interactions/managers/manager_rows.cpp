@@ -128,6 +128,7 @@ void Sleep::describe(Schema& s)
         .not_negative();
     s.param(speed, "sleep_speed", unit::metre_per_second, "a body of which a point may move faster does not rest").or_else(0.01).positive();
     s.output(asleep, "asleep", unit::one, "bodies of sleeping islands");
+    s.output(reason, "sleep_reason", unit::one, "with sleep_after: what keeps islands awake whether they rest or not");
 }
 
 void Account::add(const StepContext& context, Row row, const Island& island, double tolerance)

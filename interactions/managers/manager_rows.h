@@ -34,6 +34,7 @@ struct Sleep
     Column<double> after;  // s
     Column<double> speed;  // m/s
     Column<std::int64_t> asleep;
+    Column<std::string> reason;
 
     void describe(Schema& schema);
 };

@@ -151,8 +151,7 @@ void ContactBook::query(const Detector& detector, ContactSink& sink, const Index
     // A list of the active participants pays only where the detector would go through many others. Where pairs are named it need not.
     constexpr std::size_t kFew = 8;
     if (!active || active == awake_) seen_in_[index] = step_.serial;
-    if (active)
-        question.context.active_bodies = active->flags();
+    if (active) question.context.active_bodies = active->flags();
     if (active && !sink.only_persistent() && kFew * active->members().size() < active->flags().size())
         question.context.shortlists = shortlists_of(index, *active);
     const CostScope scope(step_.meter, step_.meter.of_component(detector.component));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "simulation/contacts/sleeping_pairs.h"
 #include "world/state_hash.h"
 
 namespace plab::simulation
@@ -302,15 +303,6 @@ DeclaredNumber::DeclaredNumber(const world::World& world, std::uint32_t componen
     row_ = world.component(component).row;
     real_ = dynamic_cast<const Column<double>*>(field->column);
     whole_ = dynamic_cast<const Column<std::int64_t>*>(field->column);
-}
-
-DeclaredCount::DeclaredCount(const world::World& world, std::uint32_t component, std::string_view name)
-{
-    if (component == kNoIndex) return;
-    const Field* field = world.table_of(component).schema().find_field(name);
-    if (!field || field->kind != FieldKind::Output) return;
-    row_ = world.component(component).row;
-    output_ = dynamic_cast<Column<std::int64_t>*>(field->column);
 }
 
 std::vector<Detector> find_detectors(const world::World& world, const Schedule& schedule)

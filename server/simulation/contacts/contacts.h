@@ -39,20 +39,6 @@ private:
     Row row_ = 0;
 };
 
-/// An output that counts something, which a component may declare under some name. The host writes it.
-class DeclaredCount
-{
-public:
-    DeclaredCount() = default;
-    DeclaredCount(const world::World& world, std::uint32_t component, std::string_view name);
-    void set(std::int64_t count) const { if (output_) (*output_)[row_] = count; }
-    void add(std::int64_t count) const { if (output_) (*output_)[row_] += count; }
-
-private:
-    Column<std::int64_t>* output_ = nullptr;
-    Row row_ = 0;
-};
-
 /// A detection component with the algorithms that handle what it finds: its resolution and its response.
 struct Detector
 {
@@ -247,13 +233,12 @@ public:
     std::vector<ForcePair>& parked_force_pairs() { return parked_force_pairs_; }
     const std::vector<ForcePair>& parked_force_pairs() const { return parked_force_pairs_; }
     void forget_parked() { parked_pairs_.clear(), parked_force_pairs_.clear(); }
-    /// Which bodies rest, and the pairs of islands that sleep. Those are missing in pairs() until bring_back() merges them into it;
-    /// each_pair() goes through all of them, sleeping ones last.
+    /// Which bodies rest, and the pairs of islands that sleep: missing in pairs() until bring_back(), and last in each_pair().
     RestState& rest() { return rest_; }
     const RestState& rest() const { return rest_; }
     void bring_back(const world::World& world);
     template <class Job>
-    void each_pair(const Job& job) const;
+    void each_pair(const Job& job) const;  // sleeping_pairs.h
     /// Hash of everything that later steps depend on, mixed into `start`.
     std::uint64_t state_hash(const world::World& world, std::uint64_t start) const;
 
@@ -272,22 +257,6 @@ private:
     bool may_have_rest_depth_ = true;
     RestState rest_;
 };
-
-/// An island that sleeps: bodies at rest, and the pairs that hold them together and to what does not move.
-struct SleepingIsland
-{
-    std::vector<std::uint32_t> bodies;  ///< by rank
-    std::vector<PairState> pairs;       ///< in the order of ContactCache::pairs()
-    std::uint32_t points = 0;           ///< contact points of all pairs
-};
-
-template <class Job>
-void ContactCache::each_pair(const Job& job) const
-{
-    for (const PairState& p : pairs_) job(p);
-    for (const auto& island : rest_.islands)
-        for (const PairState& p : island->pairs) job(p);
-}
 
 template <class Ends>
 void ContactCache::drop_if(Ends ends)

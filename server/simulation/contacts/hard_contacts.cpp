@@ -145,6 +145,9 @@ void HardContacts::finish_step()
     };
     contacts_.cache().drop_if(ended);
     for (const FoundContact& f : found) step_.report.deepest = std::max(step_.report.deepest, f.contact.depth);
+    for (const auto& island : contacts_.cache().rest().islands)
+        step_.report.resting_pairs +=
+            static_cast<int>(std::count_if(island->pairs.begin(), island->pairs.end(), [](const PairState& p) { return !p.ahead; }));
     // What was detected at velocities that are gone does not serve the next step.
     if (sleeping_.finish_step(held_.starts(), held_.fresh())) held_.forget_state();
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "simulation/contacts/contact_book.h"
+#include "simulation/contacts/sleeping_pairs.h"
 #include "simulation/motion/component_call.h"
 
 namespace plab::simulation

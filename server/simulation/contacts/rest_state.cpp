@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "simulation/contacts/contacts.h"
+#include "simulation/contacts/sleeping_pairs.h"
 #include "world/state_hash.h"
 
 namespace plab::simulation

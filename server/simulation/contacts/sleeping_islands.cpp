@@ -11,12 +11,14 @@ namespace plab::simulation
 
 void SleepingIslands::rebuild()
 {
+    listed_ = nullptr;
     note_change();
     rules_.clear();
     for (const Detector& d : contacts_.detectors())
         rules_.push_back({{step_.world, d.manager, "sleep_after"},
                           {step_.world, d.manager, "sleep_speed"},
-                          {step_.world, d.manager, "asleep"}});
+                          {step_.world, d.manager, "asleep"},
+                          {step_.world, d.manager, "sleep_reason"}});
     find_groups_that_may_sleep();
 }
 
@@ -275,17 +277,43 @@ void SleepingIslands::list_awake()
     r.awake = awake_bodies_.members(), r.lists_awake = true;
     listed_ = r.mark;
     contacts_.look_at(any() ? &awake_bodies_ : nullptr);
-    count_sleepers();
+    publish();
 }
 
 /// Writes the outputs of managers.
-void SleepingIslands::count_sleepers()
+void SleepingIslands::publish()
 {
-    for (const Rule& rule : rules_) rule.asleep.set(0);
+    const std::string why = reason();
+    for (const Rule& rule : rules_)
+    {
+        if (std::int64_t* const count = rule.asleep.value()) *count = 0;
+        if (std::string* const text = rule.reason.value()) *text = why;
+    }
     for (const auto& island : rest().islands)
         for (std::size_t d = 0; d < rules_.size() && !island->pairs.empty(); ++d)
-            if (contacts_.detectors()[d].component == island->pairs.front().detector)
-                rules_[d].asleep.add(static_cast<std::int64_t>(island->bodies.size()));
+            if (std::int64_t* const count = rules_[d].asleep.value();
+                count && contacts_.detectors()[d].component == island->pairs.front().detector)
+                *count += static_cast<std::int64_t>(island->bodies.size());
+}
+
+/// Why islands, or some bodies, do not sleep; empty if all may, and if nobody asks for it.
+std::string SleepingIslands::reason() const
+{
+    if (after_ == 0) return {};
+    if (motion_.extra()) return "contacts that are forces keep everything awake";
+    for (std::size_t d = 0; d < rules_.size(); ++d)
+    {
+        const Detector& detector = contacts_.detectors()[d];
+        const std::string& id = step_.world.id_of(detector.component);
+        if (!detector.by_rows) return id + " keeps everything awake: its response is not by rows";
+        if (detector.locates) return id + " keeps everything awake: it locates impacts inside the step";
+        if (!(rules_[d].after.value_or(0) > 0)) return id + " keeps everything awake: its manager has no sleep_after";
+    }
+    std::size_t never = 0;
+    for (std::size_t g = 0; g < may_sleep_.size(); ++g)
+        if (may_sleep_[g] == 0) never += step_.groups.all[g].bodies.size();
+    if (never == 0) return {};
+    return std::to_string(never) + " bodies stay awake: joints act on them, or forces that may change, or something reads their state";
 }
 
 void SleepingIslands::report(const char* kind, const SleepingIsland& island, const char* message, Ref by, double energy)

@@ -2,10 +2,11 @@
 /// server/docs/sleeping.md.
 ///
 /// A body is quiet in a step if at its end no point of it moves faster than sleep_speed (a parameter of the manager), |v| + r |w|, and if
-/// contacts have balanced the forces: |dv| + r |dw| is at most kNetShare of the speed that forces alone would have given it. Quiet bodies add up their
-/// velocities over half windows of sleep_after / 2. At the end of each half, an island falls asleep if all of its bodies have been quiet for
-/// both halves, if the mean velocities of the two halves agree (which tells rest from a turning point, where the speed is small too), and if
-/// something that never moves supports it. Its velocities become zero, and the energy that goes is booked as work of its manager.
+/// contacts have balanced the forces: |dv| + r |dw| is at most kNetShare of the speed that forces alone would have given it. Quiet bodies
+/// add up their velocities over half windows of sleep_after / 2. At the end of each half, an island falls asleep if all of its bodies have
+/// been quiet for both halves, if the mean velocities of the two halves agree (which tells rest from a turning point, where the speed is
+/// small too), and if something that never moves supports it. Its velocities become zero, and the energy that goes is booked as work of its
+/// manager.
 ///
 /// A sleeping island wakes as a whole: when a body that is awake touches it; and when a request or a script has changed something on which
 /// its rest depends. For the latter each body keeps a hash of that (sleep_causes.h), which is compared whenever something has changed.
@@ -18,8 +19,10 @@
 #include <utility>
 #include <vector>
 
+#include "simulation/contacts/declared_output.h"
 #include "simulation/contacts/held_islands.h"
 #include "simulation/contacts/sleep_causes.h"
+#include "simulation/contacts/sleeping_pairs.h"
 
 namespace plab::simulation
 {
@@ -61,9 +64,15 @@ private:
     struct Rule
     {
         DeclaredNumber after, speed;  ///< of one manager: s, m/s
-        DeclaredCount asleep;         ///< its output
+        DeclaredOutput<std::int64_t> asleep;
+        DeclaredOutput<std::string> reason;
     };
-    enum class State : std::uint8_t { Moving, Ready, Blocked };
+    enum class State : std::uint8_t
+    {
+        Moving,
+        Ready,
+        Blocked
+    };
 
     RestState& rest() { return contacts_.cache().rest(); }
     const RestState& rest() const { return std::as_const(contacts_).cache().rest(); }
@@ -84,7 +93,8 @@ private:
     void wake_all(const char* why);
     void wake_changed();
     void report(const char* kind, const SleepingIsland& island, const char* message, Ref by, double energy);
-    void count_sleepers();
+    void publish();
+    std::string reason() const;
     std::uint32_t manager_of(std::uint32_t detector) const;
 
     StepState& step_;
@@ -92,17 +102,18 @@ private:
     ContactBook& contacts_;
     SleepCauses causes_;
     bool on_ = false;
-    std::vector<Rule> rules_;     ///< by detector
-    double after_ = 0, speed_ = 0;  ///< s, m/s: in this step
-    double now_ = 0;                ///< s, for events
-    std::vector<std::uint8_t> may_sleep_;      ///< by group
-    std::shared_ptr<const char> listed_;  ///< RestState::mark when list_awake() was called last
+    std::vector<Rule> rules_;              ///< by detector
+    double after_ = 0, speed_ = 0;         ///< s, m/s: in this step
+    double now_ = 0;                       ///< s, for events
+    std::vector<std::uint8_t> may_sleep_;  ///< by group
+    std::shared_ptr<const char> listed_;   ///< RestState::mark when list_awake() was called last
+    std::shared_ptr<const char> refused_;  ///< the same when it was last found that nothing may sleep
     std::vector<std::uint32_t> awake_groups_, quiet_bodies_;
-    IndexSet awake_bodies_;                        ///< and bodies with prescribed motion
-    std::vector<std::uint32_t> island_of_body_;    ///< kNoIndex: awake
-    std::vector<State> states_;                    ///< by body, scratch
-    std::vector<std::uint8_t> supported_;          ///< by body, scratch
-    DisjointSets sets_;                            ///< of bodies, scratch
+    IndexSet awake_bodies_;                      ///< and bodies with prescribed motion
+    std::vector<std::uint32_t> island_of_body_;  ///< kNoIndex: awake
+    std::vector<State> states_;                  ///< by body, scratch
+    std::vector<std::uint8_t> supported_;        ///< by body, scratch
+    DisjointSets sets_;                          ///< of bodies, scratch
 };
 
 }  // namespace plab::simulation

@@ -11,13 +11,17 @@ bool SleepingIslands::begin_step()
 {
     RestState& r = rest();
     now_ = step_.frame.start_time;
+    const bool was_on = on_;
     read_rules();
     if (on_)
         r.bodies.resize(step_.world.host().bodies.size());
     else if (r.bodies.empty())
+    {
+        if (r.mark != refused_) refused_ = r.mark, publish();
         return false;
+    }
     // The state may have been replaced as well, by a restored one.
-    if (on_ && r.mark && r.mark == listed_) return false;
+    if (on_ && was_on && r.mark && r.mark == listed_) return false;
     contacts_.look_at_all_once();
     const bool asleep = std::any_of(r.bodies.begin(), r.bodies.end(), [](const BodyRest& b) { return b.asleep; });
     if (asleep && r.islands.empty()) put_pairs_away();
