@@ -237,8 +237,7 @@ public:
     RestState& rest() { return rest_; }
     const RestState& rest() const { return rest_; }
     void bring_back(const world::World& world);
-    template <class Job>
-    void each_pair(const Job& job) const;  // sleeping_pairs.h
+    void each_pair(const auto& job) const;  // sleeping_pairs.h
     /// Hash of everything that later steps depend on, mixed into `start`.
     std::uint64_t state_hash(const world::World& world, std::uint64_t start) const;
 

@@ -16,8 +16,7 @@ struct SleepingIsland
     std::uint32_t points = 0;           ///< contact points of all pairs
 };
 
-template <class Job>
-void ContactCache::each_pair(const Job& job) const
+void ContactCache::each_pair(const auto& job) const
 {
     for (const PairState& p : pairs_) job(p);
     for (const auto& island : rest_.islands)
