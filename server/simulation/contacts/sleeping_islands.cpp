@@ -6,6 +6,24 @@
 
 namespace plab::simulation
 {
+namespace
+{
+
+/// Takes the pairs of sleeping bodies out of the list.
+std::vector<PairState> take_sleeping_pairs(ContactCache& cache)
+{
+    std::vector<PairState> taken;
+    cache.drop_if(
+        [&](PairState& p)
+        {
+            if (!cache.rest().asleep(p.a.index) && !cache.rest().asleep(p.b.index)) return false;
+            taken.push_back(std::move(p));
+            return true;
+        });
+    return taken;
+}
+
+}  // namespace
 
 // Whether islands may sleep ----------------------------------------------------------------------------------------------
 
@@ -203,14 +221,7 @@ void SleepingIslands::put_pairs_away()
 {
     RestState& r = rest();
     const Bodies& bodies = step_.world.host().bodies;
-    std::vector<PairState> taken;
-    contacts_.cache().drop_if(
-        [&](PairState& p)
-        {
-            if (!r.asleep(p.a.index) && !r.asleep(p.b.index)) return false;
-            taken.push_back(std::move(p));
-            return true;
-        });
+    std::vector<PairState> taken = take_sleeping_pairs(contacts_.cache());
     sets_.reset(bodies.size());
     for (const PairState& p : taken)
         if (bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) sets_.join(p.a.index, p.b.index);
