@@ -37,7 +37,7 @@ void BroadPhase::reset(const std::string& kind, std::size_t parts)
     parts_.clear(), member_of_.clear();
     parts_.reserve(parts), member_of_.reserve(parts);
     near_.clear(), half_spaces_.clear();
-    raised_ = 0, single_ = true;
+    raised_ = covered_ = 0, single_ = true;
     search_ = make_pair_search(kind, parts);
     grown_search_ = std::make_unique<TreeSearch>(parts);
     stale_ = true;
@@ -81,6 +81,11 @@ void BroadPhase::widen(std::uint32_t index)
     part.wide = {center - wide, center + wide};
     search_->set_box(index, part.wide);
     stale_ = true;
+}
+
+void BroadPhase::widen_if_needed(std::uint32_t index)
+{
+    if (const Part& part = parts_[index]; part.collides && !part.unbounded && !fits(part)) widen(index);
 }
 
 void BroadPhase::move(std::uint32_t index, const Collider& collider, const Pose& X_WS)
@@ -165,11 +170,33 @@ void BroadPhase::sort_pairs(Workers* workers)
 const std::vector<BroadPhase::Pair>& BroadPhase::find_candidates(double margin, Workers* workers)
 {
     growth_ = std::min(0.5 * margin, kLargest);
-    for (std::uint32_t i = 0; i < parts_.size(); ++i)
-        if (parts_[i].collides && !parts_[i].unbounded && !fits(parts_[i])) widen(i);
+    for (std::uint32_t i = 0; i < parts_.size(); ++i) widen_if_needed(i);
+    covered_ = growth_;
     raise_half_spaces();
     if (stale_) search(workers);
     return near_;
+}
+
+const std::vector<BroadPhase::Pair>* BroadPhase::find_candidates_of(std::span<const std::uint32_t> parts, double margin)
+{
+    growth_ = std::min(0.5 * margin, kLargest);
+    if (growth_ > covered_)
+    {
+        for (std::uint32_t i = 0; i < parts_.size(); ++i) widen_if_needed(i);
+        covered_ = growth_;
+    }
+    else
+        for (const std::uint32_t i : parts) widen_if_needed(i);
+    raise_half_spaces();
+    if (!search_->find_of(parts, near_few_)) return nullptr;
+    const auto before = [&](const Pair& x, const Pair& y)
+    {
+        return std::tuple(member_of_[x.first], member_of_[x.second], x.first, x.second) <
+               std::tuple(member_of_[y.first], member_of_[y.second], y.first, y.second);
+    };
+    std::sort(near_few_.begin(), near_few_.end(), before);
+    near_few_.erase(std::unique(near_few_.begin(), near_few_.end()), near_few_.end());
+    return &near_few_;
 }
 
 const std::vector<BroadPhase::Pair>& BroadPhase::find_pairs(double margin)

@@ -35,6 +35,9 @@ public:
     /// Pairs (i, j), i < j, ordered by members, then parts. Those among them whose tight boxes are at most `margin` (m) apart, as
     /// is_near() tells, are all pairs of which that is true. `workers`: threads that may share the search; null: none.
     const std::vector<Pair>& find_candidates(double margin, Workers* workers);
+    /// The same for pairs with at least one part in `parts` (ascending), at a cost that depends on their number. Null if the search cannot
+    /// do that. All other parts must be where they were at the last find_candidates().
+    const std::vector<Pair>* find_candidates_of(std::span<const std::uint32_t> parts, double margin);
     /// Those near pairs, in that order.
     const std::vector<Pair>& find_pairs(double margin = 0);
     /// For a pair of the last find_candidates().
@@ -58,6 +61,7 @@ private:
     bool near(const Part& a, const Part& b) const;
     bool fits(const Part& part) const;
     void widen(std::uint32_t part);
+    void widen_if_needed(std::uint32_t part);
     void raise_half_spaces();
     void search(Workers* workers);
     void sort_pairs(Workers* workers);
@@ -69,7 +73,8 @@ private:
     bool single_ = true;                      // each part is that of the member of the same number
     std::vector<std::uint32_t> half_spaces_;  // parts
     double raised_ = 0;                       // m, by which half-spaces are enlarged in the search structure
-    std::vector<Pair> near_, pairs_;
+    double covered_ = 0;                      // m, the growth that all boxes in the search structure allow for
+    std::vector<Pair> near_, pairs_, near_few_;
     std::vector<Pair> sorted_;             // scratch
     std::vector<std::uint32_t> run_ends_;  // by member, scratch
     bool stale_ = true;

@@ -134,6 +134,7 @@ void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const Contact
         m.end_shape = static_cast<std::uint32_t>(body_shapes_.size());
     }
     broad_.reset(space_, parts_.size());
+    is_searched_ = false;
     near_.reserve(parts_.size());
     if (narrow_.empty()) narrow_.resize(1);
     narrow_.front().found.reserve(ContactPoints::kCapacity * std::min(2 * parts_.size(), kPairsPerChunk));
@@ -360,9 +361,25 @@ void OdeScene::query_chunk(std::size_t chunk, const StepContext& context, const 
     }
 }
 
+/// Where few bodies are active, only their pairs are searched for.
+std::span<const BroadPhase::Pair> OdeScene::candidates(const StepContext& context)
+{
+    if (!context.active_bodies.empty() && !context.shortlists.empty() && is_searched_)
+    {
+        asked_.clear();
+        for (const std::uint32_t m : active_)
+            for (std::uint32_t p = members_[m].first_part; p < members_[m].end_part; ++p) asked_.push_back(p);
+        std::sort(asked_.begin(), asked_.end());
+        asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
+        if (const auto* some = broad_.find_candidates_of(asked_, margin_)) return *some;
+    }
+    is_searched_ = true;
+    return broad_.find_candidates(margin_, context.workers);
+}
+
 void OdeScene::query_near(const StepContext& context, const Bodies& bodies, ContactSink& sink)
 {
-    candidates_ = broad_.find_candidates(margin_, context.workers);
+    candidates_ = candidates(context);
     pairs_ = 0;
     const std::size_t chunks = (candidates_.size() + kPairsPerChunk - 1) / kPairsPerChunk;
     const bool alone = !context.workers || context.workers->threads() < 2;

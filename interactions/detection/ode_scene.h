@@ -91,6 +91,7 @@ private:
     };
     void query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies, Narrow& narrow) const;
     void query_persistent(const Bodies& bodies, ContactSink& sink);
+    std::span<const BroadPhase::Pair> candidates(const StepContext& context);
     void query_near(const StepContext& context, const Bodies& bodies, ContactSink& sink);
     std::pair<std::uint32_t, std::uint32_t> members_of(const BroadPhase::Pair& pair) const
     {
@@ -116,6 +117,7 @@ private:
     std::vector<PersistentQuery> persistent_;
     std::vector<Narrow> narrow_;  // by chunk; the first serves a pass without threads
     std::span<const BroadPhase::Pair> candidates_;
+    bool is_searched_ = false;            // for all candidates, since the scene was rebuilt
     std::vector<std::uint32_t> active_;   // members that are advanced, if not all are
     std::vector<std::uint32_t> asked_;    // their parts
     std::vector<BroadPhase::Pair> near_;  // pairs that may collide within the step: parts, then members

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -43,6 +44,13 @@ public:
     /// that may collide; each at least once, in any order. A box and a half-space form a pair if the box reaches into it.
     /// `workers`: threads that may share the search; null: none.
     virtual void find(std::vector<PartPair>& pairs, Workers* workers) = 0;
+    /// Sets `pairs` to those with at least one part in `parts`; each at least once, in any order. What find() returns next does not depend
+    /// on these calls. False if this search finds only all pairs.
+    virtual bool find_of(std::span<const std::uint32_t> parts, std::vector<PartPair>& pairs)
+    {
+        (void)parts, (void)pairs;
+        return false;
+    }
 };
 
 /// `kind`: "tree" ("hash" in older files), or an ODE space: "simple", "sweep_and_prune" or "quadtree". `parts`: one more than

@@ -163,14 +163,15 @@ void TreeSearch::find(std::vector<PartPair>& pairs, Workers* workers)
     moved_.clear();
 }
 
-void TreeSearch::find_of(std::span<const std::uint32_t> parts, std::vector<PartPair>& pairs)
+bool TreeSearch::find_of(std::span<const std::uint32_t> parts, std::vector<PartPair>& pairs)
 {
     refresh_tree();
     pairs.clear();
-    if (parts.size() == bounded_.size() + half_spaces_.size()) return find_all(pairs, nullptr);
+    if (parts.size() == bounded_.size() + half_spaces_.size()) return find_all(pairs, nullptr), true;
     for (const std::uint32_t i : parts) is_asked_[i] = 1;
     find_chosen(parts, is_asked_, pairs, nullptr);
     for (const std::uint32_t i : parts) is_asked_[i] = 0;
+    return true;
 }
 
 }  // namespace plab::detection

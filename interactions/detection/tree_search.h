@@ -17,9 +17,7 @@ public:
     void set_box(std::uint32_t part, const Box& box) override;
     void set_half_space(std::uint32_t part, const Vec3& normal, double offset) override;
     void find(std::vector<PartPair>& pairs, Workers* workers) override;
-    /// Sets `pairs` to all (i, j), i < j, that overlap, may collide and have at least one part in `parts`; each at least once, in
-    /// any order. What find() returns next does not depend on these calls.
-    void find_of(std::span<const std::uint32_t> parts, std::vector<PartPair>& pairs);
+    bool find_of(std::span<const std::uint32_t> parts, std::vector<PartPair>& pairs) override;
 
 private:
     struct HalfSpace

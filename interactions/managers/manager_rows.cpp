@@ -121,6 +121,16 @@ void Account::describe(Schema& s)
         .or_else(-1);
 }
 
+void Sleep::describe(Schema& s)
+{
+    s.param(after, "sleep_after", unit::second, "islands at rest for so long sleep: they cost nothing until something wakes them; 0: never")
+        .or_else(0)
+        .not_negative();
+    s.param(speed, "sleep_speed", unit::metre_per_second, "a body of which a point may move faster does not rest").or_else(0.01).positive();
+    s.output(asleep, "asleep", unit::one, "bodies of sleeping islands");
+    s.output(reason, "sleep_reason", unit::one, "with sleep_after: what keeps islands awake whether they rest or not");
+}
+
 void Account::add(const StepContext& context, Row row, const Island& island, double tolerance)
 {
     if (!context.events) return;
@@ -176,7 +186,7 @@ void SequentialRows::describe(Schema& s)
         .or_else(1)
         .positive()
         .at_most(1.9);
-    account.describe(s);
+    account.describe(s), sleep.describe(s);
     s.scratch(memory, "memory", "working memory");
 }
 
@@ -218,7 +228,7 @@ void DirectRows::describe(Schema& s)
         .or_else(20000)
         .positive()
         .at_most(1e6);
-    account.describe(s);
+    account.describe(s), sleep.describe(s);
     s.scratch(memory, "memory", "working memory: factors of the island's matrix");
 }
 
@@ -264,7 +274,7 @@ void SoftStepRows::describe(Schema& s)
             "the step as not converged")
         .or_else(1e-2)
         .positive();
-    account.describe(s);
+    account.describe(s), sleep.describe(s);
     s.scratch(memory, "memory", "working memory");
 }
 
@@ -302,7 +312,7 @@ void AutomaticRows::describe(Schema& s)
     s.output(reason, "reason", unit::one, "why the larger of its islands were advanced so");
     s.output(direct_islands, "direct_islands", unit::one, "islands that were solved exactly in the last step");
     s.output(soft_islands, "soft_islands", unit::one, "islands that were advanced by SoftStep in the last step");
-    account.describe(s);
+    account.describe(s), sleep.describe(s);
     s.scratch(memory, "memory", "working memory");
     s.scratch(choices, "choices", "working memory");
 }

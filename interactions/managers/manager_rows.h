@@ -27,11 +27,24 @@ struct Account
     void add(const StepContext& context, Row row, const Island& island, double tolerance);
 };
 
+/// When islands of this manager sleep (server/docs/sleeping.md). The host reads the parameters by their names, decides, and writes the
+/// output.
+struct Sleep
+{
+    Column<double> after;  // s
+    Column<double> speed;  // m/s
+    Column<std::int64_t> asleep;
+    Column<std::string> reason;
+
+    void describe(Schema& schema);
+};
+
 struct SequentialRows
 {
     Column<std::int64_t> max_iterations, position_iterations;
     Column<double> tolerance, relaxation, slop, overlap_share;
     Account account;
+    Sleep sleep;
     Column<IslandTeam<StepMemory>> memory;
 
     void describe(Schema& schema);
@@ -44,6 +57,7 @@ struct DirectRows
     Column<double> tolerance;
     Column<std::int64_t> max_steps, max_iterations, max_contacts;
     Account account;
+    Sleep sleep;
     struct Memory
     {
         StepMemory step;
@@ -61,6 +75,7 @@ struct SoftStepRows
     Column<std::int64_t> substeps, relax_iterations;
     Column<double> hertz, damping_ratio, push_speed, tolerance;
     Account account;
+    Sleep sleep;
     Column<IslandTeam<SoftMemory>> memory;
 
     void describe(Schema& schema);
@@ -81,6 +96,7 @@ struct AutomaticRows
     Column<std::string> resolved, reason;
     Column<std::int64_t> direct_islands, soft_islands;  ///< in the last step
     Account account;
+    Sleep sleep;
     struct Memory
     {
         DirectRows::Memory direct;

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "idl/json/json.h"
 #include "model/numbers.h"
@@ -78,7 +79,9 @@ Json pair_json(const world::World& world, const Pair& pair, bool resting)
 Json contacts_json(const simulation::Simulation& s)
 {
     Json out = Json::array();
-    for (const simulation::PairState& pair : s.stepper().contacts().pairs())
+    simulation::ContactCache all = s.stepper().contacts();
+    all.bring_back(s.world());
+    for (const simulation::PairState& pair : std::as_const(all).pairs())
         if (!pair.ahead) out.push_back(pair_json(s.world(), pair, pair.resting));
     for (const simulation::ForcePair& pair : s.stepper().contacts().force_pairs()) out.push_back(pair_json(s.world(), pair, false));
     return out;

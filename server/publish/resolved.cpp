@@ -4,6 +4,7 @@
 #include <map>
 
 #include "publish/figures.h"
+#include "simulation/contacts/sleeping_pairs.h"
 
 namespace plab::publish
 {
@@ -52,9 +53,12 @@ std::uint32_t named_solver(const world::World& world, Ref object)
 std::vector<std::uint8_t> resting_groups(const simulation::Stepper& stepper)
 {
     std::vector<std::uint8_t> out(stepper.groups().all.size(), 0);
-    for (const simulation::PairState& pair : stepper.contacts().pairs())
-        for (const Ref r : {pair.a, pair.b})
-            if (const std::uint32_t g = pair.resting ? stepper.groups().of(r) : kNoIndex; g != kNoIndex) out[g] = 1;
+    stepper.contacts().each_pair(
+        [&](const simulation::PairState& pair)
+        {
+            for (const Ref r : {pair.a, pair.b})
+                if (const std::uint32_t g = pair.resting ? stepper.groups().of(r) : kNoIndex; g != kNoIndex) out[g] = 1;
+        });
     return out;
 }
 

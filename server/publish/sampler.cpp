@@ -1,12 +1,12 @@
 #include "publish/sampler.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "model/numbers.h"
 #include "publish/entries.h"
 #include "publish/figures.h"
+#include "simulation/contacts/sleeping_pairs.h"
 
 namespace plab::publish
 {
@@ -68,9 +68,8 @@ wire::Metrics Sampler::sample(const simulation::Simulation& s, Nanoseconds now)
     fill_ledger(s, out);
     out.residual = s.stepper().report().worst_residual, out.deepest = s.stepper().report().deepest;
     const simulation::ContactCache& contacts = s.stepper().contacts();
-    const auto touches = [](const simulation::PairState& p) { return !p.ahead; };
-    out.contacts = static_cast<std::uint32_t>(
-        static_cast<std::size_t>(std::count_if(contacts.pairs().begin(), contacts.pairs().end(), touches)) + contacts.force_pairs().size());
+    out.contacts = static_cast<std::uint32_t>(contacts.force_pairs().size());
+    contacts.each_pair([&](const simulation::PairState& p) { out.contacts += p.ahead ? 0 : 1; });
     std::vector<std::string> resolved = resolved_algorithms(s);
     const Costs costs(s);
     for (const std::uint32_t i : s.world().in_id_order())

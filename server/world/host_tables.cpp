@@ -220,6 +220,15 @@ void MotionMemento::save(const HostTables& t)
     quantities_ = t.quantities.value;
 }
 
+void MotionMemento::save_some(const HostTables& t, std::span<const std::uint32_t> bodies)
+{
+    assert(!some_ && position_.size() == t.bodies.size());
+    for (const std::uint32_t b : bodies) save_body(t, b);
+    angle_ = t.shafts.angle, speed_ = t.shafts.speed;
+    anchor_ = t.shafts.anchor, root_anchor_ = t.shafts.root_anchor;
+    quantities_ = t.quantities.value;
+}
+
 void MotionMemento::resize(std::size_t bodies, std::size_t shafts, std::size_t quantities)
 {
     position_.resize(bodies), velocity_.resize(bodies), orientation_.resize(bodies);

@@ -61,6 +61,8 @@ class MotionMemento
 {
 public:
     void save(const HostTables& tables);
+    /// The same, if no other bodies than `bodies` have changed since the last time.
+    void save_some(const HostTables& tables, std::span<const std::uint32_t> bodies);
     /// Makes room for all rows, whose contents are unspecified until they are saved.
     void fit(const HostTables& tables);
     /// Makes room for these rows only (ascending), the only ones that may be saved and restored from now on, one by one.

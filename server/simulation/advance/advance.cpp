@@ -18,8 +18,9 @@ void Advance::advance_all()
     contacts_.cache().forget_parked();
     if (forces_.any()) forces_.begin_step();
     hard_.begin_step();
-    if (some_without_solver_ || hard_.needs_islands() || (forces_.any() && forces_.any_near()))
-        advance(step_.all_groups, 0, step_.frame.step, step_.book(), false);
+    const bool some_sleep = hard_.any_asleep();
+    if (some_without_solver_ || some_sleep || hard_.needs_islands() || (forces_.any() && forces_.any_near()))
+        advance(some_sleep ? hard_.awake_groups() : step_.all_groups, 0, step_.frame.step, step_.book(), false);
     else
         batches_.advance();
     motion_.save_ends();

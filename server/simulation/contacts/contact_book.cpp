@@ -95,6 +95,7 @@ Errors ContactBook::rebuild(bool sizes)
     found_.clear(), runs_.clear();
     if (sizes || !detectors_.empty()) measure_bodies();
     list_participants();
+    look_at(nullptr), look_at_all_once();
     return {};
 }
 
@@ -116,6 +117,12 @@ void ContactBook::list_participants()
         std::sort(participants_[d].begin(), participants_[d].end(),
                   [](const Participants& x, const Participants& y) { return std::less<>()(x.all, y.all); });
     }
+}
+
+bool ContactBook::takes_part(std::uint32_t detector, std::uint32_t body) const
+{
+    const auto& lists = participants_[detector];
+    return std::any_of(lists.begin(), lists.end(), [&](const Participants& l) { return l.place[body] != kNoIndex; });
 }
 
 /// Which of the detector's participants are active: it need not go through all of them.
@@ -143,10 +150,9 @@ void ContactBook::query(const Detector& detector, ContactSink& sink, const Index
     step_.report.visited += active ? active->members().size() : step_.world.host().bodies.size();
     // A list of the active participants pays only where the detector would go through many others. Where pairs are named it need not.
     constexpr std::size_t kFew = 8;
-    if (!active)
-        seen_in_[index] = step_.serial;
-    else if (question.context.active_bodies = active->flags();
-             !sink.only_persistent() && kFew * active->members().size() < active->flags().size())
+    if (!active || active == awake_) seen_in_[index] = step_.serial;
+    if (active) question.context.active_bodies = active->flags();
+    if (active && !sink.only_persistent() && kFew * active->members().size() < active->flags().size())
         question.context.shortlists = shortlists_of(index, *active);
     const CostScope scope(step_.meter, step_.meter.of_component(detector.component));
     step_.meter.ran(detector.table, Phase::Detect);
@@ -162,7 +168,7 @@ bool ContactBook::ask(const Detector& detector, ContactCollector& sink, std::spa
     const bool some = only_persistent && seen_in_[index] == step_.serial;
     if (some)
         for (const PersistentPair& p : persistent) asked_.add(p.a.index), asked_.add(p.b.index);
-    query(detector, sink, some ? &asked_ : nullptr);
+    query(detector, sink, some ? &asked_ : only_persistent ? nullptr : awake_);
     step_.report.further_pairs += sink.further_pairs();
     return sink.in_order();
 }
@@ -177,6 +183,12 @@ bool ContactBook::detect(const Detector& detector, std::uint32_t index, std::spa
 
 void ContactBook::detect_all()
 {
+    if (awake_ && !std::exchange(looked_at_all_, true))
+    {
+        const IndexSet* const awake = std::exchange(awake_, nullptr);
+        detect_all();
+        awake_ = awake;
+    }
     found_.clear(), runs_.clear();
     bool in_order = true;
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
@@ -243,15 +255,24 @@ bool ContactBook::detect_with_gaps(std::uint32_t index)
     const Detector& detector = detectors_[index];
     const Bodies& bodies = step_.world.host().bodies;
     double margin = 0, fastest = 0;
-    for (std::uint32_t b = 0; b < bodies.size(); ++b) fastest = std::max(fastest, length_squared(bodies.velocity[b]));
-    fastest = std::sqrt(fastest);
-    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+    // At least one body of each pair is awake, and the smaller one decides.
+    const auto each = [&](const auto& job)
     {
-        if (!bodies.dynamic(b) || !std::isfinite(radius_of_body_[b])) continue;
+        if (awake_)
+            for (const std::uint32_t b : awake_->members()) job(b);
+        else
+            for (std::uint32_t b = 0; b < bodies.size(); ++b) job(b);
+    };
+    each([&](std::uint32_t b) { fastest = std::max(fastest, length_squared(bodies.velocity[b])); });
+    fastest = std::sqrt(fastest);
+    const auto widen = [&](std::uint32_t b)
+    {
+        if (!bodies.dynamic(b) || !std::isfinite(radius_of_body_[b])) return;
         // The other body may be round as well, with any radius.
         const double opens = opening_by_curves(2 * fastest, step_.frame.step, curve_radius_of_body_[b]);
         margin = std::max(margin, kPersistenceShare * radius_of_body_[b] + std::min(opens, kMostShare * radius_of_body_[b]));
-    }
+    };
+    each(widen);
     const double acceleration = detector.speculation_acceleration.value_or(0);
     if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, step_.frame.step));
     // Use the detected normal, not the stored one: this detection serves the next step as well, and it has to give the same result in a

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "simulation/contacts/sleeping_pairs.h"
 #include "world/state_hash.h"
 
 namespace plab::simulation
@@ -125,6 +126,12 @@ const KnownContact* ContactCache::find_contact(std::uint32_t detector, Ref a, Re
 
 void ContactCache::refresh(const world::World& world, const std::vector<Detector>& detectors)
 {
+    for (const auto& island : rest_.islands) pairs_.insert(pairs_.end(), island->pairs.begin(), island->pairs.end());
+    keys_.resize(pairs_.size());  // sorted below
+    rest_.islands.clear(), rest_.note_change();
+    rest_.bodies.resize(std::min(rest_.bodies.size(), world.host().bodies.size()));
+    for (std::uint32_t b = 0; b < rest_.bodies.size(); ++b)
+        if (world.host().component_of({Facet::Body, b}) == kNoIndex) rest_.bodies[b] = {};
     const auto gone = [&](const PairState& p)
     {
         const bool has_detector =
@@ -215,18 +222,28 @@ void ContactCache::copy(const ContactCache& from)
     };
     copy_forces(from.force_pairs_, force_pairs_), copy_forces(from.parked_force_pairs_, parked_force_pairs_);
     next_id_ = from.next_id_, may_have_rest_depth_ = from.may_have_rest_depth_;
+    rest_.copy(from.rest_);
 }
 
 std::uint64_t ContactCache::state_hash(const world::World& world, std::uint64_t h) const
 {
-    for (const PairState& p : pairs_) h = mix(h, hash_of_pair(world, p));
+    // Pairs of sleeping islands are summed, as they may be in either list.
+    std::uint64_t asleep = 0;
+    for (const PairState& p : pairs_)
+        if (rest_.asleep(p.a.index) || rest_.asleep(p.b.index))
+            asleep += hash_of_pair(world, p);
+        else
+            h = mix(h, hash_of_pair(world, p));
     for (const ForcePair& p : force_pairs_)
     {
         // By name, so that the hash of these pairs does not depend on what else is in the scene.
         h = mix(mix(h, hash_of_name(world.id_of(p.a))), hash_of_name(world.id_of(p.b)));
         for (const ForceContact& c : p.all()) h = mix(h, hash_of_contact(c));
     }
-    return h;
+    if (rest_.bodies.empty()) return h;
+    for (const auto& island : rest_.islands)
+        for (const PairState& p : island->pairs) asleep += hash_of_pair(world, p);
+    return rest_.hash(world, asleep == 0 ? h : mix(h, asleep));
 }
 
 namespace

@@ -14,6 +14,7 @@
 
 #include "simulation/contacts/contact_force_pair.h"
 #include "simulation/contacts/point_block.h"
+#include "simulation/contacts/rest_state.h"
 #include "simulation/systems/group_system.h"
 
 namespace plab::simulation
@@ -232,6 +233,11 @@ public:
     std::vector<ForcePair>& parked_force_pairs() { return parked_force_pairs_; }
     const std::vector<ForcePair>& parked_force_pairs() const { return parked_force_pairs_; }
     void forget_parked() { parked_pairs_.clear(), parked_force_pairs_.clear(); }
+    /// Which bodies rest, and the pairs of islands that sleep: missing in pairs() until bring_back(), and last in each_pair().
+    RestState& rest() { return rest_; }
+    const RestState& rest() const { return rest_; }
+    void bring_back(const world::World& world);
+    void each_pair(const auto& job) const;  // sleeping_pairs.h
     /// Hash of everything that later steps depend on, mixed into `start`.
     std::uint64_t state_hash(const world::World& world, std::uint64_t start) const;
 
@@ -248,6 +254,7 @@ private:
     std::vector<ForcePair> force_pairs_, parked_force_pairs_;
     std::uint64_t next_id_ = 1;
     bool may_have_rest_depth_ = true;
+    RestState rest_;
 };
 
 template <class Ends>
@@ -279,6 +286,7 @@ void ContactCache::copy_if(const ContactCache& from, Keep keep, KeepForces keep_
         if (keep_forces(p.a, p.b)) force_pairs_.push_back(p);
     parked_pairs_ = from.parked_pairs_, parked_force_pairs_ = from.parked_force_pairs_;
     next_id_ = from.next_id_, may_have_rest_depth_ = from.may_have_rest_depth_;
+    rest_ = from.rest_;
 }
 
 /// Detectors of a scene, in id order.

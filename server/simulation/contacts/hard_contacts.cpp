@@ -9,7 +9,10 @@ namespace plab::simulation
 void HardContacts::begin_step()
 {
     if (contacts_.choose_search()) held_.forget_state();
-    if (held_.any()) held_.begin_step();
+    if (sleeping_.begin_step()) held_.forget_state();
+    held_.note_starts(sleeping_.may_sleep());
+    if (held_.any())
+        for (held_.begin_step(); sleeping_.wake_touched(held_.fresh()); held_.begin_step()) held_.forget_state();
     // A step that starts from a snapshot has to detect contacts that are otherwise known from the step before. This must not count in the
     // work budget, or the step would not be reproducible.
     step_.report.further_pairs = 0;
@@ -142,6 +145,11 @@ void HardContacts::finish_step()
     };
     contacts_.cache().drop_if(ended);
     for (const FoundContact& f : found) step_.report.deepest = std::max(step_.report.deepest, f.contact.depth);
+    for (const auto& island : contacts_.cache().rest().islands)
+        step_.report.resting_pairs +=
+            static_cast<int>(std::count_if(island->pairs.begin(), island->pairs.end(), [](const PairState& p) { return !p.ahead; }));
+    // What was detected at velocities that are gone does not serve the next step.
+    if (sleeping_.finish_step(held_.starts(), held_.fresh())) held_.forget_state();
 }
 
 }  // namespace plab::simulation

@@ -4,6 +4,7 @@
 
 #include "simulation/contacts/held_islands.h"
 #include "simulation/contacts/impulse_islands.h"
+#include "simulation/contacts/sleeping_islands.h"
 
 namespace plab::simulation
 {
@@ -17,13 +18,19 @@ public:
           contacts_(contacts),
           positions_(step, motion, contacts),
           held_(step, motion, contacts),
-          impulses_(step, motion, contacts, positions_)
+          impulses_(step, motion, contacts, positions_),
+          sleeping_(step, motion, contacts)
     {
     }
 
     /// After any structural change.
-    void rebuild() { held_.rebuild(); }
+    void rebuild() { held_.rebuild(), sleeping_.rebuild(); }
     void begin_step();
+    /// A script may have changed what the rest of bodies depends on.
+    void note_change() { sleeping_.note_change(); }
+    /// Whether islands sleep; then only these groups have to be advanced.
+    bool any_asleep() const { return sleeping_.any(); }
+    const std::vector<std::uint32_t>& awake_groups() const { return sleeping_.awake_groups(); }
     /// Whether groups have to advance as islands because of a persistent contact, or of a joint that only a manager can hold.
     bool needs_islands() const;
     /// Whether a group has such a joint in this step.
@@ -48,6 +55,7 @@ private:
     PositionCorrection positions_;
     HeldIslands held_;
     ImpulseIslands impulses_;
+    SleepingIslands sleeping_;
     DisjointSets islands_;               ///< of groups; single sets but for those in reached_
     IndexSet reached_;                   ///< groups that hold together with those of the present advance
     std::vector<std::uint32_t> places_;  ///< of the pairs between them

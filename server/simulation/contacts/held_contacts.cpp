@@ -12,16 +12,35 @@ namespace plab::simulation
 void HeldIslands::note_state()
 {
     const Bodies& bodies = step_.world.host().bodies;
-    known_positions_ = bodies.position, known_orientations_ = bodies.orientation;
-    known_velocities_ = bodies.velocity, known_spins_ = bodies.angular_velocity;
-    known_ = true;
+    const RestState& rest = contacts_.cache().rest();
+    const std::vector<std::uint32_t>* const some = known_ ? rest.changing_since(known_mark_) : nullptr;
+    known_ = true, known_mark_ = rest.mark;
+    if (some)
+        for (const std::uint32_t b : *some)
+        {
+            known_positions_[b] = bodies.position[b], known_orientations_[b] = bodies.orientation[b];
+            known_velocities_[b] = bodies.velocity[b], known_spins_[b] = bodies.angular_velocity[b];
+        }
+    else
+    {
+        known_positions_ = bodies.position, known_orientations_ = bodies.orientation;
+        known_velocities_ = bodies.velocity, known_spins_ = bodies.angular_velocity;
+    }
 }
 
 bool HeldIslands::is_current() const
 {
     const Bodies& bodies = step_.world.host().bodies;
-    if (!known_ || known_positions_ != bodies.position || known_orientations_ != bodies.orientation) return false;
+    if (!known_) return false;
     // The margin up to which gaps are detected depends on velocities.
+    if (const std::vector<std::uint32_t>* const some = contacts_.cache().rest().changing_since(known_mark_))
+        return std::all_of(some->begin(), some->end(),
+                           [&](std::uint32_t b)
+                           {
+                               return known_positions_[b] == bodies.position[b] && known_orientations_[b] == bodies.orientation[b] &&
+                                      known_velocities_[b] == bodies.velocity[b] && known_spins_[b] == bodies.angular_velocity[b];
+                           });
+    if (known_positions_ != bodies.position || known_orientations_ != bodies.orientation) return false;
     return known_velocities_ == bodies.velocity && known_spins_ == bodies.angular_velocity;
 }
 
@@ -242,7 +261,14 @@ void HeldIslands::set_approach(HeldIsland& island, const GroupSystem& system, do
               [&](std::size_t begin, std::size_t end)
               {
                   for (std::size_t k = begin; k < end; ++k)
-                      given_speed_[island.bodies[k]] = length(system.acceleration(island.members[k])) * step_.frame.step;
+                  {
+                      const std::uint32_t b = island.bodies[k];
+                      const double acceleration = length(system.acceleration(island.members[k]));
+                      given_speed_[b] = acceleration * step_.frame.step;
+                      if (starts_.empty()) continue;
+                      const Bodies& bodies = step_.world.host().bodies;
+                      starts_[b] = {step_.serial, acceleration, bodies.velocity[b], bodies.angular_velocity[b]};
+                  }
                   raise_to(smallest, -least_gyration(step_.world.host().bodies, std::span(island.bodies).subspan(begin, end - begin)));
               });
     island.size = island.members.empty() ? 0.0 : -smallest;

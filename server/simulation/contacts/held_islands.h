@@ -135,6 +135,11 @@ public:
     void take(std::vector<std::uint32_t>& groups, DisjointSets& islands, std::span<const std::uint32_t> reached,
               std::span<const std::uint32_t> places);
     bool holds_any() const { return !held_.empty(); }
+    /// Whether the start of each step is to be noted for the bodies of islands, and the notes, by host row.
+    void note_starts(bool on) { starts_.resize(on ? step_.world.host().bodies.size() : 0); }
+    std::span<const RestSample> starts() const { return starts_; }
+    /// The pairs that were added last.
+    std::span<const PairState> fresh() const { return fresh_; }
     void advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
 
 private:
@@ -267,9 +272,11 @@ private:
     std::vector<std::size_t> first_found_;  ///< parallel to fresh_
     std::vector<double> shaft_mobility_;
     std::vector<double> given_speed_;  ///< m/s, by body: speed that forces give it in the step
+    std::vector<RestSample> starts_;   ///< by body; empty: nobody wants them
     // The state to which the found contacts belong.
     std::vector<Vec3> known_positions_, known_velocities_, known_spins_;
     std::vector<Quat> known_orientations_;
+    std::shared_ptr<const char> known_mark_;  ///< RestState::mark
     bool known_ = false;
     // The state that is put back after the forces have been booked.
     std::vector<Vec3> kept_positions_, kept_velocities_, kept_spins_, kept_momenta_;

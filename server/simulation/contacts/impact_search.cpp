@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "simulation/contacts/contact_book.h"
+#include "simulation/contacts/sleeping_pairs.h"
 #include "simulation/motion/component_call.h"
 
 namespace plab::simulation
@@ -65,6 +66,11 @@ void ContactBook::ask_search(std::span<const PairState> pairs, std::vector<Impac
 {
     ContactLoad load;
     measure_islands(pairs, load);
+    for (const auto& island : std::as_const(cache_).rest().islands)
+    {
+        load.island_bodies = std::max(load.island_bodies, static_cast<std::uint32_t>(island->bodies.size()));
+        load.island_points = std::max(load.island_points, island->points);
+    }
     load.travel = largest_travel(step_.world.host().bodies, radius_of_body_, step_.frame.step);
     out.clear();
     for (const Detector& d : detectors_)

@@ -386,6 +386,8 @@ void EventLocator::answer_the_rest(std::size_t left, std::vector<FoundContact>& 
 void EventLocator::run(std::vector<FoundContact>& found)
 {
     const auto& detectors = contacts_.detectors();
+    if (std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); }))
+        return contacts_.detect_all();  // there are no events
     any_certifies_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
     all_certify_ = std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
     meets_force_contact_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_force; });

@@ -56,10 +56,12 @@ void GroupMotion::clear_reports()
     if (!step_.schedule.of(Phase::Constrain).empty()) row_reports_.clear(step_.world.components().size());
 }
 
-void GroupMotion::save_start()
+void GroupMotion::save_start(const std::vector<std::uint32_t>* changed)
 {
     if (members_only_)
         save_members(start_);
+    else if (changed)
+        start_.save_some(step_.world.host(), *changed);
     else
         start_.save(step_.world.host());
     if (!rewinds_) return;

@@ -39,7 +39,8 @@ public:
     const ExtraForces* extra() const { return extra_; }
 
     // Saved states: start of the step, start of the present piece of each group, end of the step -------------------------
-    void save_start();
+    /// `changed`: bodies outside of it have stayed as they were saved last; null: all may have changed.
+    void save_start(const std::vector<std::uint32_t>* changed = nullptr);
     void save_ends();
     void rewind(std::uint32_t group);
     void save_segment(std::uint32_t group);

@@ -25,14 +25,18 @@ Out taken_apart(const std::vector<Pair>& pairs, std::vector<Head> Out::*heads)
 
 }  // namespace
 
-ContactsImage image_of(const ContactCache& cache)
+ContactsImage image_of(const ContactCache& from, const world::World& world)
 {
+    ContactCache whole;
+    if (!from.rest().islands.empty()) whole.copy(from), whole.bring_back(world);
+    const ContactCache& cache = from.rest().islands.empty() ? from : whole;
     ContactsImage out;
     out.pairs = taken_apart(cache.pairs(), &ContactsImage::Pairs::heads);
     out.parked = taken_apart(cache.parked_pairs(), &ContactsImage::Pairs::heads);
     out.force_pairs = taken_apart(cache.force_pairs(), &ContactsImage::ForcePairs::heads);
     out.parked_force_pairs = taken_apart(cache.parked_force_pairs(), &ContactsImage::ForcePairs::heads);
     out.next_id = cache.next_id();
+    out.rest = cache.rest().bodies, out.rest_cause = cache.rest().scene_cause;
     return out;
 }
 
@@ -47,7 +51,7 @@ Snapshot capture(const Run& run)
     const StepFrame& last = stepper.frame();
     out->world = run.world().image();
     out->loaded = run.loaded;
-    out->contacts = image_of(stepper.contacts());
+    out->contacts = image_of(stepper.contacts(), run.world());
     out->clock = {run.clock, last.tick, last.start_time, last.step};
     out->ledger = {stepper.work(), stepper.contact_energy(), stepper.departed_work(), stepper.requests_work(), run.kinetic_at_start};
     out->reported = stepper.reported(), out->split = stepper.split();

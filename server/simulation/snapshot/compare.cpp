@@ -117,6 +117,8 @@ public:
     std::string pair(const char* what, const PairHead& p) const { return name(what, p.detector, p.a, p.b); }
     std::string pair(const char* what, const ForcePairHead& p) const { return name(what, p.detector, p.a, p.b); }
 
+    const std::string& body(std::uint32_t b) const { return body_[b]; }
+
 private:
     std::string name(const char* what, std::uint32_t detector, Ref a, Ref b) const
     {
@@ -179,6 +181,16 @@ void add_head(const ForcePairHead& p, Facts& out)
     out.push_back({"law", Weight::State, whole(p.law)});
 }
 
+void add_rest(const BodyRest& r, Facts& out)
+{
+    out.push_back({"asleep", Weight::State, r.asleep});
+    out.push_back({"quiet steps", Weight::State, whole(r.quiet)});
+    out.push_back({"cause", Weight::State, whole(r.cause)});
+    for (const auto& [name, value] :
+         {std::pair{"moved", r.moved}, {"moved before", r.moved_before}, {"turned", r.turned}, {"turned before", r.turned_before}})
+        out.push_back({name, Weight::State, value});
+}
+
 template <class List>
 void add_pairs(const char* what, const List& list, const Names& names, Portrait& out)
 {
@@ -201,6 +213,8 @@ Portrait contacts_of(const world::Image& image, const ContactsImage& contacts)
     add_pairs("parked pair", contacts.parked, names, out);
     add_pairs("parked spring pair", contacts.parked_force_pairs, names, out);
     out["contacts"].push_back({"next id", Weight::State, whole(contacts.next_id)});
+    for (std::uint32_t b = 0; b < contacts.rest.size(); ++b)
+        if (const BodyRest& r = contacts.rest[b]; !(r == BodyRest{})) add_rest(r, out["rest of " + names.body(b)]);
     return out;
 }
 

@@ -31,6 +31,7 @@ constexpr const char* kOtherSections[] = {"run",
                                           "spring_pairs.points",
                                           "parked_spring_pairs",
                                           "parked_spring_pairs.points",
+                                          "rest",
                                           "waiting",
                                           "notes"};
 
@@ -274,6 +275,23 @@ private:
         for (auto& [name, list] :
              {std::pair<const char*, Springs*>{"spring_pairs", &c.force_pairs}, {"parked_spring_pairs", &c.parked_force_pairs}})
             if (auto done = read_pairs(name, &Springs::heads, &Springs::points, *list); !done) return done;
+        return read_rest();
+    }
+
+    Result<void> read_rest()
+    {
+        auto rows = rows_of<Rest>(section("rest"));
+        if (!rows) return rows.errors();
+        const auto& components = directory_->components;
+        ContactsImage& c = out_->contacts;
+        if (!rows->empty()) c.rest.resize(out_->world.bodies.size());
+        for (const Rest& row : *rows)
+        {
+            const std::uint32_t i = row.component;
+            if (i >= components.size() || components[i].facet != Facet::Body || components[i].table == kNoIndex)
+                return reason("the snapshot's section 'rest' has a row that is not valid");
+            c.rest[components[i].host_index] = row.body, c.rest_cause = row.scene_cause;
+        }
         return {};
     }
 

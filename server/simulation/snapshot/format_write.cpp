@@ -146,6 +146,12 @@ Result<std::vector<std::uint8_t>> encode(const Snapshot& snapshot, std::span<con
     write_pairs("spring_pairs", s.contacts.force_pairs, rows, sections);
     write_pairs("parked_spring_pairs", s.contacts.parked_force_pairs, rows, sections);
 
+    std::vector<Rest> rest;
+    for (std::uint32_t b = 0; b < s.contacts.rest.size(); ++b)
+        if (const BodyRest& r = s.contacts.rest[b]; !(r == BodyRest{}))
+            rest.push_back({rows.body({Facet::Body, b}).index, r, s.contacts.rest_cause});
+    if (!rest.empty()) sections.push_back(section_of("rest", rest));
+
     std::vector<Note> texts, all;
     for (const std::string& text : waiting) texts.push_back({{}, text});
     for (const SnapshotNote& note : notes) all.push_back({note.name, note.text});

@@ -215,6 +215,21 @@ void columns(ForceContact& c, V visit)
     visit("asked", c.asked), visit("slack", c.slack), visit("told", c.reported), visit("dormant", c.dormant);
 }
 
+/// How long a body has been at rest, and whether it sleeps. Bodies that have just moved have no row.
+struct Rest
+{
+    std::uint32_t component = 0;
+    BodyRest body;
+    std::uint64_t scene_cause = 0;  ///< the same in each row
+};
+template <class V>
+void columns(Rest& r, V visit)
+{
+    visit("component", r.component), visit("quiet", r.body.quiet), visit("asleep", r.body.asleep), visit("cause", r.body.cause);
+    visit("moved", r.body.moved), visit("moved_before", r.body.moved_before);
+    visit("turned", r.body.turned), visit("turned_before", r.body.turned_before), visit("scene_cause", r.scene_cause);
+}
+
 /// The divergence watch, without what it keeps by component, body and shaft.
 struct Watch
 {

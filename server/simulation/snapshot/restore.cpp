@@ -94,6 +94,8 @@ void restore_contacts(const ContactsImage& image, const world::Renumbering& now,
     cache.force_pairs() = put_together<ForcePair>(image.force_pairs, now);
     cache.parked_force_pairs() = put_together<ForcePair>(image.parked_force_pairs, now);
     cache.continue_ids(image.next_id);
+    cache.rest().bodies = rearranged(image.rest, world.host().bodies.size(), [&](std::uint32_t b) { return now.body(b); });
+    cache.rest().scene_cause = image.rest_cause;
     const auto before = [&](const auto& x, const auto& y)
     {
         const auto key = [&](const auto& p) { return std::tuple(world.rank(p.detector), world.rank(p.a), world.rank(p.b)); };
@@ -138,7 +140,7 @@ Result<LiveScene> revive(const RunContext& context, const SnapshotContent& from)
     if (stepper.state_hash() == from.state_hash || !knows_all_states(from.world, *live.world)) return live;
 
     std::string where = "no component differs; the version of plabd that wrote the file may compute the hash in another way";
-    const ContactsImage contacts = image_of(stepper.contacts());
+    const ContactsImage contacts = image_of(stepper.contacts(), *live.world);
     if (const auto difference = compare_worlds(from.world, from.contacts, live.world->image(), contacts)) where = difference->text();
     return reason("the restored state differs from the captured one: " + where);
 }

@@ -40,6 +40,8 @@ struct ContactsImage
     };
     Pairs pairs, parked;
     ForcePairs force_pairs, parked_force_pairs;
+    std::vector<BodyRest> rest;  ///< by body
+    std::uint64_t rest_cause = 0;
     std::uint64_t next_id = 1;
 };
 
@@ -101,7 +103,7 @@ Result<LiveScene> revive(const RunContext& context, const SnapshotContent& from)
 void continue_from(Run& run, const SnapshotContent& from);
 
 /// Conversion between an image and what a stepper holds in addition to its world.
-ContactsImage image_of(const ContactCache& cache);
+ContactsImage image_of(const ContactCache& cache, const world::World& world);
 /// Restores contacts into a stepper whose world was made from the image; they are sorted again by the ids of that world.
 void restore_contacts(const ContactsImage& image, const world::Renumbering& now, const world::World& world, ContactCache& cache);
 

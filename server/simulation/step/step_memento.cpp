@@ -11,7 +11,10 @@ constexpr unsigned kChanging = world::kind_bit(FieldKind::State) | world::kind_b
 
 void StepMemento::save(const world::World& world, const Stepper& stepper)
 {
-    motion_.save(world.host());
+    if (const auto* some = stepper.contacts().rest().changing_since(contacts_.rest().mark))
+        motion_.save_some(world.host(), *some);
+    else
+        motion_.save(world.host());
     cells_.clear();
     world.save_fields(kChanging, cells_);
     contacts_.copy(stepper.contacts());

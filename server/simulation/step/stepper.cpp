@@ -44,7 +44,12 @@ void Stepper::search_as(const Stepper& whole, Tick tick, double start_time, doub
 
 // The nodes of the step tree -------------------------------------------------------------------------------------------
 
-void Stepper::save_start() { motion_.save_start(); }
+void Stepper::save_start()
+{
+    const RestState& rest = book_.cache().rest();
+    motion_.save_start(rest.changing_since(saved_mark_));
+    saved_mark_ = rest.mark;
+}
 
 void Stepper::drive()
 {
@@ -52,7 +57,9 @@ void Stepper::drive()
     world::CommandCall call{step_.context(), step_.arguments()};
     call.context.changes = &changes_, call.context.interruption = interruption_;
     run_blocks(Phase::Drive, call);
-    if (!changes_.empty() && apply_changes_ && !step_.frame.give_up()) apply_changes_(changes_owner_, changes_);
+    if (changes_.empty() || !apply_changes_ || step_.frame.give_up()) return;
+    apply_changes_(changes_owner_, changes_);
+    hard_.note_change();
 }
 
 void Stepper::couple_speeds()

@@ -138,6 +138,7 @@ private:
     RenderSceneBuilder render_scene_;
     CostBook cost_;
     double departed_work_ = 0, requests_work_ = 0;
+    std::shared_ptr<const char> saved_mark_;  ///< RestState::mark when the start of a step was saved last
 
     const Selection* part_ = nullptr;
     const Interruption* interruption_ = nullptr;

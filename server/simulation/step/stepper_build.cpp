@@ -102,6 +102,7 @@ Result<void> Stepper::rebuild()
     forces_.rebuild();
     advance_.rebuild();
     locator_.reset();
+    saved_mark_ = nullptr;
     speed_system_.configure(step_.world, step_.schedule, step_.groups, step_.all_groups, step_.graph);
     rebuild_costs();
     render_scene_.structure_changed();

@@ -154,6 +154,7 @@ void Transaction::run_on_scene(bool swaps)
         return;
     }
     trial_begin_ = now_ns();
+    run_->stepper().contacts().bring_back(run_->world());
     saved_.begin(*run_, changes_contacts());
     const Clock clock = read_clock();
     const Energies first = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);

@@ -19,10 +19,14 @@ constexpr double kEnergyRounding = 0x1p-40;  // rad or m: relative rounding of p
 
 double trace(const Mat3& m) { return m(0, 0) + m(1, 1) + m(2, 2); }
 
-double kinetic(const world::HostTables& host)
+/// `moving`: the bodies that are not at rest; null: they are not known.
+double kinetic(const world::HostTables& host, const std::vector<std::uint32_t>* moving)
 {
     double sum = 0;
-    for (std::uint32_t b = 0; b < host.bodies.size(); ++b) sum += host.bodies.kinetic_energy(b);
+    if (moving)
+        for (const std::uint32_t b : *moving) sum += host.bodies.kinetic_energy(b);
+    else
+        for (std::uint32_t b = 0; b < host.bodies.size(); ++b) sum += host.bodies.kinetic_energy(b);
     for (std::uint32_t s = 0; s < host.shafts.size(); ++s) sum += host.shafts.kinetic_energy(s);
     return sum;
 }
@@ -138,7 +142,7 @@ void DivergenceWatch::before_step(const RunView& s)
         for (const Detector& d : stepper.detectors())
             if (d.response != kNoIndex) m_.passive[d.response] = 0;
     }
-    m_.last_kinetic = kinetic(host);
+    m_.last_kinetic = kinetic(host, nullptr);
     m_.start_energy = energy(s, m_.last_kinetic);
 }
 
@@ -176,6 +180,8 @@ void DivergenceWatch::watch_contacts(const RunView& s, std::vector<Event>& event
     for (const std::uint32_t c : s.world.in_id_order())
     {
         if (c >= std::min(energy.size(), m_.start_created.size()) || !(energy[c].created > m_.start_created[c])) continue;
+        // The scale is at least its first term. The others take a pass over all bodies.
+        if (energy[c].created - m_.start_created[c] <= kMostCreated * std::fabs(m_.start_energy)) continue;
         if (scale < 0) scale = std::fabs(m_.start_energy) + sources(s).gross + least_energy(s.world.host(), s.dt);
         const double created = energy[c].created - m_.start_created[c];
         if (!(created > kMostCreated * scale)) continue;
@@ -201,17 +207,26 @@ void DivergenceWatch::watch_growth(const RunView& s, std::vector<Event>& events)
         if (growth.runs_away(speed_squared, least) && report_once(object))
             events.push_back(warning(s, object, "keeps doubling its speed every few steps", {std::sqrt(speed_squared)}));
     };
+    const auto check_body = [&](std::uint32_t k)
+    {
+        if (!host.bodies.dynamic(k)) return;
+        const double gyration = trace(host.bodies.inertia_B[k]) / 2 * host.bodies.inverse_mass[k];
+        const Ref ref{Facet::Body, k};
+        check(m_.linear[k], length_squared(host.bodies.velocity[k]), gyration * turn * turn, ref);
+        check(m_.spin[k], length_squared(host.bodies.angular_velocity[k]), turn * turn, ref);
+    };
     // In the order of ids, which is also the order of events.
+    const RestState& rest = s.stepper.contacts().rest();
+    if (const std::vector<std::uint32_t>* const moving = rest.moving(); moving && host.shafts.size() == 0)
+    {
+        for (const std::uint32_t b : *moving) check_body(b);
+        return;
+    }
     for (const std::uint32_t i : s.world.in_id_order())
     {
         const world::Component& c = s.world.component(i);
         const std::uint32_t k = c.host_index;
-        if (c.facet == Facet::Body && host.bodies.dynamic(k))
-        {
-            const double gyration = trace(host.bodies.inertia_B[k]) / 2 * host.bodies.inverse_mass[k];
-            check(m_.linear[k], length_squared(host.bodies.velocity[k]), gyration * turn * turn, c.ref(i));
-            check(m_.spin[k], length_squared(host.bodies.angular_velocity[k]), turn * turn, c.ref(i));
-        }
+        if (c.facet == Facet::Body && !rest.asleep(k)) check_body(k);
         if (c.facet == Facet::Shaft && host.shafts.dynamic(k))
             check(m_.turn[k], host.shafts.speed[k] * host.shafts.speed[k], turn * turn, c.ref(i));
     }
@@ -220,7 +235,7 @@ void DivergenceWatch::watch_growth(const RunView& s, std::vector<Event>& events)
 void DivergenceWatch::watch_energy(const RunView& s, std::vector<Event>& events)
 {
     const world::HostTables& host = s.world.host();
-    const double now = kinetic(host);
+    const double now = kinetic(host, s.stepper.contacts().rest().moving());
     if (now <= kGrowthToCheck * m_.last_kinetic && m_.gaining_steps == 0) return;
     if (!std::isfinite(now))
     {

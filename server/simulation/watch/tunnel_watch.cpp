@@ -75,6 +75,7 @@ void TunnelWatch::find_colliding_bodies(const RunView& s)
     const world::World& world = s.world;
     const world::HostTables& host = world.host();
     ready_ = true;
+    mark_ = nullptr;
     colliding_.clear();
     for (const Detector& d : s.stepper.detectors())
     {
@@ -102,7 +103,13 @@ void TunnelWatch::before_step(const RunView& s)
     if (!ready_) find_colliding_bodies(s);
     if (colliding_.empty()) return;
     const Bodies& bodies = s.world.host().bodies;
-    for (std::size_t b = 0; b < start_.size(); ++b) start_[b] = {bodies.position[b], bodies.orientation[b]};
+    // Bodies that sleep stay where they were.
+    const RestState& rest = s.stepper.contacts().rest();
+    if (const std::vector<std::uint32_t>* const some = rest.changing_since(mark_))
+        for (const std::uint32_t b : *some) start_[b] = {bodies.position[b], bodies.orientation[b]};
+    else
+        for (std::size_t b = 0; b < start_.size(); ++b) start_[b] = {bodies.position[b], bodies.orientation[b]};
+    mark_ = rest.mark;
 }
 
 bool TunnelWatch::passed(const RunView& s, std::uint32_t body, std::uint32_t other) const
@@ -137,7 +144,9 @@ bool TunnelWatch::find_swept_boxes(const RunView& s, const CollidingBodies& coll
         return bodies.dynamic(b) && memory_.reported[b] == 0 &&
                length_squared(bodies.position[b] - start_[b].position) > least_width_[b] * least_width_[b];
     };
-    if (std::none_of(colliding.bodies.begin(), colliding.bodies.end(), is_fast)) return false;
+    const std::vector<std::uint32_t>* const some = s.stepper.contacts().rest().changing_since(mark_);
+    const std::vector<std::uint32_t>& moving = some ? *some : colliding.bodies;
+    if (std::none_of(moving.begin(), moving.end(), is_fast)) return false;
     swept_.assign(colliding.bodies.size(), {});
     bounded_.clear(), fast_.clear();
     for (std::uint32_t i = 0; i < colliding.bodies.size(); ++i)

@@ -81,6 +81,7 @@ private:
     bool ready_ = false;
     std::vector<CollidingBodies> colliding_;
     std::vector<StartPosition> start_;  ///< by body
+    std::shared_ptr<const char> mark_;  ///< RestState::mark at that time
     std::vector<double> least_width_;   ///< half of the smallest width, by body, m
     TunnelMemory memory_;
     double shallow_ = 0;  ///< m: penetrations up to this are not deep for any body
