@@ -57,9 +57,6 @@ public:
     virtual std::span<const GovernedComponent> watched(Row row) = 0;
     virtual std::span<const Viewpoint> viewpoints() const = 0;
     virtual std::string_view id_of(std::uint32_t component) const = 0;
-    /// s of CPU per step that a component costs at a level, its solver included, as far as it has been measured (an input of the run that
-    /// is recorded with it) or is known of the type. NaN: not known.
-    virtual double cost(Row row, std::size_t index, std::int32_t level) const = 0;
     /// m (or rad, if it acts on shafts only): the distance by which its objects depart within `interval` (s) at a level from where the most
     /// exact level of the ladder takes them. Measured by trial steps from the present state, which change nothing. NaN: it cannot be told.
     virtual double error(Row row, std::size_t index, std::int32_t level, double interval) = 0;
