@@ -122,7 +122,7 @@ TEST_CASE("a user who vanishes, or is silent for too long, lets go, and the body
     for (const bool says_so : {true, false})
     {
         CAPTURE(says_so);
-        Scene scene(solver() + hand("hand", "patience='0.3' extrapolation='0.3'") + cup("0 0 0") + grab("hold='cup'"), kMilliseconds);
+        Scene scene(solver() + hand("hand", "patience='0.3' extrapolation='0.5'") + cup("0 0 0") + grab("hold='cup'"), kMilliseconds);
         scene.keep_events = true;
         for (int n = 0; n < 500; ++n) send(scene, {n + 1, {0.3 * n * kStep, 0, 0}, {}, {0.3, 0, 0}}), scene.step();
         CHECK(near(scene.vec("cup", "linear_velocity").x, 0.3, 1e-3));
@@ -176,12 +176,12 @@ TEST_CASE("a hand grabs what it touches, among several, and lifts it from a tabl
         "<component id='right' type='State/RigidBody' mass='1' shape='cube' position='0.5 0 0.1'/>"
         "<component id='contact' type='CDetection/ODE' between='*' resolution='Resolution/None' response='Response/Rows' "
         "response.friction='0.5'/>";
-    const std::string text = hand("hand", "position='0.5 0 1'") + table + grab("", "hand", "left right") + kGravity;
+    const std::string text = hand("hand", "position='1 0 0.1'") + table + grab("", "hand", "left right") + kGravity;
     const auto sample = [](int n)
     {
-        // Down onto the right cube, closing there, and up again.
-        const double z = n < 240 ? 1 - 0.76 * n / 240.0 : n < 300 ? 0.24 : 0.24 + 0.5 * (n - 300) / 240.0;
-        return Sample{n, {0.5, 0, z}, {}, {}, {}, n < 270 ? 0.0 : 1.0};
+        // From the side against the right cube, which it pushes by 1 cm; closing there, and up.
+        const double x = n < 240 ? 1 - 0.36 * n / 240.0 : 0.64, z = n < 300 ? 0.1 : 0.1 + 0.5 * (n - 300) / 240.0;
+        return Sample{n, {x, 0, z}, {}, {}, {}, n < 270 ? 0.0 : 1.0};
     };
     const auto run = [&](int threads, int cut)
     {

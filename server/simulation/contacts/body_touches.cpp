@@ -23,7 +23,7 @@ void BodyTouches::add_pair(Ref a, Ref b, const Vec3& point, const Vec3& normal, 
     found_.push_back({b.index, {a, point, -normal, impulse, persists, {}}});
 }
 
-/// Points at the end of the step, with the impulses of the step where impulses or forces hold them.
+/// Points at the end of the step, with the impulses of the step where impulses hold them. Springs: with their force at the end of the step.
 void BodyTouches::collect_contacts()
 {
     std::size_t near = 0;
@@ -55,8 +55,8 @@ void BodyTouches::collect_contacts()
     }
 }
 
-/// Impacts that the events of the step report. Where contacts are no events, the impulses of a known pair contain its impacts, and an event
-/// is needed only for a pair that has gone again.
+/// Impacts that the events of the step report. The impulse that is kept for a point does not contain that of its impact
+/// (HeldIslands::keep_run), so nothing is counted twice.
 void BodyTouches::collect_impacts()
 {
     for (const Event& e : step_.events)
@@ -65,7 +65,6 @@ void BodyTouches::collect_impacts()
         const auto& detectors = contacts_.detectors();
         const auto detector = std::find_if(detectors.begin(), detectors.end(), [&](const Detector& d) { return d.component == e.component; });
         if (detector == detectors.end() || detector->by_force) continue;
-        if (detector->persists() && contacts_.cache().find(e.component, e.a, e.b, step_.world)) continue;
         add_pair(e.a, e.b, e.contact->point, e.contact->normal, e.contact->impulse, false);
     }
 }
