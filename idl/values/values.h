@@ -342,6 +342,11 @@ PLAB_MEMBERS(Reply, client, number, outcome, repeated, reasons, run, revision, s
 
 // ---- What a replay needs --------------------------------------------------------------------------------------------
 
+/// Journal::origin of requests that the simulation made itself: what it measured by the clock, which a replay needs, and what a component of
+/// the scene decided, which a replay decides again.
+inline constexpr const char* kMeasured = "measurement";
+inline constexpr const char* kDecidedByComponent = "component";
+
 struct Journal
 {
     std::uint64_t run = 0, revision = 0, sequence_number = 0;

@@ -48,7 +48,7 @@ Result<void> prepare_trigger(Row row, const TriggerRows& triggers)
 {
     const std::string& verb = triggers.verb[row];
     if (verb.empty()) return reason("verb must not be empty");
-    for (const char* const alone : {"load", "reset", "restore", "rewind", "shutdown", "cancel", "add"})
+    for (const char* const alone : {"load", "reset", "restore", "rewind", "shutdown", "cancel"})
         if (verb == alone) return reason("verb: a trigger cannot ask for '" + verb + "'");
     return {};
 }

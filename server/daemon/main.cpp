@@ -4,6 +4,7 @@
 
 #include "blueprint/reader.h"
 #include "blueprint/writer.h"
+#include "control/component_requests.h"
 #include "daemon/ending.h"
 #include "daemon/explain.h"
 #include "daemon/options.h"
@@ -60,6 +61,7 @@ int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::DaemonOptio
     if (!snapshot) return plab::daemon::fail(snapshot.errors());
     plab::simulation::Simulation simulation(library, options.threads);
     simulation.limit(plab::daemon::limits_of(options));
+    simulation.read_requests_with(plab::control::component_request_reader(library, plab::daemon::limits_of(options)));
     simulation.history().configure(plab::daemon::history_of(options));
     if (auto restored = simulation.restore(snapshot->snapshot); !restored) return plab::daemon::fail(restored.errors());
     if (options.until >= 0 && options.until < simulation.time() - 0.5 * simulation.dt())
@@ -98,6 +100,7 @@ int carry_out(const plab::daemon::DaemonOptions& options)
     if (!scene) return plab::daemon::fail(scene.errors());
     plab::simulation::Simulation simulation(library, options.threads);
     simulation.limit(plab::daemon::limits_of(options));
+    simulation.read_requests_with(plab::control::component_request_reader(library, plab::daemon::limits_of(options)));
     simulation.history().configure(plab::daemon::history_of(options));
     if (auto loaded = simulation.load(*scene); !loaded) return plab::daemon::fail(loaded.errors());
     switch (options.task)

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "control/component_requests.h"
 #include "daemon/ending.h"
 #include "daemon/output.h"
 #include "daemon/recording.h"
@@ -159,6 +160,7 @@ int replay_recording(plugins::PluginLibrary& library, const DaemonOptions& optio
     model::CompileLimits recorded;
     recorded.components = std::numeric_limits<std::uint32_t>::max();
     simulation.limit(recorded);
+    simulation.read_requests_with(control::component_request_reader(library, recorded));
     std::unique_ptr<Trace> trace;
     ReplayProgress progress(options);
     replay::ReplayOptions how;

@@ -268,6 +268,11 @@ bool Service::answer()
     bool fine = true;
     for (simulation::Reply& reply : simulation_->take_replies())
     {
+        if (reply.made)
+        {
+            note_own(reply);
+            continue;
+        }
         const auto asked = origin_of(reply.request);
         if (!asked) continue;  // no client sent a request with this number
         const Origin& origin = *asked;

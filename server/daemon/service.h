@@ -96,6 +96,8 @@ private:
     std::optional<Origin> origin_of(std::uint64_t request);
     std::vector<std::string> words_of(const simulation::Snapshot& snapshot) const;
     void write_journal(const Origin& origin, const simulation::Reply& reply);
+    /// A request that the simulation made itself: a measurement, or what a component decided.
+    void note_own(const simulation::Reply& reply);
     void make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause);
     void send_snapshots();
     simulation::Reply move(const People::Ask& ask);

@@ -90,6 +90,16 @@ void Service::write_journal(const Origin& origin, const simulation::Reply& reply
     send_named_snapshots(origin);
 }
 
+void Service::note_own(const simulation::Reply& reply)
+{
+    if (!reply.done) return;
+    wire::Journal entry;
+    entry.run = simulation_->run(), entry.revision = reply.revision, entry.step = reply.step, entry.time = simulation_->time();
+    entry.origin = reply.decided_by.empty() ? wire::kMeasured : wire::kDecidedByComponent;
+    for (const simulation::Operation& op : reply.made->operations) entry.operations.push_back(control::text_of(op));
+    collector_.journal(std::move(entry));
+}
+
 /// Readers of snapshots also get those that clients request: this is how a client downloads one.
 void Service::send_named_snapshots(const Origin& origin)
 {

@@ -37,4 +37,25 @@ std::string setter_of_field_name(std::string_view field)
     return out;
 }
 
+bool is_pattern(std::string_view id) { return id.find_first_of("*?") != std::string::npos; }
+
+bool matches(std::string_view pattern, std::string_view id)
+{
+    // Greedy, backtracking only to the last star, which takes linear time in practice.
+    std::size_t p = 0, t = 0, star = std::string_view::npos, from = 0;
+    while (t < id.size())
+    {
+        if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == id[t]) && pattern[p] != '*')
+            ++p, ++t;
+        else if (p < pattern.size() && pattern[p] == '*')
+            star = p++, from = t;
+        else if (star != std::string_view::npos)
+            p = star + 1, t = ++from;
+        else
+            return false;
+    }
+    while (p < pattern.size() && pattern[p] == '*') ++p;
+    return p == pattern.size();
+}
+
 }  // namespace plab::model

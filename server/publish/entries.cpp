@@ -37,6 +37,25 @@ std::vector<wire::Parameter> parameters_of(const world::World& world, std::uint3
     return out;
 }
 
+namespace
+{
+
+/// What a governor has to do with the component, as parameters of the kind "level"; nothing if no governor watches it.
+void add_level(const simulation::Simulation& s, std::uint32_t component, std::vector<wire::Parameter>& out)
+{
+    const auto level = s.levels().level(component);
+    if (!level) return;
+    const auto add = [&](const char* name, std::string text, const char* unit = "") {
+        out.push_back({name, std::move(text), unit, "level"});
+    };
+    add("governor", s.world().id_of(level->governor));
+    add("level", std::to_string(level->level)), add("levels", std::to_string(level->levels)), add("level_algorithm", level->text);
+    if (level->reason.empty()) return;
+    add("level_reason", level->reason), add("level_since", model::format_value(level->since), "s");
+}
+
+}  // namespace
+
 wire::SceneObject object_entry(const simulation::Simulation& s, const Roster::Member& member, const std::string& name)
 {
     const world::World& world = s.world();
@@ -57,6 +76,7 @@ wire::SceneObject object_entry(const simulation::Simulation& s, const Roster::Me
     const Value color = world.get(member.index, "color");
     if (const auto* rgb = std::get_if<Vec3>(&color)) out.color = *rgb;
     out.parameters = parameters_of(world, member.index, kGivenKinds);
+    add_level(s, member.index, out.parameters);
     return out;
 }
 
@@ -77,6 +97,7 @@ wire::Interaction interaction_entry(const simulation::Simulation& s, const Roste
     for (const Role& role : world.table_of(member.index).schema().roles())
         out.roles.push_back({role.name, ids_of(world, world.participants(member.index, role))});
     out.parameters = parameters_of(world, member.index, kGivenKinds);
+    add_level(s, member.index, out.parameters);
     return out;
 }
 

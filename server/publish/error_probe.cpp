@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "model/ladders.h"
 #include "model/values.h"
 #include "publish/figures.h"
-#include "publish/ladders.h"
 
 namespace plab::publish
 {
@@ -99,6 +99,7 @@ Result<ErrorFigure> shadow_error(const simulation::Simulation& s, std::uint32_t 
     simulation::Simulation as_it_is(s.world().types()), with_finer(s.world().types());
     for (simulation::Simulation* each : {&as_it_is, &with_finer})
     {
+        each->let_decide(false);  // a governor would exchange the algorithm again
         if (auto restored = each->restore(now); !restored) return restored.errors();
         each->set_interruption(interruption);
     }
@@ -119,7 +120,7 @@ std::uint32_t ErrorProbe::next_component(const simulation::Simulation& s)
     for (const std::uint32_t i : world.in_id_order())
     {
         const world::Component& c = world.component(i);
-        if (!is_interaction(c) || c.quarantined || finer_than(world.type_of(i)->info.name).empty()) continue;
+        if (!is_interaction(c) || c.quarantined || model::finer_than(world.type_of(i)->info.name).empty()) continue;
         if (first == kNoIndex) first = i;
         if (c.id > last_) return i;
     }
@@ -143,7 +144,7 @@ void ErrorProbe::follow(const simulation::Simulation& s, Nanoseconds now)
     const std::uint32_t i = next_component(s);
     if (i == kNoIndex) return;
     const model::ComponentType& type = *s.world().type_of(i);
-    const std::string finer = finer_than(type.info.name);
+    const std::string finer = model::finer_than(type.info.name);
     last_ = s.world().id_of(i);
     // Two restored copies, and one step of each.
     const auto expected = std::max(longest_, static_cast<Nanoseconds>(4 * s.stepper().cost().step().median));
@@ -171,7 +172,7 @@ ErrorFigure ErrorProbe::of(const simulation::Simulation& s, std::uint32_t compon
     const auto known = known_.find(s.world().id_of(component));
     if (type && known != known_.end() && known->second.type == type->info.name) return known->second.figure;
     ErrorFigure own = own_error(s, component);
-    if (type && finer_than(type->info.name).empty()) own.meaning += "; no algorithm of its family is finer";
+    if (type && model::finer_than(type->info.name).empty()) own.meaning += "; no algorithm of its family is finer";
     return own;
 }
 

@@ -163,6 +163,7 @@ Result<void> Replay::ask_what_is_due()
     {
         const wire::Journal& entry = journal_[next_];
         if (entry.step < s_->tick()) continue;  // before the snapshot
+        if (entry.origin == wire::kDecidedByComponent) continue;  // the component decides the same again
         wire::Request text;
         text.operations = entry.operations;
         auto wanted = control::wanted_of(text, *types_, s_->limits());

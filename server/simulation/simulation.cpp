@@ -16,9 +16,7 @@ Simulation::~Simulation() = default;
 
 void Simulation::begin_run(LiveScene live, std::shared_ptr<const model::SceneSpec> scene)
 {
-    // The stepper refers to its world, so it goes first.
-    run_.live.stepper = std::move(live.stepper);
-    run_.live.world = std::move(live.world);
+    run_.live = std::move(live);
     run_.stepper().on_changes(&Simulation::apply_script_changes, this);
     run_.stepper().set_interruption(context_.interruption, &context_.progress);
     run_.loaded = std::move(scene);
@@ -31,6 +29,7 @@ void Simulation::begin_run(LiveScene live, std::shared_ptr<const model::SceneSpe
     run_.changes = {};
     run_.changes.everything = true;
     *run_.watch = {};
+    decided_ = {};
     run_.kinetic_at_start = totals().kinetic;
 }
 
@@ -129,6 +128,7 @@ Reply Simulation::carry_out(const Request& request)
     Reply done = Transaction(run_, context_, *this, request).run();
     if (done.done && affects_the_run(request)) run_.watch->begin_anew();
     if (done.done) history_.note(run_, request);
+    note_reassigned();
     return done;
 }
 
@@ -172,6 +172,7 @@ bool Simulation::step()
 {
     (void)apply_due();
     if (paused()) return false;
+    measure_for_governors();
     if (!run_step()) return false;
     ++run_.clock.tick;
     if (run_.clock.steps_left > 0) --run_.clock.steps_left;
@@ -195,6 +196,7 @@ void Simulation::set_interruption(const Interruption* interruption)
 bool Simulation::run_step()
 {
     run_.changed_by_scripts.clear(), script_changes_.clear();
+    decide();
     gave_up_ = false;
     const bool may_be_given_up = context_.interruption != nullptr;
     if (may_be_given_up) step_start_.save(run_.world(), run_.stepper());
@@ -207,11 +209,17 @@ bool Simulation::run_step()
     if (may_be_given_up && run_.stepper().gave_up()) take_back_step();
     context_.progress.end();
     if (gave_up_) return false;
-    context_.note_cost(static_cast<double>(now_ns() - begin));
-    run_.events = run_.stepper().events();
+    const auto took = static_cast<double>(now_ns() - begin);
+    context_.note_cost(took);
+    constexpr std::size_t kMostRecent = 1024;
+    if (run_.levels().watches_anything() && recent_steps_.size() < kMostRecent) recent_steps_.push_back(static_cast<float>(took));
+    run_.events = std::move(decided_.events);
+    run_.events.insert(run_.events.end(), run_.stepper().events().begin(), run_.stepper().events().end());
+    decided_.events.clear();
     run_.watch->after_step(run_.view(), run_.events);
     freeze_lost_objects();
     quarantine_failed();
+    read_changed_governors();
     return true;
 }
 
@@ -235,7 +243,7 @@ void Simulation::freeze_lost_objects()
         run_.world().quarantine(host.component_of(ref), true);
         run_.changes.touched.push_back(run_.world().id_of(ref));
     }
-    if (!run_.stepper().rebuild()) release_lost_objects();
+    if (!run_.live.rebuild()) release_lost_objects();
 }
 
 /// Frozen objects are static from now on, and a static object cannot be coupled to a prescribed or to another static one. Therefore the
@@ -254,7 +262,7 @@ void Simulation::release_lost_objects()
             e.message = "is taken out of the step: it couples " + run_.world().id_of(ref) + ", whose state is no longer finite";
             run_.events.push_back(std::move(e));
         }
-    const auto rebuilt = run_.stepper().rebuild();
+    const auto rebuilt = run_.live.rebuild();
     assert(rebuilt.ok());  // frozen objects have no couplings left that could be refused
     (void)rebuilt;
 }
@@ -271,7 +279,7 @@ void Simulation::quarantine_failed()
         if (!c.quarantined) run_.changes.touched.push_back(c.id);
         run_.world().quarantine(e.component, true);
     }
-    if (any) (void)run_.stepper().rebuild();
+    if (any) (void)run_.live.rebuild();
 }
 
 void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& changes)

@@ -62,6 +62,12 @@ public:
     std::vector<Reply> take_replies();
     /// What requests, scripts (when they set parameters) and failures changed about components since the last call.
     Changes take_changes();
+    /// Reads the requests that components of the scene make in their own name (Phase::Decide).
+    void read_requests_with(RequestReader reader) { context_.read_request = std::move(reader); }
+    /// Whether governors and other components that decide are asked before each step; yes by default. A copy of a run that answers "what
+    /// if" must leave them out.
+    void let_decide(bool deciding) { deciding_ = deciding; }
+    const LevelBook& levels() const { return run_.levels(); }
     /// Where the cameras of the scene send their pictures. Null: cameras do not draw.
     void draw_for(ImageSink* images) { images_ = images; }
 
@@ -100,6 +106,19 @@ private:
     Result<void> go_forward(const std::vector<History::Asked>& requests, double time);
     Reply carry_out(const Request& request);
     Reply outlived(const Request& request) const;
+
+    // deciding.cpp
+    void measure_for_governors();
+    void decide();
+    void carry_out_decision(const Decision& decision);
+    bool take_effect(const Decision& decision, const Request& request, const std::vector<std::string>& reasons);
+    void refuse_decision(std::uint32_t by, const std::string& what, const std::string& why);
+    void read_changed_governors();
+    /// Observers see the governor of a component with it.
+    void note_reassigned();
+    Result<std::vector<ObjectMotion>> motion_with(std::uint32_t component, const Level& level);
+    double error_of_level(std::uint32_t component, const Level& level, const Level& finest, double interval);
+
     bool run_step();
     void take_back_step();
     void freeze_lost_objects();
@@ -121,6 +140,16 @@ private:
     std::vector<ScriptChange> script_changes_;  ///< of the step being computed
     StepMemento step_start_;  ///< the state at the start of the step being computed; saved only if the step can be interrupted
     bool gave_up_ = false;
+    bool deciding_ = true;
+    /// At a boundary components decide once, even if the step after it is interrupted and made again.
+    struct Decided
+    {
+        Tick tick = -1;
+        std::vector<Event> events;  ///< to be told with those of the step
+    };
+    Decided decided_;
+    std::string last_refusal_;
+    std::vector<float> recent_steps_;  ///< ns, of the steps since the last measurement for governors
 };
 
 }  // namespace plab::simulation

@@ -1,6 +1,7 @@
 // One error for each interaction that can be compared along its ladder: by a shadow step, which leaves the run as it is.
 #include "publish/error_probe.h"
-#include "publish/ladders.h"
+
+#include "model/ladders.h"
 #include "support/scene.h"
 
 using namespace plab;
@@ -17,7 +18,7 @@ const char* const kGears =
 publish::ErrorFigure shadow(const Scene& s, const std::string& id)
 {
     const std::uint32_t i = s.simulation().world().find(id);
-    auto figure = publish::shadow_error(s.simulation(), i, publish::finer_than(s.simulation().world().type_of(i)->info.name));
+    auto figure = publish::shadow_error(s.simulation(), i, model::finer_than(s.simulation().world().type_of(i)->info.name));
     REQUIRE_MESSAGE(figure.ok(), reasons(figure));
     return *figure;
 }

@@ -5,6 +5,7 @@
 #include "plab/surface.h"
 #include "simulation/contacts/contact_book.h"
 #include "simulation/contacts/paradox.h"
+#include "world/bounding_radius.h"
 
 namespace plab::simulation
 {
@@ -31,20 +32,7 @@ double curve_radius(const Shapes& shapes, std::uint32_t shape)
     return least;
 }
 
-/// m: radius about the origin of the shape's frame.
-double radius_of(const Geometry& g)
-{
-    double r = 0;
-    if (g.kind == GeometryKind::Plane) return HUGE_VAL;
-    if (g.kind == GeometryKind::Sphere) r = g.size.x;
-    if (g.kind == GeometryKind::Box) r = length(g.size);
-    if (g.kind == GeometryKind::Capsule) r = g.size.x + g.size.z;
-    if (g.kind == GeometryKind::Cylinder) r = std::hypot(g.size.x, g.size.z);
-    for (const Vec3& v : g.vertices) r = std::max(r, length(v));
-    return r;
-}
-
-/// m: the same along the axes of the shape's frame; infinite for shapes that it does not know.
+/// m: half the size along the axes of the shape's frame; infinite for shapes that it does not know.
 Vec3 extents_of(const Geometry& g)
 {
     if (g.kind == GeometryKind::Box) return g.size;
@@ -63,7 +51,7 @@ void ContactBook::measure_bodies()
     const Bodies& bodies = host.bodies;
     std::vector<double> curves(host.shapes.size()), radii(host.shapes.size());
     for (std::uint32_t k = 0; k < curves.size(); ++k)
-        curves[k] = curve_radius(host.shapes, k), radii[k] = radius_of(host.shapes.geometry[k]);
+        curves[k] = curve_radius(host.shapes, k), radii[k] = world::bounding_radius(host.shapes.geometry[k]);
     curve_radius_of_body_.assign(bodies.size(), HUGE_VAL), radius_of_body_.assign(bodies.size(), 0.0);
     extents_of_body_.assign(bodies.size(), {});
     for (std::size_t b = 0; b < bodies.size(); ++b)

@@ -243,6 +243,10 @@ struct Reply
     std::uint64_t revision = 0;  ///< afterwards
     std::vector<SwapReport> swaps;
     TrialReport trial;
+    /// Of a request that the simulation made itself: it is in no client's name. Null: a client, or the command line, asked.
+    std::shared_ptr<const Request> made;
+    /// The component that decided it; a replay decides the same again. "": a measurement, which a replay takes from the recording.
+    std::string decided_by;
 };
 
 }  // namespace plab::simulation

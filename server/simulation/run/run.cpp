@@ -30,6 +30,12 @@ void Run::forget_late_requests()
     std::erase_if(waiting, [&](const WaitingRequest& w) { return w.run == number && w.request->at && *w.request->at < clock.tick; });
 }
 
+Result<void> LiveScene::rebuild()
+{
+    auto built = stepper->rebuild();
+    return built ? levels->rebuild() : built;
+}
+
 Result<LiveScene> build_scene(const RunContext& context, const model::SceneSpec& scene)
 {
     LiveScene live;
@@ -37,7 +43,8 @@ Result<LiveScene> build_scene(const RunContext& context, const model::SceneSpec&
     live.world->describe(scene.settings, scene.file);
     if (auto added = live.world->add(scene); !added) return added.errors();
     live.stepper = std::make_unique<Stepper>(*live.world, context.threads);
-    if (auto built = live.stepper->rebuild(); !built)
+    live.levels = std::make_unique<LevelBook>(*live.world, *live.stepper);
+    if (auto built = live.rebuild(); !built)
     {
         Errors errors = built.errors();
         for (Error& e : errors)

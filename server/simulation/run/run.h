@@ -3,11 +3,13 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <set>
 #include <vector>
 
 #include "model/compile.h"
+#include "simulation/levels/level_book.h"
 #include "simulation/requests/requests.h"
 #include "simulation/step/totals.h"
 #include "simulation/watch/divergence_watch.h"
@@ -16,10 +18,14 @@
 namespace plab::simulation
 {
 
+/// Reads a request from the words in which a client, or a component of the scene, asks for it (server/docs/requests.md).
+using RequestReader = std::function<Result<Request>(const std::string& verb, const std::string& target, const std::string& argument)>;
+
 /// With what runs are computed. It outlives them.
 struct RunContext
 {
     model::TypeSource* types = nullptr;
+    RequestReader read_request;                  ///< for components that ask for requests; none: they are refused
     int threads = 1;
     model::CompileLimits limits;                 ///< for the components that requests add
     const Interruption* interruption = nullptr;  ///< null: steps and trials cannot be interrupted
@@ -51,7 +57,7 @@ struct WaitingRequest
     std::uint64_t run = 0;                   ///< the run in which it was posted
 };
 
-/// A world with the stepper that was built for it. The stepper refers to the world.
+/// A world with the stepper and the levels that were built for it, which refer to it.
 struct LiveScene
 {
     LiveScene() = default;
@@ -59,12 +65,16 @@ struct LiveScene
     /// The stepper that was here goes before its world.
     LiveScene& operator=(LiveScene&& other) noexcept
     {
-        stepper = std::move(other.stepper), world = std::move(other.world);
+        levels = std::move(other.levels), stepper = std::move(other.stepper), world = std::move(other.world);
         return *this;
     }
+    /// Derives everything that follows from the structure of the world, after it has changed. On error the world must be put back and
+    /// rebuilt.
+    Result<void> rebuild();
 
     std::unique_ptr<world::World> world;
     std::unique_ptr<Stepper> stepper;
+    std::unique_ptr<LevelBook> levels;
 };
 
 struct Run
@@ -83,6 +93,7 @@ struct Run
 
     world::World& world() const { return *live.world; }
     Stepper& stepper() const { return *live.stepper; }
+    LevelBook& levels() const { return *live.levels; }
     RunView view() const { return {world(), stepper(), clock.tick, clock.time(), clock.dt.seconds}; }
     Totals totals() const { return totals_of(world(), stepper(), clock.time(), clock.tick); }
     /// Returns the run with its world, stepper and watch. This run keeps its clock, its counts and its requests, and waits for another

@@ -118,7 +118,8 @@ Result<LiveScene> revive(const RunContext& context, const SnapshotContent& from)
     if (auto done = live.world->revive(from.world); !done) return done.errors();
     live.stepper = std::make_unique<Stepper>(*live.world, context.threads);
     Stepper& stepper = *live.stepper;
-    if (auto built = stepper.rebuild(); !built) return built.errors();
+    live.levels = std::make_unique<LevelBook>(*live.world, stepper);
+    if (auto built = live.rebuild(); !built) return built.errors();
     live.world->load_host(from.world);
 
     const world::Renumbering now(from.world, *live.world);

@@ -68,7 +68,7 @@ void SavedState::restore_derived() const
     world::for_each_column(world::kDerivedShaftColumns, [&](auto column) { host.shafts.*column = shafts_.*column; });
 }
 
-void SavedState::restore(const std::set<std::uint32_t>& prepared)
+void SavedState::restore_world(const std::set<std::uint32_t>& prepared)
 {
     world::World& world = run_->world();
     if (backup_) world.restore(*backup_);
@@ -82,8 +82,14 @@ void SavedState::restore(const std::set<std::uint32_t>& prepared)
             if (i < world.components().size() && world.component(i).alive) (void)world.prepare(i);
     world.take_back(before);
     restore_derived();
+}
+
+void SavedState::restore(const std::set<std::uint32_t>& prepared)
+{
+    restore_world(prepared);
+    const world::World& world = run_->world();
     Stepper& stepper = run_->stepper();
-    (void)stepper.rebuild();
+    (void)run_->live.rebuild();
     restore_derived();
     if (contacts_) stepper.contacts() = *contacts_;
     stepper.work() = work_, stepper.contact_energy() = contact_energy_;

@@ -24,6 +24,8 @@ public:
     void end();
     /// Restores everything, and rebuilds the stepper. `prepared`: components whose opaque parts were rebuilt in the meantime.
     void restore(const std::set<std::uint32_t>& prepared);
+    /// The same where the stepper has not been rebuilt since begin(), and nothing was added or removed.
+    void restore_world(const std::set<std::uint32_t>& prepared);
 
 private:
     void restore_derived() const;

@@ -44,6 +44,9 @@ public:
     Transaction(Run& run, RunContext& context, RunOperations& operations, const Request& request);
     /// Applies, tries and commits the request. On any error everything is as it was before.
     Reply run();
+    /// The motion of all objects that the request can affect, at the end of its first step. The request is undone again, and leaves no
+    /// trace.
+    Result<std::vector<ObjectMotion>> first_step();
 
 private:
     Result<void> apply(const Operation& operation);

@@ -132,7 +132,7 @@ void Transaction::run_on_clock()
 
 Result<void> Transaction::build_and_try(TrialScope& scope, bool swaps)
 {
-    if (auto built = run_->stepper().rebuild(); !built) return model::first_of_alike(built.errors());
+    if (auto built = run_->live.rebuild(); !built) return model::first_of_alike(built.errors());
     report_contacts();
     const Energies now = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);
     energy_applied_ = now.kinetic + now.stored;
@@ -171,6 +171,30 @@ void Transaction::run_on_scene(bool swaps)
     }
     saved_.restore(prepared_);
     write_clock(clock);
+}
+
+Result<std::vector<ObjectMotion>> Transaction::first_step()
+{
+    if (auto expanded = expand_patterns(); !expanded) return expanded.errors();
+    saved_.begin(*run_, changes_contacts());
+    TrialScope scope(run_->world());
+    mark_touched(scope);
+    std::vector<ObjectMotion> motion;
+    apply_all();
+    // The scene's stepper is not rebuilt: an exchange within a family leaves roles and groups as they are.
+    if (reply_.errors.empty())
+    {
+        Interruption deadline(context_->interruption);
+        if (request_->trial.budget == TrialChoice::Budget::Given)
+            deadline.ask(std::chrono::nanoseconds(static_cast<std::int64_t>(budget_ns())));
+        TrialResult result = Trial(run_->world(), run_->stepper(), next_step()).run(scope, {}, deadline, context_->progress, 0);
+        if (result.given_up) reply_.errors = {reason("the trial was interrupted")};
+        if (!result.failure.empty()) reply_.errors = {reason(result.failure)};
+        motion = std::move(result.motion);
+    }
+    saved_.restore_world(prepared_);
+    if (!reply_.errors.empty()) return reply_.errors;
+    return motion;
 }
 
 }  // namespace plab::simulation

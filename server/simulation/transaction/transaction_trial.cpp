@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/names.h"
 #include "model/numbers.h"
 #include "simulation/costs/clock.h"
 #include "simulation/requests/request_words.h"
@@ -26,28 +27,6 @@ constexpr double kMostToMeasure = 4e6;  // ns, of a budget that the request does
 
 bool adds(const Operation& op) { return std::holds_alternative<AddOperation>(op) || std::holds_alternative<AddBlueprintOperation>(op); }
 
-/// `*` matches any text and `?` any character.
-bool is_pattern(const std::string& id) { return id.find_first_of("*?") != std::string::npos; }
-
-bool matches(std::string_view pattern, std::string_view text)
-{
-    // Greedy, backtracking only to the last star, which takes linear time in practice.
-    std::size_t p = 0, t = 0, star = std::string_view::npos, from = 0;
-    while (t < text.size())
-    {
-        if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t]) && pattern[p] != '*')
-            ++p, ++t;
-        else if (p < pattern.size() && pattern[p] == '*')
-            star = p++, from = t;
-        else if (star != std::string_view::npos)
-            p = star + 1, t = ++from;
-        else
-            return false;
-    }
-    while (p < pattern.size() && pattern[p] == '*') ++p;
-    return p == pattern.size();
-}
-
 std::chrono::nanoseconds as_duration(double ns) { return std::chrono::nanoseconds(static_cast<std::int64_t>(std::clamp(ns, 0.0, 1e18))); }
 
 }  // namespace
@@ -61,7 +40,7 @@ Result<void> Transaction::expand(const SwapOperation& op, std::vector<Operation>
     for (const std::uint32_t i : world.in_id_order())
     {
         const world::Component& c = world.component(i);
-        if (c.table == kNoIndex || !matches(op.id, c.id)) continue;
+        if (c.table == kNoIndex || !model::matches(op.id, c.id)) continue;
         ++named;
         // A short type name is completed with the family of the component.
         const std::string& from = world.type_of(i)->info.name;
@@ -83,7 +62,7 @@ Result<void> Transaction::expand_patterns()
     const auto has_pattern = [](const Operation& op)
     {
         const auto* swap = std::get_if<SwapOperation>(&op);
-        return swap && is_pattern(swap->id);
+        return swap && model::is_pattern(swap->id);
     };
     if (std::none_of(request_->operations.begin(), request_->operations.end(), has_pattern)) return {};
     for (const Operation& op : request_->operations)

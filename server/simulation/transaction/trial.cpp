@@ -179,6 +179,28 @@ bool Trial::grow(TrialScope& scope, const Stepper& part) const
     return grown;
 }
 
+std::vector<ObjectMotion> Trial::motion_in(const TrialScope& scope) const
+{
+    std::vector<ObjectMotion> out;
+    const Bodies& bodies = world_.host().bodies;
+    const Shafts& shafts = world_.host().shafts;
+    for (const std::uint32_t b : scope.bodies())
+        out.push_back({{Facet::Body, b},
+                       bodies.position[b],
+                       bodies.velocity[b],
+                       bodies.angular_velocity[b],
+                       bodies.orientation[b],
+                       stepper_.radius_of_body()[b],
+                       0,
+                       0});
+    for (const std::uint32_t s : scope.shafts())
+    {
+        ObjectMotion& shaft = out.emplace_back();
+        shaft.object = {Facet::Shaft, s}, shaft.angle = shafts.angle[s], shaft.speed = shafts.speed[s];
+    }
+    return out;
+}
+
 TrialResult Trial::once(Stepper& part, const TrialScope& scope, const std::vector<std::uint32_t>& components, const Interruption& deadline)
 {
     TrialResult out;
@@ -195,6 +217,7 @@ TrialResult Trial::once(Stepper& part, const TrialScope& scope, const std::vecto
     out.kinetic_after = then.kinetic;
     out.outcome.energy = then.kinetic + then.stored, out.outcome.momentum = then.momentum;
     for (const std::uint32_t c : components) out.errors.push_back(c == kNoIndex ? 0.0 : world_.largest_error(c));
+    out.motion = motion_in(scope);
     return out;
 }
 

@@ -17,17 +17,28 @@ struct TrialStep
     double start = 0, h = 0;  ///< s
 };
 
+/// How a body or a shaft moves at the end of a trial.
+struct ObjectMotion
+{
+    Ref object;
+    Vec3 position, velocity, angular_velocity;  ///< of a body: W, m, m/s, rad/s
+    Quat orientation;
+    double radius = 0;            ///< m, of a body
+    double angle = 0, speed = 0;  ///< of a shaft: rad, rad/s
+};
+
 struct TrialResult
 {
     bool given_up = false;
-    std::string failure;         ///< "" or the first event of severity Failure
-    double before = 0;           ///< J, kinetic and stored energy of the objects in the scope at the start of the step
-    double moving = 0;           ///< J, kinetic energy at that time, including prescribed objects
-    double kinetic_after = 0;    ///< J, at the end of the step
-    double least = 0;            ///< J: kinetic energy below which no motion is noticeable within one step
-    StepOutcome outcome;         ///< of the objects in the scope; without error and cost
-    Spread cost;                 ///< ns, of repeated steps; no samples: not measured
-    std::vector<double> errors;  ///< of the components that were given
+    std::string failure;               ///< "" or the first event of severity Failure
+    double before = 0;                 ///< J, kinetic and stored energy of the objects in the scope at the start of the step
+    double moving = 0;                 ///< J, kinetic energy at that time, including prescribed objects
+    double kinetic_after = 0;          ///< J, at the end of the step
+    double least = 0;                  ///< J: kinetic energy below which no motion is noticeable within one step
+    StepOutcome outcome;               ///< of the objects in the scope; without error and cost
+    Spread cost;                       ///< ns, of repeated steps; no samples: not measured
+    std::vector<double> errors;        ///< of the components that were given
+    std::vector<ObjectMotion> motion;  ///< of the objects in the scope, bodies first, each in the order of host rows
 };
 
 /// A trial uses a stepper of its own for the objects in the scope, starting from the present state of the world. All other objects are
@@ -54,6 +65,7 @@ private:
     void load_cells();
     void prepare_again();
     bool grow(TrialScope& scope, const Stepper& part) const;
+    std::vector<ObjectMotion> motion_in(const TrialScope& scope) const;
     TrialResult once(Stepper& part, const TrialScope& scope, const std::vector<std::uint32_t>& components, const Interruption& deadline);
     Spread measure(Stepper& part, const Interruption& deadline, std::uint64_t until_ns);
     static void apply_changes(void* self, std::vector<ParameterChange>& changes);

@@ -1,10 +1,12 @@
-/// The next finer algorithm of a ladder: the reference against which a shadow step measures an error.
+/// Ladders of algorithms: which type of a family is the next finer one. A shadow step measures an error against it, and governors move
+/// components along it (server/docs/levels.md).
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <vector>
 
-namespace plab::publish
+namespace plab::model
 {
 
 struct Finer
@@ -43,4 +45,19 @@ inline std::string finer_than(std::string_view type)
     return {};
 }
 
-}  // namespace plab::publish
+/// The longest chain of ever finer types in a family ("Solver", "Constraint/AngularVelocity"), from the coarsest to the finest; of equally
+/// long ones that which begins with the type that comes first by name. Empty if the family has no order.
+inline std::vector<std::string> default_ladder(std::string_view family)
+{
+    std::vector<std::string> longest;
+    for (const Finer& f : kFiner)
+    {
+        if (f.type.size() <= family.size() + 1 || !f.type.starts_with(family) || f.type[family.size()] != '/') continue;
+        std::vector<std::string> chain{std::string(f.type)};
+        for (std::string next = finer_than(f.type); !next.empty(); next = finer_than(next)) chain.push_back(next);
+        if (chain.size() > longest.size()) longest = std::move(chain);
+    }
+    return longest;
+}
+
+}  // namespace plab::model

@@ -1,0 +1,219 @@
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "control/console/table.h"
+#include "control/live/commands.h"
+#include "control/live/metrics_text.h"
+#include "idl/values/scene.h"
+#include "link/names.h"
+
+namespace plab::cli
+{
+namespace
+{
+
+/// On a terminal, more lines than this would hide the beginning.
+constexpr std::size_t kMostOnTerminal = 40;
+
+struct LevelsOptions
+{
+    std::vector<std::string> only;  ///< ids, or parts of them
+    bool live = false;
+};
+
+/// What a governor has to do with a component, as the catalogue states it.
+struct LevelOf
+{
+    std::string id, governor, algorithm, reason, since;
+    long level = -1, levels = 0;
+};
+
+const std::string& parameter(const std::vector<wire::Parameter>& parameters, std::string_view name)
+{
+    static const std::string none;
+    const auto is_it = [&](const wire::Parameter& p) { return p.kind == "level" && p.name == name; };
+    const auto at = std::find_if(parameters.begin(), parameters.end(), is_it);
+    return at == parameters.end() ? none : at->text;
+}
+
+std::optional<LevelOf> level_of(const std::string& id, const std::vector<wire::Parameter>& parameters)
+{
+    LevelOf out;
+    out.id = id, out.governor = parameter(parameters, "governor");
+    if (out.governor.empty()) return {};
+    out.algorithm = parameter(parameters, "level_algorithm"), out.reason = parameter(parameters, "level_reason");
+    out.since = parameter(parameters, "level_since");
+    out.level = std::strtol(parameter(parameters, "level").c_str(), nullptr, 10);
+    out.levels = std::strtol(parameter(parameters, "levels").c_str(), nullptr, 10);
+    return out;
+}
+
+std::vector<LevelOf> levels_in(const link::CatalogueContents& now, const std::vector<std::string>& only)
+{
+    std::vector<LevelOf> out;
+    const auto add = [&](const std::string& id, const std::vector<wire::Parameter>& parameters)
+    {
+        const auto wanted = [&](const std::string& part) { return id.find(part) != std::string::npos; };
+        if (!only.empty() && std::none_of(only.begin(), only.end(), wanted)) return;
+        if (auto level = level_of(id, parameters)) out.push_back(std::move(*level));
+    };
+    for (const auto& [id, i] : now.interactions) add(id, i.parameters);
+    for (const auto& [id, o] : now.objects) add(id, o.parameters);
+    // The most exact ones first: they are what a governor spends its budget on.
+    std::stable_sort(out.begin(), out.end(), [](const LevelOf& a, const LevelOf& b) { return a.level > b.level; });
+    return out;
+}
+
+/// "3 of 4", counted from the cheapest; "-" for an algorithm that the ladder does not name.
+std::string place(const LevelOf& level)
+{
+    return level.level < 0 ? "-" : std::to_string(level.level + 1) + " of " + std::to_string(level.levels);
+}
+
+Json json_of(const LevelOf& level, const link::InteractionMetrics* m)
+{
+    return {{"id", level.id},
+            {"governor", level.governor},
+            {"level", level.level},
+            {"levels", level.levels},
+            {"algorithm", level.algorithm},
+            {"reason", level.reason},
+            {"since", level.since.empty() ? Json() : Json(std::strtod(level.since.c_str(), nullptr))},
+            {"metrics", m != nullptr ? wire::json_of(*m) : Json()}};
+}
+
+/// How many components have each level, by governor.
+void print_counts(const Console& console, const std::vector<LevelOf>& levels)
+{
+    std::map<std::pair<std::string, long>, std::pair<std::string, std::size_t>> counts;
+    for (const LevelOf& l : levels)
+    {
+        auto& [algorithm, count] = counts[{l.governor, -l.level}];
+        algorithm = l.level < 0 ? "not of its ladder" : l.algorithm, ++count;
+    }
+    Table table({{"governor", Align::Left, Shrink::Middle},
+                 {"level", Align::Right},
+                 {"algorithm", Align::Left, Shrink::Middle},
+                 {"components", Align::Right}});
+    for (const auto& [key, value] : counts)
+        table.add({key.first, key.second > 0 ? "-" : std::to_string(1 - key.second), value.first, std::to_string(value.second)});
+    table.print(console);
+}
+
+void print_levels(const Context& c, const link::CatalogueContents& now, const std::vector<LevelOf>& levels, bool all)
+{
+    if (levels.empty()) return c.console.say("no governor watches a component");
+    print_counts(c.console, levels);
+    Table table({{"component", Align::Left, Shrink::Middle},
+                 {"level", Align::Right},
+                 {"algorithm", Align::Left, Shrink::Middle},
+                 {"cost/step", Align::Right, Shrink::Never, 2},
+                 {"error", Align::Right, Shrink::Never, 3},
+                 {"unit", Align::Left, Shrink::Never, 3},
+                 {"since", Align::Right, Shrink::Never, 1},
+                 {"why", Align::Left, Shrink::End}});
+    const std::size_t shown = all ? levels.size() : std::min(levels.size(), kMostOnTerminal);
+    for (std::size_t k = 0; k < shown; ++k)
+    {
+        const LevelOf& l = levels[k];
+        const link::InteractionMetrics* const m = link::find_metrics(now.metrics, l.id);
+        table.add({l.id, place(l), l.algorithm, m ? cost_text(*m) : "", m ? error_text(*m) : "", m ? error_unit(*m) : "",
+                   l.since.empty() ? "" : number(std::strtod(l.since.c_str(), nullptr)) + " s", l.reason});
+    }
+    c.console.say("");
+    table.print(c.console);
+    if (shown < levels.size())
+        c.console.say(std::to_string(levels.size() - shown) + " more: plabctl levels ID lists those whose ids contain ID");
+}
+
+Exit run_levels(Context& c, const LevelsOptions& o)
+{
+    if (const Exit e = c.connect(); e != Exit::Done) return e;
+    auto catalogue =
+        link::Catalogue::open(c.session(), link::Part::Interactions | link::Part::Objects | static_cast<link::Parts>(link::Part::Metrics));
+    if (!catalogue) return c.fail(Exit::NoServer, catalogue.errors());
+    if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::uint64_t n = 1;; ++n)
+    {
+        const link::CatalogueContents& now = catalogue->now();
+        const std::vector<LevelOf> levels = levels_in(now, o.only);
+        if (c.settings.json)
+        {
+            Json list = Json::array();
+            for (const LevelOf& l : levels) list.push_back(json_of(l, link::find_metrics(now.metrics, l.id)));
+            print(c.console,
+                  {{"server", c.session().server()}, {"step", now.metrics ? Json(now.metrics->step) : Json()}, {"levels", list}});
+        }
+        else
+            print_levels(c, now, levels, !o.only.empty());
+        const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+        const bool enough =
+            (c.settings.count && n >= *c.settings.count) || (c.settings.duration && passed.count() + 1 > *c.settings.duration);
+        if (!o.live || enough) return Exit::Done;
+        for (int slice = 0; slice < 10 && !c.stopped(); ++slice)
+        {
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            (void)catalogue->update();
+        }
+        if (c.stopped()) return Exit::Interrupted;
+        if (catalogue->server_is_gone()) return c.fail(Exit::NoServer, "the server has gone");
+    }
+}
+
+Exit run_why(Context& c, const std::string& id)
+{
+    if (const Exit e = c.connect(); e != Exit::Done) return e;
+    auto catalogue =
+        link::Catalogue::open(c.session(), link::Part::Interactions | link::Part::Objects | static_cast<link::Parts>(link::Part::Metrics));
+    if (!catalogue) return c.fail(Exit::NoServer, catalogue.errors());
+    if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
+    const link::CatalogueContents& now = catalogue->now();
+    std::optional<LevelOf> level;
+    const auto interaction = now.interactions.find(id);
+    const auto object = now.objects.find(id);
+    if (interaction != now.interactions.end()) level = level_of(id, interaction->second.parameters);
+    if (object != now.objects.end()) level = level_of(id, object->second.parameters);
+    if (interaction == now.interactions.end() && object == now.objects.end())
+        return c.fail(Exit::Failed, "no object or interaction has the id '" + id + "'");
+    if (!level) return c.fail(Exit::Failed, "no governor watches '" + id + "': its algorithm is what the scene or a request chose");
+    const link::InteractionMetrics* const m = link::find_metrics(now.metrics, id);
+    if (c.settings.json)
+    {
+        print(c.console, json_of(*level, m));
+        return Exit::Done;
+    }
+    Lines lines;
+    lines.add("component", id), lines.add("algorithm", level->algorithm), lines.add("governor", level->governor);
+    lines.add("level", place(*level) + ", counted from the cheapest");
+    lines.add("why", level->reason.empty() ? "it has not been changed since the run began" : level->reason);
+    if (!level->since.empty()) lines.add("since", number(std::strtod(level->since.c_str(), nullptr)) + " s");
+    if (m != nullptr)
+        lines.add("cost", cost_in_words(*m)), lines.add("error", error_text(*m) + " " + error_unit(*m) + "; " + error_meaning(*m));
+    lines.print(c.console);
+    return Exit::Done;
+}
+
+}  // namespace
+
+void add_level_commands(const Command& app, Context& context)
+{
+    auto o = std::make_shared<LevelsOptions>();
+    const Command levels =
+        add_command(app, context,
+                    {"levels", "list which level of detail governors have given to components, and why",
+                     "  plabctl levels\n  plabctl levels engine.12 --live -d 10\n  plabctl levels --json | jq '.levels[].level'\n"},
+                    [o](Context& c) { return run_levels(c, *o); });
+    levels.add_option("component", o->only, "components whose ids contain this").type_name("ID");
+    levels.add_flag("--live", o->live, "print again each second, until Ctrl-C, -n or -d");
+    auto id = std::make_shared<std::string>();
+    const Command why = add_command(app, context, {"why", "tell why a component has its level of detail", "  plabctl why engine.12.7\n"},
+                                    [id](Context& c) { return run_why(c, *id); });
+    why.add_option("component", *id, "the component").required().type_name("ID");
+}
+
+}  // namespace plab::cli

@@ -1,0 +1,180 @@
+// What components decide before a step (Phase::Decide), carried out like requests of clients.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simulation/simulation.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// A trial of a level may take this long. It ends earlier in all but very large scenes, where the governor is told that it does not know.
+constexpr double kLongestTrial = 5e7;  // ns
+
+/// m, or rad of shafts: how far apart two courses are after `interval` (s) that part in each step of h (s) as they did in the first one.
+/// Both the distances and the differences of speed are taken to add up.
+double departure(const std::vector<ObjectMotion>& one, const std::vector<ObjectMotion>& other, double h, double interval)
+{
+    const double steps = std::max(1.0, interval / h);
+    double bodies = 0, shafts = 0;
+    bool any_body = false;
+    const auto grown = [&](double distance, double speed) { return steps * distance + 0.5 * steps * (steps - 1) * h * speed; };
+    for (std::size_t i = 0, k = 0; i < one.size() && k < other.size();)
+    {
+        const ObjectMotion &a = one[i], &b = other[k];
+        if (a.object != b.object)
+        {
+            a.object < b.object ? ++i : ++k;
+            continue;
+        }
+        ++i, ++k;
+        if (a.object.facet == Facet::Shaft)
+        {
+            shafts = std::max(shafts, grown(std::fabs(a.angle - b.angle), std::fabs(a.speed - b.speed)));
+            continue;
+        }
+        any_body = true;
+        const double r = std::isfinite(a.radius) ? a.radius : 0;
+        const Quat turn = conjugate(a.orientation) * b.orientation;
+        const double angle = 2 * std::atan2(length(Vec3{turn.x, turn.y, turn.z}), std::fabs(turn.w));
+        bodies = std::max(bodies, grown(length(a.position - b.position) + r * angle,
+                                        length(a.velocity - b.velocity) + r * length(a.angular_velocity - b.angular_velocity)));
+    }
+    return any_body ? bodies : shafts;
+}
+
+}  // namespace
+
+/// What the first step would be with a level, or as it is (null).
+Result<std::vector<ObjectMotion>> Simulation::motion_with(std::uint32_t component, const Level& level)
+{
+    Request request;
+    request.operations.push_back(SwapOperation{run_.world().id_of(component), level.type, level.values});
+    request.trial.budget = TrialChoice::Budget::Given, request.trial.ns = kLongestTrial;
+    return Transaction(run_, context_, *this, request).first_step();
+}
+
+double Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finest, double interval)
+{
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    const auto with_level = motion_with(component, level);
+    if (!with_level) return kUnknown;
+    const auto with_finest = motion_with(component, finest);
+    return with_finest ? departure(*with_level, *with_finest, dt(), interval) : kUnknown;
+}
+
+void Simulation::measure_for_governors()
+{
+    if (!deciding_ || !run_.levels().watches_anything() || recent_steps_.empty()) return;
+    // Most steps shall keep within a budget, so what counts is the cost that nine of ten steps do not exceed.
+    std::vector<float> sorted = recent_steps_;
+    const auto nine_of_ten = sorted.begin() + static_cast<std::ptrdiff_t>(9 * (sorted.size() - 1) / 10);
+    std::nth_element(sorted.begin(), nine_of_ten, sorted.end());
+    for (Request& request : run_.levels().measurements(time(), dt(), static_cast<double>(*nine_of_ten) * 1e-9))
+    {
+        recent_steps_.clear();
+        Reply reply = carry_out(request);
+        reply.made = std::make_shared<const Request>(std::move(request));
+        replies_.push_back(std::move(reply));
+    }
+}
+
+void Simulation::decide()
+{
+    if (!deciding_ || !run_.levels().anything_decides() || decided_.tick == tick()) return;
+    decided_.tick = tick();
+    class Events final : public EventSink
+    {
+    public:
+        explicit Events(std::vector<Event>& to) : to_(to) {}
+        void emit(Event event) override { to_.push_back(std::move(event)); }
+
+    private:
+        std::vector<Event>& to_;
+    } events(decided_.events);
+    const auto error = [this](std::uint32_t component, const Level* level, const Level* finest, double interval)
+    { return error_of_level(component, *level, *finest, interval); };
+    for (const Decision& decision : run_.levels().decide(tick(), time(), dt(), error, events)) carry_out_decision(decision);
+}
+
+/// An exchange that is refused must not keep the others of the same decision from taking effect.
+void Simulation::carry_out_decision(const Decision& decision)
+{
+    Request request;
+    request.trial.budget = TrialChoice::Budget::None;
+    request.operations = decision.operations;
+    if (!decision.verb.empty())
+    {
+        auto read = context_.read_request ? context_.read_request(decision.verb, decision.target, decision.argument)
+                                          : Result<Request>(reason("this program does not read requests of components"));
+        if (!read) return refuse_decision(decision.by, decision.verb + " " + decision.target, read.error().reason);
+        request.operations = std::move(read->operations);
+    }
+    if (take_effect(decision, request, decision.reasons) || request.operations.size() < 2 || !decision.verb.empty()) return;
+    for (std::size_t k = 0; k < decision.operations.size(); ++k)
+    {
+        request.operations = {decision.operations[k]};
+        const auto& id = std::get<SwapOperation>(decision.operations[k]).id;
+        if (!take_effect(decision, request, {decision.reasons[k]})) refuse_decision(decision.by, "level of " + id, last_refusal_);
+    }
+}
+
+bool Simulation::take_effect(const Decision& decision, const Request& request, const std::vector<std::string>& reasons)
+{
+    Reply reply = Transaction(run_, context_, *this, request).run();
+    if (!reply.done)
+    {
+        last_refusal_ = reply.errors.empty() ? std::string() : reply.errors.front().text();
+        if (request.operations.size() < 2 && !decision.verb.empty())
+            refuse_decision(decision.by, decision.verb + " " + decision.target, last_refusal_);
+        return false;
+    }
+    run_.watch->begin_anew();
+    note_reassigned();
+    for (std::size_t k = 0; k < reply.swaps.size() && decision.verb.empty(); ++k)
+    {
+        const SwapReport& swap = reply.swaps[k];
+        const std::uint32_t component = run_.world().find(swap.id);
+        const std::string& why = reasons[std::min(k, reasons.size() - 1)];
+        run_.levels().note_change(component, why, time());
+        Event e;
+        e.tick = tick(), e.time = time(), e.kind = "level.changed", e.component = component;
+        e.message = swap.from + " -> " + swap.to + ": " + why;
+        decided_.events.push_back(std::move(e));
+    }
+    reply.made = std::make_shared<const Request>(request), reply.decided_by = run_.world().id_of(decision.by);
+    replies_.push_back(std::move(reply));
+    return true;
+}
+
+void Simulation::refuse_decision(std::uint32_t by, const std::string& what, const std::string& why)
+{
+    Event e;
+    e.tick = tick(), e.time = time(), e.kind = "decide.refused", e.severity = Severity::Warning, e.component = by;
+    e.message = what + ": " + why;
+    decided_.events.push_back(std::move(e));
+}
+
+void Simulation::note_reassigned()
+{
+    for (const std::uint32_t i : run_.levels().take_reassigned())
+        if (i < run_.world().components().size() && run_.world().component(i).alive) run_.changes.touched.push_back(run_.world().id_of(i));
+}
+
+/// A script may have changed what a governor watches.
+void Simulation::read_changed_governors()
+{
+    const auto is_governor = [&](std::uint32_t i) { return run_.levels().is_governor(i); };
+    if (std::none_of(run_.changed_by_scripts.begin(), run_.changed_by_scripts.end(), is_governor)) return;
+    if (auto read = run_.levels().rebuild(); !read)
+    {
+        Event e;
+        e.time = run_.clock.time_at(run_.clock.tick + 1), e.kind = "decide.failed", e.severity = Severity::Warning;
+        e.message = read.error().text();
+        run_.events.push_back(std::move(e));
+    }
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,307 @@
+#include "simulation/levels/level_book.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/text.h"
+#include "simulation/levels/desk.h"
+#include "world/bounding_radius.h"
+#include "world/command_call.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+bool names_objects(const Role& role)
+{
+    const auto object = [](Facet f) { return f == Facet::Body || f == Facet::Shaft || f == Facet::Quantities; };
+    return std::any_of(role.facets.begin(), role.facets.end(), object);
+}
+
+bool moves(const world::HostTables& host, Ref r)
+{
+    if (r.facet == Facet::Body) return host.bodies.motion[r.index] != Motion::Static;
+    if (r.facet == Facet::Shaft) return host.shafts.motion[r.index] != Motion::Static;
+    return false;
+}
+
+std::string text_of(const world::World& world, std::uint32_t component, const char* field)
+{
+    const Value value = world.get(component, field);
+    const auto* text = std::get_if<std::string>(&value);
+    return text ? *text : std::string();
+}
+
+double real_of(const world::World& world, std::uint32_t component, const char* field)
+{
+    const Value value = world.get(component, field);
+    const auto* real = std::get_if<double>(&value);
+    return real ? *real : 0;
+}
+
+}  // namespace
+
+LevelBook::LevelBook(world::World& world, const Stepper& stepper) : world_(world), stepper_(stepper) {}
+LevelBook::~LevelBook() = default;
+
+bool LevelBook::is_governor(std::uint32_t component) const
+{
+    return std::any_of(governors_.begin(), governors_.end(), [&](const Governor& g) { return g.component == component; });
+}
+
+/// Looked up once for all, because a scene may have a solver for each body.
+void LevelBook::find_parts()
+{
+    owner_of_part_.clear();
+    for (const std::uint32_t i : governors_.empty() ? std::span<const std::uint32_t>() : world_.in_id_order())
+    {
+        if (world_.component(i).table == kNoIndex) continue;
+        for (const Role& role : world_.table_of(i).schema().roles())
+            if (!names_objects(role))
+                world_.for_each_participant(i, role,
+                                            [&](Ref r)
+                                            {
+                                                if (r.facet == Facet::Component && r.valid()) owner_of_part_.emplace_back(r.index, i);
+                                            });
+    }
+    std::sort(owner_of_part_.begin(), owner_of_part_.end());
+}
+
+/// Collects what the component acts on: itself, its own participants, or, for a part such as a solver or a manager, those of all components
+/// that have it.
+void LevelBook::add_objects(std::uint32_t component, std::vector<Ref>& out, int depth) const
+{
+    constexpr int kDeepest = 4;  // a manager of a response of a detection
+    const world::Component& c = world_.component(component);
+    if (c.table == kNoIndex || depth > kDeepest) return;
+    if (c.facet == Facet::Body || c.facet == Facet::Shaft)
+    {
+        out.push_back(c.ref(component));
+        return;
+    }
+    bool any = false;
+    for (const Role& role : world_.table_of(component).schema().roles())
+    {
+        if (!names_objects(role)) continue;
+        any = true;
+        world_.for_each_participant(component, role, [&](Ref r) { out.push_back(r); });
+    }
+    if (any) return;
+    const auto first = std::lower_bound(owner_of_part_.begin(), owner_of_part_.end(), std::pair(component, 0u));
+    for (auto owner = first; owner != owner_of_part_.end() && owner->first == component; ++owner)
+        add_objects(owner->second, out, depth + 1);
+}
+
+Result<void> LevelBook::read_governor(Governor& governor) const
+{
+    std::string written = text_of(world_, governor.component, "levels");
+    if (governor.written == written && !governor.ladder.levels.empty()) return {};
+    auto ladder = read_ladder(written, world_.types());
+    if (!ladder) return ladder.errors();
+    governor.ladder = ladder.take(), governor.written = std::move(written);
+    return {};
+}
+
+/// A governor watches the components whose ids match and that can be exchanged for its levels.
+Result<void> LevelBook::watch(Governor& governor, std::vector<std::uint32_t>& watcher) const
+{
+    governor.watches = text_of(world_, governor.component, "watches");
+    governor.watched.clear();
+    for (const std::uint32_t i : world_.in_id_order())
+    {
+        const world::Component& c = world_.component(i);
+        if (c.table == kNoIndex || world_.table_of(i).type().info.family != governor.ladder.family) continue;
+        if (!matches_any(governor.watches, c.id)) continue;
+        if (watcher[i] != kNoIndex)
+            return reason("watches " + model::quoted(c.id) + ", which " + model::quoted(world_.id_of(watcher[i])) + " watches already");
+        watcher[i] = governor.component;
+        Watched& watched = governor.watched.emplace_back();
+        watched.component = i;
+        add_objects(i, watched.objects, 0);
+        std::erase_if(watched.objects, [&](Ref r) { return !moves(world_.host(), r); });
+        std::sort(watched.objects.begin(), watched.objects.end());
+        watched.objects.erase(std::unique(watched.objects.begin(), watched.objects.end()), watched.objects.end());
+    }
+    return {};
+}
+
+Result<void> LevelBook::rebuild()
+{
+    if (deciding_) return {};
+    std::vector<Governor> before;
+    before.swap(governors_);
+    std::vector<std::uint32_t> watcher(world_.components().size(), kNoIndex);
+    changes_.resize(world_.components().size());
+    for (const std::uint32_t i : stepper_.components())
+    {
+        const world::Component& c = world_.component(i);
+        if (c.table == kNoIndex || c.quarantined) continue;
+        const model::ComponentType& type = world_.table_of(i).type();
+        if (!type.takes_part(Phase::Decide) || !type.schema.find_field("watches") || !type.schema.find_field("levels")) continue;
+        const auto known = std::find_if(before.begin(), before.end(), [&](const Governor& g) { return g.component == i; });
+        governors_.push_back(known == before.end() ? Governor{} : std::move(*known));
+        governors_.back().component = i;
+    }
+    find_parts();
+    for (Governor& governor : governors_)
+    {
+        auto done = read_governor(governor);
+        if (done) done = watch(governor, watcher);
+        if (done) continue;
+        return Error{
+            {}, world_.id_of(governor.component) + " (" + world_.type_of(governor.component)->info.name + ")", done.error().reason};
+    }
+    watcher_.resize(watcher.size(), kNoIndex);
+    for (const std::uint32_t i : world_.in_id_order())
+        if (watcher_[i] != watcher[i]) reassigned_.push_back(i);
+    watcher_ = std::move(watcher);
+    const world::HostTables& host = world_.host();
+    radius_of_shaft_.assign(governors_.empty() ? 0 : host.shafts.size(), 0.0);
+    for (std::size_t s = 0; s < radius_of_shaft_.size(); ++s)
+        for (const Ref shape : host.shafts.shapes[s])
+        {
+            const Geometry& g = host.shapes.geometry[shape.index];
+            radius_of_shaft_[s] = std::max(radius_of_shaft_[s], length(g.pose.p) + world::bounding_radius(g));
+        }
+    return {};
+}
+
+GovernedComponent LevelBook::look(const Governor& governor, const Watched& watched) const
+{
+    GovernedComponent out;
+    out.component = watched.component, out.level = level_of(world_, watched.component, governor.ladder);
+    out.objects = static_cast<std::uint32_t>(watched.objects.size());
+    const Bodies& bodies = world_.host().bodies;
+    const Shafts& shafts = world_.host().shafts;
+    const auto place = [&](Ref r) { return r.facet == Facet::Body ? bodies.position[r.index] : shafts.axle[r.index].p; };
+    const auto radius = [&](Ref r) { return r.facet == Facet::Body ? stepper_.radius_of_body()[r.index] : radius_of_shaft_[r.index]; };
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Vec3 least{kInfinity, kInfinity, kInfinity}, most = -least;
+    for (const Ref r : watched.objects)
+    {
+        const Vec3 p = place(r);
+        const double size = radius(r);
+        for (int k = 0; k < 3; ++k) least[k] = std::min(least[k], p[k] - size), most[k] = std::max(most[k], p[k] + size);
+        const double speed = r.facet == Facet::Body ? length(bodies.velocity[r.index]) + size * length(bodies.angular_velocity[r.index])
+                                                    : size * std::fabs(shafts.speed[r.index]);
+        out.speed = std::max(out.speed, speed);
+    }
+    if (watched.objects.empty()) return out;
+    out.center = 0.5 * (least + most);
+    for (const Ref r : watched.objects) out.radius = std::max(out.radius, length(place(r) - out.center) + radius(r));
+    return out;
+}
+
+std::vector<Decision> LevelBook::decide(Tick tick, double time, double dt, const MeasureError& error, EventSink& events)
+{
+    Desk desk(*this, error);
+    world::CommandCall call;
+    call.context.time = time, call.context.dt = dt, call.context.tick = tick, call.context.seed = world_.scene().settings.seed;
+    call.context.events = &events;
+    world::HostTables& host = world_.host();
+    call.arguments.bodies = &host.bodies, call.arguments.shafts = &host.shafts, call.arguments.quantities = &host.quantities;
+    call.arguments.shapes = &host.shapes;
+    call.arguments.viewpoints = &desk, call.arguments.levels = &desk, call.arguments.requests = &desk;
+    deciding_ = true;
+    for (const Phase phase : {Phase::View, Phase::Decide})
+        for (const Block& block : stepper_.schedule().of(phase))
+        {
+            const world::Table& table = *world_.tables()[block.table];
+            call.select(table);
+            for (const Row& row : block.rows)
+            {
+                desk.serve(table.component_of_row()[row]);
+                if (auto done = call.run(*block.command, Rows(&row, 1)); !done) desk.refuse(done.error().reason, events, time, tick);
+            }
+        }
+    deciding_ = false;
+    return desk.take();
+}
+
+void LevelBook::note_change(std::uint32_t component, std::string reason, double time)
+{
+    if (component < changes_.size()) changes_[component] = {world_.id_of(component), std::move(reason), time};
+}
+
+/// s per step, by level: mean of the components that have it at present; -1 where there are none.
+Reals LevelBook::costs_by_level(const Governor& governor) const
+{
+    const CostBook& book = stepper_.cost();
+    Reals sum(governor.ladder.levels.size(), 0.0);
+    std::vector<std::size_t> count(sum.size(), 0);
+    for (const Watched& w : governor.watched)
+    {
+        const std::int32_t level = level_of(world_, w.component, governor.ladder);
+        if (level < 0) continue;
+        const std::uint32_t table = world_.component(w.component).table;
+        const auto owners = world_.tables()[table]->component_of_row();
+        const double rows =
+            static_cast<double>(owners.size() - static_cast<std::size_t>(std::count(owners.begin(), owners.end(), kNoIndex)));
+        const Spread spread = book.owns(w.component) ? book.of_component(w.component) : book.of_table(table);
+        if (spread.samples == 0) continue;
+        sum[static_cast<std::size_t>(level)] += spread.median * 1e-9 / (book.owns(w.component) ? 1 : rows);
+        ++count[static_cast<std::size_t>(level)];
+    }
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] = count[k] > 0 ? sum[k] / static_cast<double>(count[k]) : -1;
+    return sum;
+}
+
+std::vector<Request> LevelBook::measurements(double time, double dt, double step_cost) const
+{
+    std::vector<Request> out;
+    for (const Governor& g : governors_)
+    {
+        const Schema& schema = world_.table_of(g.component).schema();
+        const Field *step = schema.find_field("step_cost"), *costs = schema.find_field("level_costs");
+        if (!step || !costs || !step->is_input || !costs->is_input) continue;
+        const double every = std::max(dt, real_of(world_, g.component, "every"));
+        if (std::floor(time / every + 1e-9) == std::floor((time - dt) / every + 1e-9)) continue;
+        Reals by_level = costs_by_level(g);
+        const Value before = world_.get(g.component, "level_costs");
+        if (const auto* known = std::get_if<Reals>(&before); known && known->size() == by_level.size())
+            for (std::size_t k = 0; k < by_level.size(); ++k)
+                if (by_level[k] < 0) by_level[k] = (*known)[k];
+        Request request;
+        request.trial.budget = TrialChoice::Budget::None;
+        request.operations.push_back(SetOperation{world_.id_of(g.component), "step_cost", Value(step_cost)});
+        request.operations.push_back(SetOperation{world_.id_of(g.component), "level_costs", Value(std::move(by_level))});
+        out.push_back(std::move(request));
+    }
+    return out;
+}
+
+LevelInfo LevelBook::info(const Governor& g, const Watched& w) const
+{
+    LevelInfo out;
+    out.component = w.component, out.governor = g.component;
+    out.level = level_of(world_, w.component, g.ladder), out.levels = static_cast<std::int32_t>(g.ladder.levels.size());
+    out.text = out.level < 0 ? world_.type_of(w.component)->info.name : g.ladder.levels[static_cast<std::size_t>(out.level)].text;
+    const Change& change = changes_[w.component];
+    if (change.id == world_.id_of(w.component)) out.reason = change.reason, out.since = change.since;
+    return out;
+}
+
+std::vector<LevelInfo> LevelBook::levels() const
+{
+    std::vector<LevelInfo> out;
+    for (const Governor& g : governors_)
+        for (const Watched& w : g.watched) out.push_back(info(g, w));
+    return out;
+}
+
+std::optional<LevelInfo> LevelBook::level(std::uint32_t component) const
+{
+    if (component >= watcher_.size() || watcher_[component] == kNoIndex) return {};
+    for (const Governor& g : governors_)
+    {
+        if (g.component != watcher_[component]) continue;
+        const auto before = [&](const Watched& w, std::uint32_t c) { return world_.rank(w.component) < world_.rank(c); };
+        const auto found = std::lower_bound(g.watched.begin(), g.watched.end(), component, before);
+        if (found != g.watched.end() && found->component == component) return info(g, *found);
+    }
+    return {};
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,114 @@
+/// The levels of detail of a scene: which governor watches which components, and what components decide before a step.
+///
+/// Components with a command of Phase::Decide are asked at each boundary, after the requests that are due and before the step. What they
+/// ask for is carried out as transactions, like requests of clients. It follows from the state of the scene and from inputs that are
+/// recorded as requests, so a replay decides the same again, and what was decided is not replayed. Measured times enter only as such inputs
+/// (measurements()).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "simulation/levels/ladder.h"
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+
+/// What a component asked for in Phase::Decide: one transaction.
+struct Decision
+{
+    std::uint32_t by = kNoIndex;         ///< directory index
+    std::string verb, target, argument;  ///< of a request in words; empty: the levels below
+    std::vector<Operation> operations;   ///< the exchanges of a governor
+    std::vector<std::string> reasons;    ///< one for each of them, or for the request
+};
+
+/// A watched component as an observer sees it.
+struct LevelInfo
+{
+    std::uint32_t component = kNoIndex, governor = kNoIndex;
+    std::int32_t level = -1, levels = 0;
+    std::string text;    ///< of the level
+    std::string reason;  ///< of the last change; empty: it has not been changed in this run
+    double since = 0;    ///< s, of that change
+};
+
+class LevelBook
+{
+public:
+    /// Measures how far apart two levels of a component are after a step: see LevelControl::error().
+    using MeasureError = std::function<double(std::uint32_t component, const Level* level, const Level* finest, double interval)>;
+
+    LevelBook(world::World& world, const Stepper& stepper);
+    ~LevelBook();
+    LevelBook(const LevelBook&) = delete;
+    LevelBook& operator=(const LevelBook&) = delete;
+
+    /// To be called after any structural change and after changes of parameters, after Stepper::rebuild(). Errors: a ladder that cannot be
+    /// read; a component that two governors watch.
+    Result<void> rebuild();
+    bool anything_decides() const { return !stepper_.schedule().of(Phase::Decide).empty(); }
+
+    /// Asks all components that decide. `time`: s, of the coming step's start.
+    std::vector<Decision> decide(Tick tick, double time, double dt, const MeasureError& error, EventSink& events);
+    /// What was carried out, for observers.
+    void note_change(std::uint32_t component, std::string reason, double time);
+
+    /// Inputs for governors that have the fields `step_cost` (s per step) and `level_costs` (s per step and component, by level; negative:
+    /// not known), as often as their field `every` (s) states.
+    /// `step_cost`: s.
+    std::vector<Request> measurements(double time, double dt, double step_cost) const;
+
+    /// All watched components, by governor and then by id.
+    std::vector<LevelInfo> levels() const;
+    /// Of one component; empty: no governor watches it.
+    std::optional<LevelInfo> level(std::uint32_t component) const;
+    /// Components that have come under a governor, or have left it, since the last call.
+    std::vector<std::uint32_t> take_reassigned() { return std::exchange(reassigned_, {}); }
+    bool watches_anything() const { return !governors_.empty(); }
+    bool is_governor(std::uint32_t component) const;
+
+private:
+    struct Watched
+    {
+        std::uint32_t component = kNoIndex;
+        std::vector<Ref> objects;  ///< on which it acts, without static ones
+    };
+    struct Governor
+    {
+        std::uint32_t component = kNoIndex;
+        std::string watches, written;  ///< the texts from which the rest was derived
+        Ladder ladder;
+        std::vector<Watched> watched;  ///< in id order
+    };
+    struct Change
+    {
+        std::string id, reason;
+        double since = 0;
+    };
+    class Desk;
+
+    Result<void> read_governor(Governor& governor) const;
+    Result<void> watch(Governor& governor, std::vector<std::uint32_t>& watcher) const;
+    void find_parts();
+    void add_objects(std::uint32_t component, std::vector<Ref>& out, int depth) const;
+    GovernedComponent look(const Governor& governor, const Watched& watched) const;
+    Reals costs_by_level(const Governor& governor) const;
+    LevelInfo info(const Governor& governor, const Watched& watched) const;
+
+    world::World& world_;
+    const Stepper& stepper_;
+    std::vector<Governor> governors_;                  ///< in id order
+    std::vector<Change> changes_;                      ///< by directory index
+    std::vector<std::uint32_t> watcher_, reassigned_;  ///< governor of each component, by directory index; components
+    bool deciding_ = false;                            ///< trials exchange components and put them back meanwhile
+    std::vector<double> radius_of_shaft_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> owner_of_part_;  ///< a component, and one that names it in a role; sorted
+};
+
+}  // namespace plab::simulation

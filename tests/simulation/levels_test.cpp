@@ -1,0 +1,271 @@
+// Governors: which level a component gets, why, and that a replay decides the same.
+#include <algorithm>
+
+#include "support/scene.h"
+#include "support/text.h"
+
+using namespace plab;
+using namespace plab::simulation;
+using plab::test::first_error;
+using plab::test::has;
+using plab::test::Scene;
+
+namespace
+{
+
+constexpr const char* kLadder = "Solver/SemiImplicitEuler; Solver/RungeKutta4; Solver/DormandPrince54";
+
+std::string body(const std::string& id, double x, const std::string& more = "")
+{
+    return "<component id=\"" + id + "\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" position=\"" + std::to_string(x) +
+           " 0 0\" solver=\"Solver/RungeKutta4\" " + more + "/>";
+}
+
+/// Three bodies along x, each with a solver of its own.
+std::string row_of_bodies(const std::string& governor, const std::string& more = "")
+{
+    return "<component id=\"ball\" type=\"Shape/Sphere\" radius=\"0.5\"/>" + body("near", 2.5) + body("middle", 12.5) + body("far", 40.5) +
+           "<component id=\"eye\" type=\"Viewer/Free\"/>" + governor + more;
+}
+
+std::string by_distance(const std::string& more = "")
+{
+    return std::string("<component id=\"lod\" type=\"Governor/Distance\" watches=\"*.solver\" levels=\"") + kLadder +
+           "\" distances=\"5 20\" look_ahead=\"0\" " + more + "/>";
+}
+
+std::string algorithm(const Scene& s, const std::string& id)
+{
+    return s.simulation().world().type_of(s.simulation().world().find(id))->info.name;
+}
+
+const LevelInfo& level(const std::vector<LevelInfo>& levels, const Scene& s, const std::string& id)
+{
+    const auto found =
+        std::find_if(levels.begin(), levels.end(), [&](const LevelInfo& l) { return s.simulation().world().id_of(l.component) == id; });
+    REQUIRE_MESSAGE(found != levels.end(), id, " is not watched");
+    return *found;
+}
+
+void move_eye(Scene& s, double x)
+{
+    const Reply reply = s.ask(SetOperation{"eye", "position", Value(Vec3{x, 0, 0})});
+    REQUIRE_MESSAGE(reply.done, first_error(reply.errors));
+}
+
+}  // namespace
+
+TEST_CASE("the nearer the viewer, the finer the level; the reason is told")
+{
+    Scene s(row_of_bodies(by_distance()));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.keep_events = true;
+    s.step();
+    CHECK(algorithm(s, "near.solver") == "Solver/DormandPrince54");
+    CHECK(algorithm(s, "middle.solver") == "Solver/RungeKutta4");
+    CHECK(algorithm(s, "far.solver") == "Solver/SemiImplicitEuler");
+    CHECK(s.count("level.changed") == 2);
+    const auto levels = s.simulation().levels().levels();
+    CHECK(level(levels, s, "near.solver").level == 2);
+    CHECK(level(levels, s, "near.solver").reason == "2 m from eye");
+    CHECK(level(levels, s, "middle.solver").reason.empty());
+    CHECK(level(levels, s, "far.solver").level == 0);
+    CHECK(level(levels, s, "far.solver").text == "Solver/SemiImplicitEuler");
+}
+
+TEST_CASE("finer at once, cheaper only beyond the hysteresis and after the dwell")
+{
+    Scene s(row_of_bodies(by_distance("every=\"0.1\" dwell=\"0.5\" hysteresis=\"0.25\"")));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step();
+    move_eye(s, 38);  // 2 m from the surface of the far one
+    s.run(0.15);
+    CHECK(algorithm(s, "far.solver") == "Solver/DormandPrince54");
+    CHECK(algorithm(s, "near.solver") == "Solver/DormandPrince54");  // changed at 0: it dwells until 0.5
+    s.run(0.65);
+    CHECK(algorithm(s, "near.solver") == "Solver/SemiImplicitEuler");
+    move_eye(s, 40 - 6);  // beyond 5 m, within 5 m x 1.25
+    s.run(2);
+    CHECK(algorithm(s, "far.solver") == "Solver/DormandPrince54");
+    move_eye(s, 40 - 6.5);
+    s.run(2.2);
+    CHECK(algorithm(s, "far.solver") == "Solver/RungeKutta4");
+}
+
+TEST_CASE("looking ahead by speed: the level is there before the viewer is")
+{
+    Scene s(row_of_bodies(by_distance("every=\"0.05\"")));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    REQUIRE(s.ask(SetOperation{"lod", "look_ahead", Value(0.5)}).done);
+    REQUIRE(s.ask(SetOperation{"eye", "velocity", Value(Vec3{10, 0, 0})}).done);
+    s.step();
+    CHECK(algorithm(s, "middle.solver") == "Solver/RungeKutta4");  // 12 m, and 7 m in half a second
+    move_eye(s, 2.5);                                              // 9.5 m, and 4.5 m in half a second
+    s.run(0.1);
+    CHECK(algorithm(s, "middle.solver") == "Solver/DormandPrince54");
+}
+
+TEST_CASE("two runs decide alike, and so does one that continues from a snapshot or goes back")
+{
+    const std::string scene = row_of_bodies(by_distance("every=\"0.1\" dwell=\"0.3\""));
+    Scene one(scene), other(scene), third(scene);
+    REQUIRE_MESSAGE(one.loaded(), one.error());
+    HistoryOptions keep;
+    keep.interval = 0.25;
+    one.simulation().history().configure(keep);
+    REQUIRE(one.ask(ResetOperation{}).done);
+    Snapshot halfway;
+    std::vector<std::uint64_t> hashes;
+    for (int k = 0; k < 480; ++k)
+    {
+        if (k % 60 == 30) move_eye(one, 0.1 * k), move_eye(other, 0.1 * k);
+        if (k == 200) halfway = one.simulation().capture();
+        one.step(), other.step();
+        CHECK(one.hash() == other.hash());
+        hashes.push_back(one.hash());
+    }
+    CHECK(one.get("lod", "changes") == other.get("lod", "changes"));
+    REQUIRE(third.simulation().restore(halfway).ok());
+    for (int k = 200; k < 480; ++k)
+    {
+        if (k % 60 == 30) move_eye(third, 0.1 * k);
+        third.step();
+        CHECK(third.hash() == hashes[static_cast<std::size_t>(k)]);
+    }
+    REQUIRE(one.ask(RewindOperation{1.0, false}).done);
+    CHECK(one.simulation().tick() == 240);
+    CHECK(one.hash() == hashes[239]);
+    one.step();
+    CHECK(one.hash() == hashes[240]);
+}
+
+TEST_CASE("a ladder that cannot be read, and a component with two governors, are refused by name")
+{
+    const auto error = [](const std::string& governor)
+    {
+        Scene s(row_of_bodies(governor));
+        CHECK_FALSE(s.loaded());
+        return s.error();
+    };
+    const auto with_levels = [](const std::string& levels)
+    { return "<component id=\"lod\" type=\"Governor/Distance\" levels=\"" + levels + "\" distances=\"5 20\"/>"; };
+    CHECK(has(error(with_levels("Solver/RungeKutta4")), "at least two levels"));
+    CHECK(has(error(with_levels("Solver/RungeKutta4; Solver/RungaKutta4")), "Solver/RungeKutta4"));
+    CHECK(has(error(with_levels("Solver/RungeKutta4; Manager/Direct")), "family"));
+    CHECK(has(error(with_levels("Solver/RungeKutta4 steps=3; Solver/Exact")), "has no parameter 'steps'"));
+    const std::string twice = error(by_distance() +
+                                    "<component id=\"lod2\" type=\"Governor/Distance\" watches=\"near.*\" levels=\"Solver\" "
+                                    "distances=\"1 2 3\"/>");
+    CHECK(has(twice, "'near.solver'"));
+    CHECK(has(twice, "'lod'"));
+}
+
+TEST_CASE("a number of bounds that does not fit the ladder is told, and nothing is changed")
+{
+    Scene s(row_of_bodies(by_distance()));
+    REQUIRE(s.loaded());
+    s.warnings_expected = s.keep_events = true;
+    REQUIRE(s.ask(SetOperation{"lod", "distances", Value(Reals{1, 2, 3})}).done);
+    s.step();
+    CHECK(s.count("decide.failed") == 1);
+    CHECK(s.count("level.changed") == 0);
+}
+
+TEST_CASE("a governor is added and removed by request, and its ladder is changed by request")
+{
+    Scene s(row_of_bodies(""));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step();
+    CHECK_FALSE(s.simulation().levels().watches_anything());
+    const auto scene = test::compile_text(test::whole_scene(by_distance()), "request.xml", &s.simulation().world().scene());
+    REQUIRE_MESSAGE(scene.ok(), test::reasons(scene));
+    REQUIRE(s.ask(AddOperation{*scene}).done);
+    s.run(0.5);
+    CHECK(algorithm(s, "near.solver") == "Solver/DormandPrince54");
+    const Reply bad = s.ask(SetOperation{"lod", "levels", Value(std::string("Solver/Unknown; Solver/Exact"))});
+    CHECK_FALSE(bad.done);
+    CHECK(s.simulation().levels().levels().size() == 3);
+    REQUIRE(s.ask(SetOperation{"lod", "levels", Value(std::string("Solver/RungeKutta4; Solver/StoermerVerlet; Solver/Exact"))}).done);
+    s.run(1);
+    CHECK(algorithm(s, "near.solver") == "Solver/Exact");
+    REQUIRE(s.ask(RemoveOperation{"lod"}).done);
+    s.step();
+    CHECK_FALSE(s.simulation().levels().watches_anything());
+}
+
+TEST_CASE("what is out of sight or hidden by a box gets the cheapest level")
+{
+    Scene s(row_of_bodies(std::string("<component id=\"lod\" type=\"Governor/Visibility\" watches=\"*.solver\" levels=\"") + kLadder +
+                              "\" pixels=\"10 100\" look_ahead=\"0\" margin=\"0\" occluders=\"wall\" dwell=\"0\"/>",
+                          "<component id=\"slab\" type=\"Shape/Box\" half_extents=\"0.1 4 4\"/>"
+                          "<component id=\"wall\" type=\"State/Static\" shape=\"slab\" position=\"20 0 0\"/>" +
+                              body("behind", -5)));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step();
+    CHECK(algorithm(s, "near.solver") == "Solver/DormandPrince54");
+    CHECK(algorithm(s, "middle.solver") == "Solver/RungeKutta4");
+    CHECK(algorithm(s, "far.solver") == "Solver/SemiImplicitEuler");
+    CHECK(algorithm(s, "behind.solver") == "Solver/SemiImplicitEuler");
+    auto levels = s.simulation().levels().levels();
+    CHECK(level(levels, s, "far.solver").reason == "hidden from every viewer");
+    CHECK(level(levels, s, "behind.solver").reason == "out of every viewer's sight");
+    REQUIRE(s.ask(SetOperation{"wall", "position", Value(Vec3{20, 20, 0})}).done);
+    s.run(0.5);
+    levels = s.simulation().levels().levels();
+    CHECK(level(levels, s, "far.solver").level == 1);  // 21.9 pixels at 40 m
+}
+
+TEST_CASE("the level with an error below the bound: measured by trials that leave no trace, and true afterwards")
+{
+    const std::string spring =
+        "<component id=\"ball\" type=\"Shape/Sphere\" radius=\"0.1\"/><component id=\"post\" type=\"State/Static\"/>"
+        "<component id=\"bob\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" position=\"1.5 0 0\" linear_velocity=\"0 2 0\" "
+        "solver=\"Solver/SemiImplicitEuler\"/>"
+        "<component id=\"spring\" type=\"Constraint/SpringDamper\" a=\"post\" b=\"bob\" length=\"1\" stiffness=\"40\"/>";
+    const auto governed = [&](const std::string& bound)
+    {
+        return spring + "<component id=\"lod\" type=\"Governor/Error\" watches=\"bob.solver\" levels=\"" + kLadder + "\" bound=\"" + bound +
+               "\" interval=\"0.25\" every=\"0.05\" dwell=\"0\"/>";
+    };
+    Scene loose(governed("0.5")), tight(governed("1e-5")), tighter(governed("1e-13"));
+    REQUIRE_MESSAGE(loose.loaded(), loose.error());
+    Scene plain(spring);
+    loose.run(1), plain.run(1);
+    CHECK(loose.vec("bob", "position") == plain.vec("bob", "position"));
+    CHECK(std::get<std::int64_t>(loose.get("lod", "measured")) > 0);
+    CHECK(algorithm(loose, "bob.solver") == "Solver/SemiImplicitEuler");
+    tighter.step();
+    CHECK(algorithm(tighter, "bob.solver") == "Solver/DormandPrince54");
+    Scene exact(spring);
+    REQUIRE(exact.ask(SwapOperation{"bob.solver", "Solver/DormandPrince54", {}}).done);
+    tight.run(0.25), exact.run(0.25);
+    CHECK(algorithm(tight, "bob.solver") == "Solver/RungeKutta4");
+    CHECK(test::distance(tight.vec("bob", "position"), exact.vec("bob", "position")) < 1e-5);
+    CHECK(test::distance(plain.vec("bob", "position"), exact.vec("bob", "position")) > 1e-5);
+}
+
+TEST_CASE("a budget of time: what was measured is an input, and with the same inputs another run decides the same")
+{
+    const std::string scene = row_of_bodies(std::string("<component id=\"lod\" type=\"Governor/Budget\" watches=\"*.solver\" levels=\"") +
+                                            kLadder + "\" budget=\"1e-9\" every=\"0.05\" dwell=\"0\"/>");
+    Scene live(scene), again(scene);
+    REQUIRE_MESSAGE(live.loaded(), live.error());
+    again.simulation().let_decide(true);
+    int measurements = 0;
+    for (int k = 0; k < 120; ++k)
+    {
+        live.step();
+        // The replay gets the measurements as requests, and makes none itself: step_once() measures nothing.
+        for (const Reply& reply : live.simulation().take_replies())
+        {
+            if (!reply.made || !reply.decided_by.empty()) continue;
+            ++measurements;
+            CHECK(again.simulation().carry_out_now(*reply.made).done);
+        }
+        CHECK(again.simulation().step_once());
+        CHECK(live.hash() == again.hash());
+    }
+    CHECK(measurements >= 8);
+    CHECK(std::get<std::int64_t>(live.get("lod", "given_up")) == 3);  // nothing fits into a nanosecond
+    CHECK(algorithm(live, "near.solver") == "Solver/SemiImplicitEuler");
+}
