@@ -57,7 +57,10 @@ std::optional<Reply> set_inputs(Run& run, const Request& request)
     }
     reply.done = reply.errors.empty();
     for (std::size_t k = 0; k < inputs.size() && reply.done; ++k)
+    {
         inputs[k].field->column->set(world.component(inputs[k].component).row, values[k]);
+        run.changes.by_scripts.insert(inputs[k].component);
+    }
     reply.pause_ns = static_cast<double>(now_ns() - begin);
     return reply;
 }
