@@ -128,7 +128,7 @@ Exit run_grab(Context& c, const GrabOptions& o)
 {
     if (const Exit e = c.connect(); e != Exit::Done) return e;
     const auto from = place_of(c, o.id);
-    if (!from) return c.fail(Exit::Refused, from.errors());
+    if (!from) return c.fail(Exit::Failed, from.errors());
     Vec3 to = *from;
     for (const auto& [text, option] : {std::pair(o.to, "--to"), std::pair(o.by, "--by")})
     {
