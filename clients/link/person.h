@@ -51,8 +51,7 @@ public:
     Result<void> send(Sample sample)
     {
         sample.client = last_.client, component_of(sample) = component_of(last_), sample.number = last_.number + 1;
-        sample.stamp_ns =
-            std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+        sample.stamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
         last_ = std::move(sample);
         if (const auto code = writer_.write(view_.of(last_)); code < 0)
             return wire::failed(std::string("cannot write ") + wire::topic_of<T>().name, code);

@@ -92,7 +92,8 @@ Ref first_of(const StepContext& context, const RefList& users, Condition holds)
     return {};
 }
 
-/// Whether a ray meets a body, by sphere tracing (J. C. Hart, Sphere tracing, 1996): the distance to the surface is a step that cannot miss.
+/// Whether a ray meets a body, by sphere tracing (J. C. Hart, Sphere tracing, 1996): the distance to the surface is a step that cannot
+/// miss.
 bool meets(const Bodies& bodies, const Shapes& shapes, std::uint32_t body, const Vec3& from, const Vec3& along, double range)
 {
     constexpr int kMost = 256;
@@ -126,8 +127,7 @@ void watch_nearness(const StepContext& context, Rows rows, NearRows& triggers, c
     for (const Row row : rows)
         follow(context, row, triggers,
                first_of(context, triggers.user[row],
-                        [&](Ref user)
-                        {
+                        [&](Ref user) {
                             return distance_to_body(bodies, shapes, triggers.object[row].index, bodies.pose(user.index).p) <=
                                    triggers.distance[row];
                         }));

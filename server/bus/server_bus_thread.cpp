@@ -307,9 +307,8 @@ void ServerBus::send_status(Clock::time_point now)
     status_sent_ = now;
     if (!status_is_new_ && busy.empty() && status_.status.overload == overload_) return;
     status_.status.overload = busy.empty() ? overload_ : std::move(busy);
-    status_.dropped = {states_.dropped(), collisions_.dropped(), events_.dropped(), metrics_.dropped(),
-                       images_.dropped(), journal_.dropped(),    hashes_.dropped(), snapshots_.dropped(),
-                       forces_.dropped()};
+    status_.dropped = {states_.dropped(),  collisions_.dropped(), events_.dropped(),    metrics_.dropped(), images_.dropped(),
+                       journal_.dropped(), hashes_.dropped(),     snapshots_.dropped(), forces_.dropped()};
     is_broken_ = !process_->writer().send(Down::Status, status_);
     status_is_new_ = false;
 }

@@ -18,7 +18,8 @@ public:
     People::Ask ask() &&
     {
         People::Ask out;
-        for (const wire::NamedText& v : words_.values) out.request.operations.push_back(simulation::SetOperation{words_.target, v.name, v.text});
+        for (const wire::NamedText& v : words_.values)
+            out.request.operations.push_back(simulation::SetOperation{words_.target, v.name, v.text});
         out.words = std::move(words_);
         return out;
     }

@@ -15,7 +15,8 @@ void Service::take_people()
         event.kind = kind, event.severity = "warning", event.component_id = component, event.message = message;
         collector_.note(*simulation_, std::move(event));
     };
-    people_.move(samples_, static_cast<std::int64_t>(simulation::now_ns()), [this](const People::Ask& ask) { return move(ask); }, tell);
+    people_.move(
+        samples_, static_cast<std::int64_t>(simulation::now_ns()), [this](const People::Ask& ask) { return move(ask); }, tell);
 }
 
 /// Such requests have no reply and no event: there may be thousands a second. They are in the journal.

@@ -122,10 +122,9 @@ TEST_CASE("the hand under a box carries its weight, and feels where it presses")
 
 TEST_CASE("a hand in impacts inside a step, and at its end, feels the impulse that the other body gets")
 {
-    for (const std::string response :
-         {"resolution='Resolution/LocalRoot' response='Response/Impulse' response.restitution='0.5'",
-          "resolution='Resolution/LocalRoot' response='Response/Rows' response.restitution='0.5'",
-          "resolution='Resolution/None' response='Response/Rows' response.restitution='0.5'"})
+    for (const std::string response : {"resolution='Resolution/LocalRoot' response='Response/Impulse' response.restitution='0.5'",
+                                       "resolution='Resolution/LocalRoot' response='Response/Rows' response.restitution='0.5'",
+                                       "resolution='Resolution/None' response='Response/Rows' response.restitution='0.5'"})
     {
         CAPTURE(response);
         Scene scene(hand() + box("box", "0.2 0 0") + "<component id='contact' type='CDetection/ODE' between='*' " + response + "/>");

@@ -143,10 +143,7 @@ TEST_CASE("a user who vanishes, or is silent for too long, lets go, and the body
 TEST_CASE("many users at once: each holds its own, as if it were alone")
 {
     const auto one = [](const std::string& k)
-    {
-        return hand("hand" + k) + cup("0.1 " + k + " 0", "", "cup" + k) +
-               grab("hold='cup" + k + "'", "hand" + k, "cup" + k, "grab" + k);
-    };
+    { return hand("hand" + k) + cup("0.1 " + k + " 0", "", "cup" + k) + grab("hold='cup" + k + "'", "hand" + k, "cup" + k, "grab" + k); };
     std::string all = solver() + kGravity;
     for (int k = 0; k < 8; ++k) all += one(std::to_string(k));
     Scene together(all, kMilliseconds);

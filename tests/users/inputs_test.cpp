@@ -101,9 +101,10 @@ TEST_CASE("inputs change neither the revision nor the structure, and have no tri
 TEST_CASE("inputs given as text, as the bus does, are parsed by the field's own rules")
 {
     Scene scene(hand());
-    CHECK(scene.ask_all({simulation::SetOperation{"hand", "target_position", std::string("1 2 300 mm")},
-                         simulation::SetOperation{"hand", "present", std::string("true")},
-                         simulation::SetOperation{"hand", "sample", std::string("7")}})
+    CHECK(scene
+              .ask_all({simulation::SetOperation{"hand", "target_position", std::string("1 2 300 mm")},
+                        simulation::SetOperation{"hand", "present", std::string("true")},
+                        simulation::SetOperation{"hand", "sample", std::string("7")}})
               .done);
     CHECK(scene.vec("hand", "target_position") == Vec3{0.001, 0.002, 0.3});
     const auto reply = scene.ask(simulation::SetOperation{"hand", "sample", std::string("half")});

@@ -92,7 +92,8 @@ TEST_CASE("touched: by contact, also of an impact inside a step")
         "<component id='round' type='Shape/Sphere' radius='0.1'/><component id='ball' type='State/RigidBody' mass='1' shape='round' "
         "position='0.5 0 0' linear_velocity='-10 0 0'/>";
     // The ball bounces off the hand's tip at x = 0.15, inside a step.
-    Scene at_hand(hand() + "<component id='fan' type='State/Shaft' prescribed='true'/>" + ball + contact + trigger("Touched", "", "object='ball'"));
+    Scene at_hand(hand() + "<component id='fan' type='State/Shaft' prescribed='true'/>" + ball + contact +
+                  trigger("Touched", "", "object='ball'"));
     prepare(at_hand);
     stay(at_hand, {}, 30);
     CHECK(at_hand.vec("ball", "linear_velocity").x == doctest::Approx(10));

@@ -280,7 +280,10 @@ void add_view(const Command& app, Context& context)
     command.add_option("--for", o->lasting, "end after this time; default: at the end of the way")
         .check(link::check_not_negative)
         .type_name("SECONDS");
-    command.add_option("--fov", o->field_of_view, "vertical field of view, rad").check(link::check_positive).type_name("RAD").show_default();
+    command.add_option("--fov", o->field_of_view, "vertical field of view, rad")
+        .check(link::check_positive)
+        .type_name("RAD")
+        .show_default();
     command.add_option("--width", o->width, "of the picture, pixels").check(link::check_positive).type_name("N").show_default();
     command.add_option("--height", o->height, "of the picture, pixels").check(link::check_positive).type_name("N").show_default();
     command.add_option("--rate", o->rate, "samples per second").check(link::check_positive).type_name("HZ").show_default();

@@ -19,7 +19,9 @@ void GrabRows::describe(Schema& s)
     s.param(stiffness, "stiffness", unit::one, "k, N/m, instead of the frequency; 0: not given").or_else(0).not_negative();
     s.param(max_force, "max_force", unit::newton, "largest force").or_else(500).not_negative();
     s.param(max_torque, "max_torque", unit::newton_metre, "largest torque").or_else(50).not_negative();
-    s.param(reach, "reach", unit::metre, "from the hand's origin to the surface of a body that it does not touch").or_else(0).not_negative();
+    s.param(reach, "reach", unit::metre, "from the hand's origin to the surface of a body that it does not touch")
+        .or_else(0)
+        .not_negative();
     s.param(close_at, "close_at", unit::one, "grip at which it closes").or_else(0.6).at_least(0).at_most(1);
     s.param(open_at, "open_at", unit::one, "grip at which it opens").or_else(0.4).at_least(0).at_most(1);
     s.state(held, "held", unit::one, "id of the body that it holds");

@@ -8,9 +8,9 @@
 /// The hand feels -f at P and -t. Frequency and damping ratio are those of the body alone, held at its centre, as in the mouse joint of
 /// Box2D (E. Catto, Soft constraints, GDC 2011).
 ///
-/// The hand closes when its `grip` rises to `close_at`, and opens when it falls to `open_at`. Closing, it holds the body that it touches, by
-/// the point where the hand is; or else the nearest one within `reach`. A named body (`hold`) is held by its centre of mass, wherever the
-/// hand is, as long as it is named. What is let go keeps its velocity: only the force ends.
+/// The hand closes when its `grip` rises to `close_at`, and opens when it falls to `open_at`. Closing, it holds the body that it touches,
+/// by the point where the hand is; or else the nearest one within `reach`. A named body (`hold`) is held by its centre of mass, wherever
+/// the hand is, as long as it is named. What is let go keeps its velocity: only the force ends.
 #pragma once
 
 #include "plab/registrar.h"

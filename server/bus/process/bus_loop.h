@@ -88,7 +88,7 @@ private:
     NewestSamples<plab_v2_UserSample, wire::UserSample> users_{Up::User};
     NewestSamples<plab_v2_ViewerSample, wire::ViewerSample> viewers_{Up::Viewer};
     Clock::duration people_due_ = Clock::duration::max();  ///< time until the next of their samples may be passed on
-    std::deque<RequestMessage> waiting_;  ///< taken from the reader in one pass, and not passed on yet
+    std::deque<RequestMessage> waiting_;                   ///< taken from the reader in one pass, and not passed on yet
     wire::DataWriter<plab_v2_Reply> replies_;
     wire::SampleView<plab_v2_Reply> reply_sample_;
     Outbox outbox_;

@@ -63,7 +63,8 @@ void BodyTouches::collect_impacts()
     {
         if (!e.contact || (e.kind != "contact.impact" && e.kind != "contact.rest")) continue;
         const auto& detectors = contacts_.detectors();
-        const auto detector = std::find_if(detectors.begin(), detectors.end(), [&](const Detector& d) { return d.component == e.component; });
+        const auto detector =
+            std::find_if(detectors.begin(), detectors.end(), [&](const Detector& d) { return d.component == e.component; });
         if (detector == detectors.end() || detector->by_force) continue;
         add_pair(e.a, e.b, e.contact->point, e.contact->normal, e.contact->impulse, false);
     }

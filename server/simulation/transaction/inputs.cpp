@@ -53,7 +53,8 @@ std::optional<Reply> set_inputs(Run& run, const Request& request)
         if (value)
             values[k] = value.take();
         else
-            reply.errors = {{{}, set.id + " (" + world.type_of(inputs[k].component)->info.name + ")", set.name + ": " + value.error().reason}};
+            reply.errors = {
+                {{}, set.id + " (" + world.type_of(inputs[k].component)->info.name + ")", set.name + ": " + value.error().reason}};
     }
     reply.done = reply.errors.empty();
     for (std::size_t k = 0; k < inputs.size() && reply.done; ++k)
