@@ -7,7 +7,7 @@ namespace plab::wire
 namespace
 {
 
-constexpr std::array<Topic, 18> kTopics{{
+constexpr std::array<Topic, 21> kTopics{{
     {"plab/server", &plab_v2_Server_desc, Delivery::Catalogue, "the server's state, at least once a second"},
     {"plab/scene", &plab_v2_Scene_desc, Delivery::Catalogue, "the loaded scene, and its cameras"},
     {"plab/objects", &plab_v2_SceneObject_desc, Delivery::Catalogue, "bodies and shafts"},
@@ -26,6 +26,9 @@ constexpr std::array<Topic, 18> kTopics{{
     {"plab/hashes", &plab_v2_Hashes_desc, Delivery::Log, "the state hash of every step"},
     {"plab/snapshots", &plab_v2_Snapshot_desc, Delivery::Newest, "everything that a run needs to continue from there"},
     {"plab/gone", &plab_v2_Gone_desc, Delivery::Log, "in recordings only: catalogue entries that were disposed of"},
+    {"plab/viewers", &plab_v2_ViewerSample_desc, Delivery::Newest, "from where clients look at the scene"},
+    {"plab/users", &plab_v2_UserSample_desc, Delivery::Newest, "hands and devices of people"},
+    {"plab/forces", &plab_v2_Forces_desc, Delivery::Newest, "forces on them, after each step"},
 }};
 
 }  // namespace
@@ -57,6 +60,9 @@ PLAB_TOPIC(plab_v2_Journal, 14)
 PLAB_TOPIC(plab_v2_Hashes, 15)
 PLAB_TOPIC(plab_v2_Snapshot, 16)
 PLAB_TOPIC(plab_v2_Gone, 17)
+PLAB_TOPIC(plab_v2_ViewerSample, 18)
+PLAB_TOPIC(plab_v2_UserSample, 19)
+PLAB_TOPIC(plab_v2_Forces, 20)
 #undef PLAB_TOPIC
 
 Qos qos_of(Delivery delivery)

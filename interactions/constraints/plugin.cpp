@@ -3,6 +3,7 @@
 #include "plab/plugin.h"
 
 #include "angular_velocity/couplings.h"
+#include "grab/grab.h"
 #include "joints/distance.h"
 #include "joints/gear.h"
 #include "joints/motor.h"
@@ -243,6 +244,20 @@ void register_rolling(Registrar& registrar)
             "1972");
 }
 
+void register_grab(Registrar& registrar)
+{
+    registrar.component<GrabRows>("Constraint/Grab", "a hand that holds a body by a damped spring with limited force")
+        .family("Constraint/Grab")
+        .command<&open_and_close>(Phase::Drive, "Grab/Close", "closes on what the hand touches, and opens")
+        .command<&pull>(Phase::Force, "Constraint/Force", "spring and damper to the hand, at the point by which it holds")
+        .command<&finish_grab>(Phase::Finish, kFinish, "force, torque and distance; what the hand touches; the load of the user")
+        .accuracy("the solver's order")
+        .strengths("holds what a user grabs, by touch, within reach or by name; force and torque are limited")
+        .cost("1 force on the held body; the listed bodies are advanced in one batch with the hand")
+        .limits("explicit solvers: unstable for steps beyond 2 / w; a load of m g pulls the body g / w^2 out of the hand")
+        .source("E. Catto, Soft constraints, GDC 2011");
+}
+
 }  // namespace
 
 PLAB_PLUGIN("constraints", registrar)
@@ -253,4 +268,5 @@ PLAB_PLUGIN("constraints", registrar)
     register_coordinates(registrar);
     register_gears(registrar);
     register_rolling(registrar);
+    register_grab(registrar);
 }

@@ -38,6 +38,9 @@ class Bus : public publish::Observer
 public:
     /// The oldest request that has not been taken yet. Each request is handed out once, however often its client sent it.
     virtual bool take(publish::ReceivedRequest& request) = 0;
+    /// The newest samples of users and viewers since the last call, in place of what `people` held. Never waits: samples that are just
+    /// being written come with the next call.
+    virtual void take_people(publish::ReceivedPeople& people) = 0;
     /// Sends an answer to the client that asked, and to no other client. Never dropped.
     virtual void answer(wire::Reply&& answer) = 0;
     /// Empty while all is well; otherwise the reason why this server must end (another server has its name).

@@ -79,6 +79,8 @@ auto ServerBus::of(publish::Stream stream, Function function) const
             return function(hashes_);
         case publish::Stream::Snapshots:
             return function(snapshots_);
+        case publish::Stream::Forces:
+            return function(forces_);
         case publish::Stream::States:
             break;
     }

@@ -13,6 +13,7 @@
 #include "bus/catalogue_mirror.h"
 #include "bus/feed.h"
 #include "bus/log_limit.h"
+#include "bus/people_desk.h"
 #include "bus/request_desk.h"
 #include "idl/name_lock.h"
 #include "publish/hash_batch.h"
@@ -38,9 +39,11 @@ public:
     void journal(wire::Journal&& entry) override { push(journal_, std::move(entry)); }
     void hash(std::uint64_t run, Tick step, std::uint64_t hash) override;
     void snapshot(wire::Snapshot&& snapshot) override { push(snapshots_, std::move(snapshot)); }
+    void forces(wire::Forces&& forces) override { push(forces_, std::move(forces)); }
     void status(const wire::Server& status) override;
     bool catalogue(publish::CatalogueChange&& change) override;
     bool take(publish::ReceivedRequest& request) override { return desk_.take(request); }
+    void take_people(publish::ReceivedPeople& people) override { people_.take(people); }
     void answer(wire::Reply&& answer) override;
     std::string lost() const override;
     std::string take_restart() override;
@@ -112,9 +115,11 @@ private:
     Feed<wire::Journal> journal_{publish::Stream::Journal, 1024};
     Feed<wire::Hashes> hashes_{publish::Stream::Hashes, 1024};
     Feed<wire::Snapshot> snapshots_{publish::Stream::Snapshots, 2};
+    Feed<wire::Forces> forces_{publish::Stream::Forces, 64};
     publish::Ring<wire::Server> statuses_{4};
     publish::HashBatch hash_batch_;  ///< used by the step thread only
     RequestDesk desk_;
+    PeopleDesk people_;
 
     // Used by the bus thread only.
     std::unique_ptr<BusProcess> process_;

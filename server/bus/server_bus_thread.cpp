@@ -236,6 +236,18 @@ void ServerBus::handle(const MessageReader::Message& message, Clock::time_point 
             return log(text);
         case Up::Alive:
             return;
+        case Up::User:
+        {
+            UserMessage user;
+            if (!decode(message, user)) break;
+            return people_.receive(std::move(user), std::chrono::duration_cast<Nanoseconds>(now.time_since_epoch()).count());
+        }
+        case Up::Viewer:
+        {
+            ViewerMessage viewer;
+            if (!decode(message, viewer)) break;
+            return people_.receive(std::move(viewer), std::chrono::duration_cast<Nanoseconds>(now.time_since_epoch()).count());
+        }
     }
     is_broken_ = true;
 }
@@ -251,7 +263,7 @@ template <class Function>
 void ServerBus::each(Function function)
 {
     function(events_), function(collisions_), function(states_), function(metrics_), function(journal_), function(hashes_),
-        function(snapshots_), function(images_);
+        function(snapshots_), function(images_), function(forces_);
 }
 
 bool ServerBus::send(Clock::time_point now)
@@ -295,8 +307,8 @@ void ServerBus::send_status(Clock::time_point now)
     status_sent_ = now;
     if (!status_is_new_ && busy.empty() && status_.status.overload == overload_) return;
     status_.status.overload = busy.empty() ? overload_ : std::move(busy);
-    status_.dropped = {states_.dropped(), collisions_.dropped(), events_.dropped(), metrics_.dropped(),
-                       images_.dropped(), journal_.dropped(),    hashes_.dropped(), snapshots_.dropped()};
+    status_.dropped = {states_.dropped(),  collisions_.dropped(), events_.dropped(),    metrics_.dropped(), images_.dropped(),
+                       journal_.dropped(), hashes_.dropped(),     snapshots_.dropped(), forces_.dropped()};
     is_broken_ = !process_->writer().send(Down::Status, status_);
     status_is_new_ = false;
 }

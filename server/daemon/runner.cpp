@@ -144,6 +144,7 @@ bool Run::serve()
 
 void Run::step()
 {
+    service_.take_people();
     if (!s_.step())
     {
         if (s_.gave_up()) report_given_up();

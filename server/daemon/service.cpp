@@ -57,6 +57,7 @@ Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& lib
       threads_(static_cast<std::uint32_t>(options.threads)),
       collector_(collector_options(options),
                  options.bus || !options.record.file.empty() ? library.summaries() : std::vector<model::TypeSummary>{}),
+      people_(simulation),
       snapshots_(library,
                  [this]
                  {
@@ -317,6 +318,7 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
 void Service::publish(bool stepped)
 {
     collector_.collect(*simulation_, simulation_->take_changes(), stepped);
+    if (stepped) publish_forces();
     send_snapshots();
     if (const auto cause = collector_.wants_snapshot(*simulation_)) make_snapshot(simulation_->capture(), "", *cause);
 }

@@ -9,6 +9,7 @@
 #include "bus/bus.h"
 #include "control/operations.h"
 #include "daemon/options.h"
+#include "daemon/people.h"
 #include "daemon/recording.h"
 #include "daemon/request_reader.h"
 #include "daemon/snapshot_desk.h"
@@ -42,6 +43,8 @@ public:
     Result<void> save(const std::string& file) const;
     /// Passes requests that have arrived on the bus, and have been read, to the simulation; invalid ones are refused.
     void take_requests();
+    /// Applies the newest samples of users and viewers, to be called before a step.
+    void take_people();
     /// Shows the scene, as the requests that were taken have left it, to the thread that reads the next ones. To be called after they
     /// have been carried out.
     void show_scene();
@@ -97,6 +100,8 @@ private:
     void write_journal(const Origin& origin, const simulation::Reply& reply);
     void make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause);
     void send_snapshots();
+    simulation::Reply move(const People::Ask& ask);
+    void publish_forces();
     void send_named_snapshots(const Origin& origin);
     std::vector<wire::KeptSnapshot> kept_snapshots() const;
 
@@ -111,6 +116,8 @@ private:
     std::optional<RecordModule> record_module_;  // destroyed after recording_
     std::unique_ptr<record::Recording> recording_;
     publish::Collector collector_;
+    People people_;
+    publish::ReceivedPeople samples_;  ///< keeps its memory
     const Wake* wake_ = nullptr;
     const Interruption* interruption_ = nullptr;
     SnapshotDesk snapshots_;  // wakes the loop; the members that it uses are declared above

@@ -187,9 +187,16 @@ std::optional<const char*> Collector::wants_snapshot(const simulation::Simulatio
     return {};
 }
 
-bool Collector::anybody_reads_snapshots() const
+bool Collector::anybody_reads(Stream stream) const
 {
-    return std::any_of(watchers_.begin(), watchers_.end(), [](const Watcher& w) { return w.observer->wants(Stream::Snapshots); });
+    return std::any_of(watchers_.begin(), watchers_.end(), [&](const Watcher& w) { return w.observer->wants(stream); });
+}
+
+void Collector::forces(wire::Forces forces)
+{
+    forces.sequence_number = next_forces_++;
+    for (const Watcher& w : watchers_)
+        if (w.observer->wants(Stream::Forces)) w.observer->forces(wire::Forces(forces));
 }
 
 void Collector::snapshot(const wire::Snapshot& snapshot)

@@ -42,10 +42,14 @@ public:
     void note(const simulation::Simulation& simulation, wire::EventInfo event);
     /// A request took effect; its sequence number among all requests is filled in here.
     void journal(wire::Journal entry);
+    /// Whether somebody reads a stream that the caller fills.
+    bool anybody_reads(Stream stream) const;
+    /// After a step; its sequence number is filled in here.
+    void forces(wire::Forces forces);
     /// Why a snapshot of the current state is wanted, if it is: "begin" of a run or of an observer's interest, or "periodic".
     /// The caller must then hand one over.
     std::optional<const char*> wants_snapshot(const simulation::Simulation& simulation);
-    bool anybody_reads_snapshots() const;
+    bool anybody_reads_snapshots() const { return anybody_reads(Stream::Snapshots); }
     void snapshot(const wire::Snapshot& snapshot);
     /// Cheap enough to call at each step: it sends on change, and once per second. Values that only progress (step, time, rate
     /// reached, time slipped, numbers of events) do not count as changes. States per second and those numbers are filled in
@@ -97,7 +101,7 @@ private:
     std::uint64_t run_ = 0;
     Nanoseconds sampled_ = 0;     ///< time of the last sample of metrics
     bool metrics_asked_ = false;  ///< a sample out of turn was requested
-    std::uint64_t next_event_ = 1, next_collision_ = 1, next_journal_ = 1;
+    std::uint64_t next_event_ = 1, next_collision_ = 1, next_journal_ = 1, next_forces_ = 1;
     wire::Server published_;
     Nanoseconds published_at_ = 0;
 };

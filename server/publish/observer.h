@@ -20,6 +20,7 @@ enum class Stream : std::uint8_t
     Journal,
     Hashes,
     Snapshots,
+    Forces,
 };
 
 class Observer
@@ -49,6 +50,7 @@ public:
     /// Receives the hash of the state after a step; called for each step in order while Hashes is wanted.
     virtual void hash(std::uint64_t run, Tick step, std::uint64_t hash) = 0;
     virtual void snapshot(wire::Snapshot&& snapshot) = 0;
+    virtual void forces(wire::Forces&& /*forces*/) {}
     virtual void status(const wire::Server& status) = 0;
     /// False if there was no room: the next change must then contain everything.
     virtual bool catalogue(CatalogueChange&& change) = 0;

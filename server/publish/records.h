@@ -30,4 +30,20 @@ struct ReceivedRequest : wire::Request
     std::int64_t arrived_ns = 0;  ///< monotonic time
 };
 
+/// The newest sample of a client for one component.
+template <class Sample>
+struct ReceivedSample
+{
+    Sample sample;
+    bool gone = false;            ///< the client is gone; of `sample` only client and component count
+    std::uint64_t skipped = 0;    ///< samples since the last one that was taken, which a newer one replaced
+    std::int64_t arrived_ns = 0;  ///< monotonic time
+};
+/// What clients have sent about people since it was taken last.
+struct ReceivedPeople
+{
+    std::vector<ReceivedSample<wire::UserSample>> users;
+    std::vector<ReceivedSample<wire::ViewerSample>> viewers;
+};
+
 }  // namespace plab::publish

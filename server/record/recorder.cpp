@@ -134,6 +134,8 @@ bool Recorder::wants(publish::Stream stream) const
             return topics_.has(wire::topic_of<plab_v2_Hashes>().name);
         case publish::Stream::Snapshots:
             return topics_.has(wire::topic_of<plab_v2_Snapshot>().name);
+        case publish::Stream::Forces:
+            return false;
     }
     return false;
 }

@@ -6,6 +6,7 @@
 
 #include "simulation/costs/clock.h"
 #include "simulation/run/field_change.h"
+#include "simulation/transaction/inputs.h"
 
 namespace plab::simulation
 {
@@ -118,6 +119,11 @@ Reply Simulation::carry_out(const Request& request)
     {
         reply.errors = {reason("the scene is at revision " + std::to_string(run_.revision) + ", not " + std::to_string(*request.revision))};
         return reply;
+    }
+    if (auto set = set_inputs(run_, request))
+    {
+        if (set->done) history_.note(run_, request);
+        return *std::move(set);
     }
     Reply done = Transaction(run_, context_, *this, request).run();
     if (done.done && affects_the_run(request)) run_.watch->begin_anew();

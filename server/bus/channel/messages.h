@@ -14,7 +14,7 @@
 namespace plab::bus
 {
 
-inline constexpr std::size_t kStreams = static_cast<std::size_t>(publish::Stream::Snapshots) + 1;
+inline constexpr std::size_t kStreams = static_cast<std::size_t>(publish::Stream::Forces) + 1;
 
 /// From plabd to plab-bus.
 enum class Down : std::uint32_t
@@ -37,6 +37,8 @@ enum class Up : std::uint32_t
     Lost,     ///< std::string: why this server must end
     Log,      ///< std::string
     Alive,    ///< no content; sent once per second
+    User,     ///< PersonMessage of a wire::UserSample
+    Viewer,   ///< PersonMessage of a wire::ViewerSample
 };
 
 struct StartMessage
@@ -68,6 +70,19 @@ struct RequestMessage
     std::string wrong;  ///< "", or why the request was not copied completely
 };
 PLAB_MEMBERS(RequestMessage, request, wrong)
+
+/// The newest sample of a client for one component.
+template <class Sample>
+struct PersonMessage
+{
+    Sample sample;
+    bool gone = false;          ///< its instance was disposed of, or it has no writer any more
+    std::uint64_t skipped = 0;  ///< samples that a newer one replaced since the last message
+};
+using UserMessage = PersonMessage<wire::UserSample>;
+using ViewerMessage = PersonMessage<wire::ViewerSample>;
+PLAB_MEMBERS(UserMessage, sample, gone, skipped)
+PLAB_MEMBERS(ViewerMessage, sample, gone, skipped)
 
 /// Precedes each message.
 struct MessageHead

@@ -68,6 +68,7 @@ void BusLoop::each(Function function)
     function(publish::Stream::Events, events_), function(publish::Stream::Metrics, metrics_);
     function(publish::Stream::Images, images_), function(publish::Stream::Journal, journal_);
     function(publish::Stream::Hashes, hashes_), function(publish::Stream::Snapshots, snapshots_);
+    function(publish::Stream::Forces, forces_);
 }
 
 bool BusLoop::join()
@@ -97,8 +98,11 @@ Result<void> BusLoop::enter()
         this, false);
     (void)dds_lset_data_available_arg(
         listener.get(),
-        [](dds_entity_t, void* self) {
-            Mark{&static_cast<BusLoop*>(self)->arrived_, static_cast<BusLoop*>(self)->wake_}.set();
+        [](dds_entity_t, void* self)
+        {
+            auto& loop = *static_cast<BusLoop*>(self);
+            loop.people_arrived_.store(true, std::memory_order_release);
+            Mark{&loop.arrived_, loop.wake_}.set();
         },
         this, false);
     if (const auto code = dds_set_listener(participant_.get(), listener.get()); code < 0)
@@ -125,6 +129,8 @@ Result<void> BusLoop::enter()
     auto requests = wire::DataReader<plab_v2_Request>::make(participant_, subscriber_);
     if (!requests) return requests.errors();
     replies_ = replies.take(), requests_ = requests.take();
+    if (auto opened = users_.open(participant_, subscriber_); !opened) return opened;
+    if (auto opened = viewers_.open(participant_, subscriber_); !opened) return opened;
     return presence_.open(participant_, publisher_, subscriber_);
 }
 
@@ -144,7 +150,8 @@ bool BusLoop::run()
 /// False if plabd has ended.
 bool BusLoop::sleep(Clock::time_point now)
 {
-    const auto longest = outbox_.empty() ? std::min<Clock::duration>(presence_.due_in(now), kSecond) : Clock::duration(kRetry);
+    auto longest = outbox_.empty() ? std::min<Clock::duration>(presence_.due_in(now), kSecond) : Clock::duration(kRetry);
+    longest = std::min(longest, people_due_);
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(longest).count();
     timespec time{};
     time.tv_sec = ns / 1'000'000'000, time.tv_nsec = ns % 1'000'000'000;
@@ -157,7 +164,8 @@ bool BusLoop::sleep(Clock::time_point now)
 bool BusLoop::pass(Clock::time_point now)
 {
     (void)writer_.flush();
-    bool more = read_requests();
+    bool more = read_people(now);
+    more = read_requests() || more;
     if (now - second_ >= kSecond) each_second(now);
     if (matched_.exchange(false, std::memory_order_acquire)) check_readers();
     more = receive() || more;
@@ -257,6 +265,20 @@ bool BusLoop::read_requests()
     if (const auto rival = presence_.find_rival()) report(Up::Lost, *rival);
     pass_on();
     return n > 0 && waiting_.empty();
+}
+
+/// True if there may be more.
+bool BusLoop::read_people(Clock::time_point now)
+{
+    bool more = false;
+    if (people_arrived_.exchange(false, std::memory_order_acquire))
+    {
+        const bool users = users_.read(trouble_), viewers = viewers_.read(trouble_);
+        more = users || viewers;
+    }
+    if (more) people_arrived_.store(true, std::memory_order_relaxed);
+    people_due_ = std::min(users_.pass_on(writer_, now), viewers_.pass_on(writer_, now));
+    return more;
 }
 
 void BusLoop::keep(const plab_v2_Request& request)

@@ -12,6 +12,7 @@
 #include "bus/channel/wake_event.h"
 #include "bus/process/catalogue_writer.h"
 #include "bus/process/dds_log.h"
+#include "bus/process/newest_samples.h"
 #include "bus/process/outbox.h"
 #include "bus/process/presence.h"
 #include "bus/process/stream.h"
@@ -43,6 +44,7 @@ private:
     bool handle(const MessageReader::Message& message);
     bool stream(std::uint32_t stream, std::span<const std::byte> bytes);
     bool read_requests();
+    bool read_people(Clock::time_point now);
     void keep(const plab_v2_Request& request);
     void pass_on();
     void check_readers();
@@ -64,7 +66,7 @@ private:
     MessageReader reader_;
     MessageWriter writer_;
     Trouble trouble_;
-    std::atomic<bool> matched_{true}, arrived_{true};  ///< set by DDS listeners, on threads of DDS
+    std::atomic<bool> matched_{true}, arrived_{true}, people_arrived_{true};  ///< set by DDS listeners, on threads of DDS
     bool is_over_ = false;
 
     DdsLog dds_log_;
@@ -79,10 +81,14 @@ private:
     Stream<plab_v2_Journal, wire::Journal> journal_;
     Stream<plab_v2_Hashes, wire::Hashes> hashes_;
     Stream<plab_v2_Snapshot, wire::Snapshot> snapshots_;
+    Stream<plab_v2_Forces, wire::Forces> forces_;
     CatalogueWriter catalogue_;
     Presence presence_;
     wire::DataReader<plab_v2_Request> requests_;
-    std::deque<RequestMessage> waiting_;  ///< taken from the reader in one pass, and not passed on yet
+    NewestSamples<plab_v2_UserSample, wire::UserSample> users_{Up::User};
+    NewestSamples<plab_v2_ViewerSample, wire::ViewerSample> viewers_{Up::Viewer};
+    Clock::duration people_due_ = Clock::duration::max();  ///< time until the next of their samples may be passed on
+    std::deque<RequestMessage> waiting_;                   ///< taken from the reader in one pass, and not passed on yet
     wire::DataWriter<plab_v2_Reply> replies_;
     wire::SampleView<plab_v2_Reply> reply_sample_;
     Outbox outbox_;

@@ -2,18 +2,20 @@
 
 #include "material_pair.h"
 #include "states.h"
+#include "user.h"
 
 namespace
 {
 
 template <auto Prepare, class Table>
-void add_state(plab::Registrar& registrar, std::string name, plab::Facet facet, std::string family, std::string doc)
+plab::TypeBuilder<Table> add_state(plab::Registrar& registrar, std::string name, plab::Facet facet, std::string family, std::string doc)
 {
-    registrar.component<Table>(std::move(name), std::move(doc))
-        .facet(facet)
+    auto type = registrar.component<Table>(std::move(name), std::move(doc));
+    type.facet(facet)
         .family(std::move(family))
         .template command<Prepare>(plab::Phase::Prepare, "State/Prepare", "checks the parameters and hands them to the host")
         .host_command(plab::Phase::Restore, "State/Restore", "brings the saved state back when a step is rewound");
+    return type;
 }
 
 }  // namespace
@@ -25,6 +27,12 @@ PLAB_PLUGIN("bodies", registrar)
     add_state<prepare_static, StaticRows>(registrar, "State/Static", Facet::Body, "State/Body", "a body that never moves");
     add_state<prepare_kinematic, KinematicRows>(registrar, "State/Kinematic", Facet::Body, "State/Body",
                                                 "a body that moves with a prescribed velocity");
+    add_state<prepare_user, UserRows>(registrar, "State/User", Facet::Body, "State/Body",
+                                      "a person's hand or device: follows samples from outside, and knows the force on it")
+        .command<follow_samples>(plab::Phase::Drive, "User/Follow", "chooses the velocity that leads to the newest sample, extrapolated")
+        .command<feel>(plab::Phase::Finish, "User/Feel", "sums what contacts and held bodies exert")
+        .strengths("interaction by people and robots outside: it pushes, and Constraint/Grab makes it hold")
+        .limits("nothing pushes it back: a device must render `force`; faster than its limits it lags behind");
     add_state<prepare_rigid_body, RigidBodyRows>(registrar, "State/RigidBody", Facet::Body, "State/Body", "a body that moves by forces");
     add_state<prepare_shaft, ShaftRows>(registrar, "State/Shaft", Facet::Shaft, "State/Shaft",
                                         "one degree of freedom about an axle: a gear, a motor, a fan");

@@ -126,6 +126,30 @@ struct Trial
     double next = 0;  ///< s, in (begin, end); for Try
 };
 
+/// What touched a body in a step: a point of a contact that persists, or an impact inside the step.
+struct TouchPoint
+{
+    Ref other;      ///< the other body
+    Vec3 point;     ///< W, m; of an impact: where it happened
+    Vec3 normal;    ///< W, unit, from the body that is asked about to the other one
+    Vec3 impulse;   ///< W, N s in this step, on the body that is asked about
+    bool persists;  ///< it touches at the end of the step
+    Vec3 couple;    ///< W, N m s: an angular impulse besides
+};
+
+/// Phase::Finish: the touching points of bodies in the step that ends.
+class Touches
+{
+public:
+    virtual ~Touches() = default;
+    /// In the order of the pairs, which is that of ids; then the impacts, in their order of time, then what was added. Valid until the next
+    /// call.
+    virtual std::span<const TouchPoint> of(Ref body) const = 0;
+    /// A component that holds a body in another way adds its impulse here, so that the body's own type, and others whose names come later in
+    /// the alphabet, can tell the load of the body.
+    virtual void add(Ref body, const TouchPoint& point) = 0;
+};
+
 enum class ImpactMode : std::uint8_t
 {
     Impact,  ///< bodies meet now: restitution and friction impulses; a contact that should not bounce any more is set `resting`

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plab/interruption.h"
@@ -64,6 +65,19 @@ struct ParameterChange
     Value value;
 };
 
+/// The other components of the scene, for commands that keep an id as their state, or that follow the inputs of a participant.
+class Lookup
+{
+public:
+    virtual ~Lookup() = default;
+    virtual std::string_view id_of(Ref ref) const = 0;
+    /// The object or component with this id; not valid if there is none.
+    virtual Ref find(std::string_view id) const = 0;
+    /// The present value of a field; no value if there is no such field. Inputs and parameters do not change within a step; what another
+    /// component changes in the same phase may have changed already or not, by the order of types.
+    virtual Value value_of(Ref ref, std::string_view field) const = 0;
+};
+
 /// The members of a long list of participants that are being advanced, so that the cost of a field over ten thousand bodies is
 /// proportional to the group that is advanced.
 struct Shortlist
@@ -83,6 +97,7 @@ struct StepContext
     std::vector<ParameterChange>* changes = nullptr;  ///< drive phase only
     const Interruption* interruption = nullptr;       ///< long computations should check interrupted() now and then
     Workers* workers = nullptr;                       ///< null: the call has its own thread alone
+    const Lookup* lookup = nullptr;                   ///< phases Drive, Decide and Finish only
 
     std::span<const std::uint32_t> component_of_row;  ///< directory index of each row of this table
     std::span<const std::uint32_t> facet_of_row;      ///< host table index of each row, where the type has a facet

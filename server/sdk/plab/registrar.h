@@ -77,6 +77,7 @@ struct PhaseCall
     Trial* trial = nullptr;                     // Locate
     ContactLoad* load = nullptr;                // Choose
     Impact* impact = nullptr;                   // Respond, Touch
+    Touches* touches = nullptr;                 // Finish
     MassProperties* solid = nullptr;            // Measure
     StoredEnergy* stored = nullptr;             // Potential
     ViewpointSink* viewpoints = nullptr;        // View
@@ -166,6 +167,8 @@ PLAB_ARGUMENT(ContactSink&, contacts, "Contacts");
 PLAB_ARGUMENT(Trial&, trial, "Trial");
 PLAB_ARGUMENT(ContactLoad&, load, "ContactLoad");
 PLAB_ARGUMENT(Impact&, impact, "Impact");
+PLAB_ARGUMENT(Touches&, touches, "Touches");
+PLAB_ARGUMENT(const Touches&, touches, "Touches");
 PLAB_ARGUMENT(MassProperties&, solid, "MassProperties");
 PLAB_ARGUMENT(StoredEnergy&, stored, "StoredEnergy");
 PLAB_ARGUMENT(ViewpointSink&, viewpoints, "Viewpoints");

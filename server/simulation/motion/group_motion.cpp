@@ -69,6 +69,13 @@ void GroupMotion::save_start(const std::vector<std::uint32_t>* changed)
     std::fill(segment_begin_.begin(), segment_begin_.end(), 0.0);
 }
 
+void GroupMotion::save_start_of(std::uint32_t body)
+{
+    if (step_.groups.group_of_body[body] == kNoIndex) return;
+    start_.save_body(step_.world.host(), body);
+    if (rewinds_) segment_.save_body(step_.world.host(), body);
+}
+
 void GroupMotion::save_ends()
 {
     if (!rewinds_) return;

@@ -41,6 +41,8 @@ public:
     // Saved states: start of the step, start of the present piece of each group, end of the step -------------------------
     /// `changed`: bodies outside of it have stayed as they were saved last; null: all may have changed.
     void save_start(const std::vector<std::uint32_t>* changed = nullptr);
+    /// The same for one body, whose velocity has been chosen since.
+    void save_start_of(std::uint32_t body);
     void save_ends();
     void rewind(std::uint32_t group);
     void save_segment(std::uint32_t group);

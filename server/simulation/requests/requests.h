@@ -227,7 +227,7 @@ struct Changes
 {
     bool everything = false;             ///< a new run
     std::vector<std::string> touched;    ///< ids that were added, removed or changed; may contain duplicates
-    std::set<std::uint32_t> by_scripts;  ///< components whose parameters were set by scripts, possibly in each step
+    std::set<std::uint32_t> by_scripts;  ///< components whose parameters scripts set, or whose inputs were set, possibly in each step
 
     bool any() const { return everything || !touched.empty() || !by_scripts.empty(); }
 };

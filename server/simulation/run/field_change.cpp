@@ -52,6 +52,16 @@ Result<void> prepare_dependents(world::World& world, std::uint32_t component, st
     return {};
 }
 
+Result<Value> value_for(const Field& field, const GivenValue& given)
+{
+    if (const auto* text = std::get_if<std::string>(&given)) return model::parse_value(*text, field);
+    Value value = std::get<Value>(given);
+    if (const auto* integer = std::get_if<std::int64_t>(&value); integer && field.type == FieldType::Real)
+        value = static_cast<double>(*integer);
+    if (auto fits = model::check_value(value, field); !fits) return fits.errors();
+    return value;
+}
+
 Result<void> set_field(world::World& world, std::uint32_t component, const std::string& name, Value value,
                        std::set<std::uint32_t>& prepared)
 {

@@ -5,10 +5,14 @@
 #include <set>
 #include <string>
 
+#include "simulation/requests/requests.h"
 #include "world/world.h"
 
 namespace plab::simulation
 {
+
+/// The value that a request gives a field: parsed from a text by the field's own rules, or checked. Whole numbers may be given for reals.
+Result<Value> value_for(const Field& field, const GivenValue& given);
 
 /// Sets a param or state after checking the declared rules. Runs Prepare if a parameter changed, preserves the motion that the author of
 /// the scene sees, prepares the bodies that use a changed shape, and ends a quarantine. Adds every prepared component to `prepared`. On

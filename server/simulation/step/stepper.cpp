@@ -55,11 +55,23 @@ void Stepper::drive()
 {
     changes_.clear();
     world::CommandCall call{step_.context(), step_.arguments()};
-    call.context.changes = &changes_, call.context.interruption = interruption_;
+    call.context.changes = &changes_, call.context.interruption = interruption_, call.context.lookup = &step_.lookup;
     run_blocks(Phase::Drive, call);
+    save_driven();
     if (changes_.empty() || !apply_changes_ || step_.frame.give_up()) return;
     apply_changes_(changes_owner_, changes_);
     hard_.note_change();
+}
+
+/// Bodies that choose their own velocity for the step (a user's hand) move from their present pose with the new one.
+void Stepper::save_driven()
+{
+    for (const Block& block : step_.schedule.of(Phase::Drive))
+    {
+        const world::Table& table = *step_.world.tables()[block.table];
+        if (table.type().info.facet != Facet::Body) continue;
+        for (const Row row : block.rows) motion_.save_start_of(table.host_of_row()[row]);
+    }
 }
 
 void Stepper::couple_speeds()
@@ -91,7 +103,10 @@ void Stepper::finish()
 {
     world::CommandCall call{step_.context(), step_.arguments()};
     call.context.time += step_.frame.step;
+    call.context.lookup = &step_.lookup;
     call.arguments.reactions = &motion_.reactions(), call.arguments.row_reports = &motion_.row_reports();
+    if (touches_.wanted()) touches_.collect();
+    call.arguments.touches = &touches_;
     run_blocks(Phase::Finish, call);
 }
 

@@ -10,6 +10,7 @@
 
 #include <optional>
 
+#include "simulation/contacts/body_touches.h"
 #include "simulation/costs/cost_book.h"
 #include "simulation/events/event_locator.h"
 #include "simulation/shafts/coupling_watch.h"
@@ -124,6 +125,7 @@ private:
 
     // stepper.cpp
     void collect_cost();
+    void save_driven();
     void run_blocks(Phase phase, world::CommandCall& call);
 
     StepState step_;
@@ -131,6 +133,7 @@ private:
     ContactBook book_{step_};
     HardContacts hard_{step_, motion_, book_};
     ContactForces forces_{step_, motion_, book_, hard_};
+    BodyTouches touches_{step_, book_};
     Advance advance_;
     std::optional<EventLocator> locator_;  ///< made when it is needed first; reset when the structure changes
     ShaftSystem speed_system_;

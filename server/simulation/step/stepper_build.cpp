@@ -100,6 +100,7 @@ Result<void> Stepper::rebuild()
                     part_ != nullptr && detectors.empty());
     hard_.rebuild();
     forces_.rebuild();
+    touches_.rebuild();
     advance_.rebuild();
     locator_.reset();
     saved_mark_ = nullptr;

@@ -205,17 +205,9 @@ Result<void> Transaction::apply_one(const SetOperation& op)
 
 Result<Value> Transaction::new_value(std::uint32_t component, const Field& field, const SetOperation& op) const
 {
-    const auto* text = std::get_if<std::string>(&op.value);
     const std::size_t dot = op.name.find('.');
-    if (dot == std::string::npos)
-    {
-        if (text) return model::parse_value(*text, field);
-        Value value = std::get<Value>(op.value);
-        if (const auto* integer = std::get_if<std::int64_t>(&value); integer && field.type == FieldType::Real)
-            value = static_cast<double>(*integer);
-        if (auto fits = model::check_value(value, field); !fits) return fits.errors();
-        return value;
-    }
+    if (dot == std::string::npos) return value_for(field, op.value);
+    const auto* text = std::get_if<std::string>(&op.value);
     if (field.type != FieldType::EntryList) return reason("'" + field.name + "' has no entries");
     Value cell = run_->world().get(component, field.name);
     for (Entry& entry : std::get<Entries>(cell))

@@ -149,6 +149,10 @@ Result<std::unique_ptr<Track>> make_track(const wire::Topic& topic, const wire::
                        plab_v2_Snapshot>(topic, {participant, publisher, moved_only});
 }
 
-bool is_played(const wire::Topic& topic) { return !is_one_of<plab_v2_Server, plab_v2_Request, plab_v2_Reply, plab_v2_Gone>(topic); }
+bool is_played(const wire::Topic& topic)
+{
+    return !is_one_of<plab_v2_Server, plab_v2_Request, plab_v2_Reply, plab_v2_Gone, plab_v2_ViewerSample, plab_v2_UserSample,
+                      plab_v2_Forces>(topic);
+}
 
 }  // namespace plab::player

@@ -83,11 +83,17 @@ Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::str
 {
     // plab/updates has the frames of plab/states once more; a recording holds complete ones.
     const auto on_bus = [](const wire::Topic& t) { return !is_topic<plab_v2_Gone>(t) && !is_topic<plab_v2_FrameUpdate>(t); };
+    // Pictures are large; what people send is in the journal as it took effect.
+    const auto is_by_itself = [](const wire::Topic& t)
+    {
+        return !is_topic<plab_v2_Image>(t) && !is_topic<plab_v2_ViewerSample>(t) && !is_topic<plab_v2_UserSample>(t) &&
+               !is_topic<plab_v2_Forces>(t);
+    };
     std::vector<const wire::Topic*> out;
     for (const wire::Topic& t : wire::topics())
     {
         const bool is_named = std::find(names.begin(), names.end(), t.name) != names.end();
-        if (on_bus(t) && (is_named || (names.empty() && !is_topic<plab_v2_Image>(t)))) out.push_back(&t);
+        if (on_bus(t) && (is_named || (names.empty() && is_by_itself(t)))) out.push_back(&t);
     }
     for (const std::string& name : names)
         if (std::none_of(out.begin(), out.end(), [&](const wire::Topic* t) { return name == t->name; }))
