@@ -99,12 +99,12 @@ template <int W>
 void SoftIsland<W>::give_back()
 {
     constexpr int kHalvings = 24;
+    if (!bounces_) return;
     gather_and_clear(contacts_, std::span<SoftPoint<W>>(soft_));
     for (Line& line : problem_.lines) line.impulse = 0;
     problem_.clear_sums();
-    problem_.read_given(bodies_, shafts_);
+    read_given();
     const double most = std::max(allowed_, problem_.read_speeds_and_apply(bodies_, shafts_));
-    if (!bounces_) return;
     double low = 0, high = 1;
     if (bounce(1) > most)
     {

@@ -219,7 +219,9 @@ void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
             take_known(c, f.contact, all[slot], trial), island.slots[i] = slot;
     }
     const std::span<const Contact> contacts = island.of(run);
-    for (const Contact& c : contacts) run.most_depth = std::max(run.most_depth, std::fabs(c.depth));
+    const double least = -contacts_.overlap_tolerance(contacts.front().a, contacts.front().b);
+    for (const Contact& c : contacts)
+        if (c.depth >= least) run.most_depth = std::max(run.most_depth, std::fabs(c.depth));
     if (island.has_rows) return;
     if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return midpoint_.turns(c, h); }))
         std::atomic_ref(island.turns).store(true, std::memory_order_relaxed);

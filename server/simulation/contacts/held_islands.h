@@ -160,7 +160,7 @@ private:
             std::uint32_t order = 0;              ///< number of the pair among those of all islands
             bool known = false;                   ///< found by the last detection: the pair knows what is missing
             // Results of passes that threads share:
-            double most_depth = 0;    ///< m, largest depth or gap
+            double most_depth = 0;    ///< m, largest depth, or gap, of what may have Painleve's paradox
             bool incomplete = false;  ///< the pair does not know all of its contacts yet
             bool released = false;    ///< it pressed in the last step and does so no more
             bool counts_all = false;  ///< ContactBook::Pressing
