@@ -79,10 +79,13 @@ void PacketList<W>::order_pairs()
 template <int W>
 void PacketList<W>::add_packet(std::uint32_t pair, std::uint32_t pairs)
 {
-    const auto number = static_cast<std::uint32_t>(packets_.size());
-    Packet<W>& packet = packets_.emplace_back();
+    const auto number = static_cast<std::uint32_t>(packet_count_++);
+    if (packets_.size() < packet_count_) packets_.emplace_back();
+    // Masses and inertias are written for all lanes, others only for those in use.
+    Packet<W>& packet = packets_[number];
     packet.a.fill(kNoIndex), packet.b.fill(kNoIndex);
-    packet.first = static_cast<std::uint32_t>(point_count_);
+    packet.n = packet.t1 = {}, packet.one_sided = packet.points = Lanes<W>{};
+    packet.first = static_cast<std::uint32_t>(point_count_), packet.count = 0;
     first_pair_.push_back(pair);
     for (const std::uint32_t p : std::span(order_).subspan(pair, pairs)) packet.count = std::max(packet.count, pairs_[p].count);
     point_count_ += packet.count;
@@ -98,7 +101,7 @@ template <int W>
 void PacketList<W>::add_section(bool one_colour)
 {
     if (!one_colour && !sections_.empty() && !sections_.back().one_colour) return;
-    sections_.push_back({packets_.size(), one_colour});
+    sections_.push_back({packet_count_, one_colour});
 }
 
 template <int W>
@@ -125,8 +128,8 @@ void PacketList<W>::arrange(std::size_t movers)
 {
     if (is_arranged(movers)) return;
     pairs_ = added_, arranged_movers_ = movers;
-    packets_.clear(), sections_.clear(), first_pair_.clear();
-    point_count_ = 0;
+    sections_.clear(), first_pair_.clear();
+    packet_count_ = point_count_ = 0;
     places_.resize(pairs_.empty() ? 0 : pairs_.back().first + pairs_.back().count);
     if constexpr (W == 1)
     {

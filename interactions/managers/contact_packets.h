@@ -44,7 +44,7 @@ struct Packet
     LaneVec<W> n, t1;                       ///< of all its points; t2 = n x t1
     Lanes<W> inverse_mass_a{}, inverse_mass_b{};
     LaneSymmetric<W> inverse_inertia_a, inverse_inertia_b;
-    bool turning = true;                 ///< the inertia of some mover changes as it turns
+    bool turning = true;                 ///< the inertia of some mover changes as it turns; otherwise all have one moment of inertia
     Lanes<W> one_sided{};                ///< 1 where only one side moves, else 0
     Lanes<W> points{};                   ///< number of points in each lane
     std::uint32_t first = 0, count = 0;  ///< its points: as many as its longest lane has
@@ -105,8 +105,8 @@ public:
     };
     Place place(std::size_t contact) const { return places_[contact]; }
     std::size_t size() const { return places_.size(); }
-    std::span<Packet<W>> packets() { return packets_; }
-    std::span<const Packet<W>> packets() const { return packets_; }
+    std::span<Packet<W>> packets() { return std::span(packets_).first(packet_count_); }
+    std::span<const Packet<W>> packets() const { return std::span(packets_).first(packet_count_); }
     std::span<PacketPoint<W>> points() { return points_; }
     std::span<const PacketPoint<W>> points() const { return points_; }
     /// Calls visit(contact, lane) for each contact of a packet at one of its points.
@@ -119,7 +119,7 @@ public:
     template <class Loop>
     void in_parts(const Loop& loop) const
     {
-        for_parts(workers_, packets_.size(), W == 1 ? kSmallIsland : kPart, loop);
+        for_parts(workers_, packet_count_, W == 1 ? kSmallIsland : kPart, loop);
     }
 
 private:
@@ -153,7 +153,7 @@ private:
     };
     void add_section(bool one_colour);
 
-    std::vector<Packet<W>> packets_;
+    std::vector<Packet<W>> packets_;  ///< the first packet_count_ are in use
     std::vector<PacketPoint<W>> points_;
     std::vector<LaneVec<W>> given_;
     std::vector<Place> places_;  ///< by contact
@@ -164,7 +164,7 @@ private:
     std::vector<std::uint64_t> colours_of_mover_;  ///< a bit for each colour that the mover's pairs have
     std::vector<std::uint32_t> order_, starts_;    ///< pairs by colour and number of points
     std::vector<std::uint32_t> first_pair_;        ///< by packet, in order_
-    std::size_t point_count_ = 0;
+    std::size_t packet_count_ = 0, point_count_ = 0;
     std::vector<Section> sections_;
     Workers* workers_ = nullptr;
 };
@@ -183,7 +183,7 @@ template <int W>
 template <class Visit>
 void PacketList<W>::visit_contacts(std::size_t packet, const Visit& visit) const
 {
-    if (packet >= packets_.size()) return;
+    if (packet >= packet_count_) return;
     for (const std::uint32_t p : pairs_of(packet))
         for (std::uint32_t k = 0; k < pairs_[p].count; ++k) visit(pairs_[p].first + k);
 }
@@ -231,7 +231,7 @@ void PacketList<W>::by_colour(const Loop& loop, bool backwards) const
     for (std::size_t k = 0; k < sections_.size(); ++k)
     {
         const std::size_t s = backwards ? sections_.size() - 1 - k : k, begin = sections_[s].begin;
-        const std::size_t end = s + 1 < sections_.size() ? sections_[s + 1].begin : packets_.size();
+        const std::size_t end = s + 1 < sections_.size() ? sections_[s + 1].begin : packet_count_;
         for_parts(workers_, end - begin, sections_[s].one_colour ? kPart : std::max<std::size_t>(1, end - begin),
                   [&](std::size_t from, std::size_t to) { loop(begin + from, begin + to); });
     }

@@ -105,17 +105,27 @@ PLAB_INLINE LaneVec<W> velocity_of(const Frame<W>& frame, const PacketPoint<W>& 
     return given.empty() ? u : u + given[i];
 }
 
-template <int W>
+/// I^-1 v; `kRound`: the matrix is a number times the identity, and only its first element is read.
+template <bool kRound, int W>
+PLAB_INLINE LaneVec<W> turned(const LaneSymmetric<W>& inverse_inertia, const LaneVec<W>& v)
+{
+    if constexpr (kRound)
+        return scaled(v, inverse_inertia.xx);
+    else
+        return inverse_inertia * v;
+}
+
+template <bool kRound, int W>
 PLAB_INLINE void push(const Packet<W>& packet, const Frame<W>& frame, const PacketPoint<W>& p, const LaneVec<W>& change, Velocities<W>& a,
                       Velocities<W>& b)
 {
     const LaneVec<W> j = frame.to_world(change);
-    b.v = b.v + scaled(j, packet.inverse_mass_b), b.w = b.w + packet.inverse_inertia_b * cross(p.r_b, j);
-    a.v = a.v - scaled(j, packet.inverse_mass_a), a.w = a.w - packet.inverse_inertia_a * cross(p.r_a, j);
+    b.v = b.v + scaled(j, packet.inverse_mass_b), b.w = b.w + turned<kRound>(packet.inverse_inertia_b, cross(p.r_b, j));
+    a.v = a.v - scaled(j, packet.inverse_mass_a), a.w = a.w - turned<kRound>(packet.inverse_inertia_a, cross(p.r_a, j));
 }
 
 /// Takes the normal impulse as given by `wanted`, clamped, and the friction that answers the slip with it; applies the change.
-template <int W>
+template <bool kRound, int W>
 PLAB_INLINE LaneVec<W> change_impulse(const Packet<W>& packet, const Frame<W>& frame, PacketPoint<W>& p, const LaneVec<W>& u,
                                       const Lanes<W>& wanted, double relaxation, double friction_scale, Velocities<W>& a, Velocities<W>& b)
 {
@@ -133,7 +143,7 @@ PLAB_INLINE LaneVec<W> change_impulse(const Packet<W>& packet, const Frame<W>& f
     }
     p.impulse.x = x, p.impulse.y = y;
     const LaneVec<W> by = p.impulse - before;
-    push(packet, frame, p, by, a, b);
+    push<kRound>(packet, frame, p, by, a, b);
     return by;
 }
 
@@ -145,14 +155,14 @@ PLAB_INLINE void gather_point(const PacketPoint<W>& p, SoftPoint<W>& soft)
 }
 
 /// `number`: of the point in its packet.
-template <int W>
+template <bool kRound, int W>
 PLAB_INLINE void set_point_mobility(const Packet<W>& packet, const Frame<W>& frame, PacketPoint<W>& p, std::uint32_t number)
 {
     const LaneVec<W> a_x = cross(p.r_a, frame.t1), a_y = cross(p.r_a, frame.t2), a_z = cross(p.r_a, frame.n);
     const LaneVec<W> b_x = cross(p.r_b, frame.t1), b_y = cross(p.r_b, frame.t2), b_z = cross(p.r_b, frame.n);
-    const LaneVec<W> of_a_x = packet.inverse_inertia_a * a_x, of_a_y = packet.inverse_inertia_a * a_y;
-    const LaneVec<W> of_b_x = packet.inverse_inertia_b * b_x, of_b_y = packet.inverse_inertia_b * b_y;
-    const LaneVec<W> of_a_z = packet.inverse_inertia_a * a_z, of_b_z = packet.inverse_inertia_b * b_z;
+    const LaneVec<W> of_a_x = turned<kRound>(packet.inverse_inertia_a, a_x), of_a_y = turned<kRound>(packet.inverse_inertia_a, a_y);
+    const LaneVec<W> of_b_x = turned<kRound>(packet.inverse_inertia_b, b_x), of_b_y = turned<kRound>(packet.inverse_inertia_b, b_y);
+    const LaneVec<W> of_a_z = turned<kRound>(packet.inverse_inertia_a, a_z), of_b_z = turned<kRound>(packet.inverse_inertia_b, b_z);
     const Lanes<W> mass = packet.inverse_mass_a + packet.inverse_mass_b;
     const Lanes<W> K_xx = mass + dot(a_x, of_a_x) + dot(b_x, of_b_x), K_yy = mass + dot(a_y, of_a_y) + dot(b_y, of_b_y);
     const Lanes<W> K_xy = dot(a_x, of_a_y) + dot(b_x, of_b_y), K_zz = mass + dot(a_z, of_a_z) + dot(b_z, of_b_z);
@@ -163,11 +173,11 @@ PLAB_INLINE void set_point_mobility(const Packet<W>& packet, const Frame<W>& fra
     p.inverse_slip = size > 0 ? one / slip : Lanes<W>{};
 }
 
-template <int W>
+template <bool kRound, int W>
 PLAB_INLINE void set_packet_mobility(PacketList<W>& list, const Packet<W>& packet)
 {
     const Frame<W> frame(packet);
-    for (std::uint32_t k = 0; k < packet.count; ++k) set_point_mobility(packet, frame, list.points()[packet.first + k], k);
+    for (std::uint32_t k = 0; k < packet.count; ++k) set_point_mobility<kRound>(packet, frame, list.points()[packet.first + k], k);
 }
 
 /// Whether one(mover) is true for some mover of a packet.
@@ -207,13 +217,13 @@ PLAB_INLINE void follow_packet(PacketList<W>& list, Packet<W>& packet, std::span
     }
     if (!packet.turning) return;
     take_inertia<W>(movers, packet.a, packet.inverse_inertia_a, none), take_inertia<W>(movers, packet.b, packet.inverse_inertia_b, none);
-    if (any_mover(packet, movers, [](const Mover& m) { return m.turned; })) set_packet_mobility(list, packet);
+    if (any_mover(packet, movers, [](const Mover& m) { return m.turned; })) set_packet_mobility<false>(list, packet);
 }
 
 /// One packet of sweep_hard(). Raises `largest` to the largest change, m/s, if that is measured.
-template <int W>
-PLAB_INLINE void sweep_packet(PacketList<W>& list, const Packet<W>& packet, std::span<Mover> movers, const HardSweep& how,
-                              Lanes<W>& largest, Mover& none)
+template <bool kRound, int W>
+PLAB_INLINE void sweep_packet_of(PacketList<W>& list, const Packet<W>& packet, std::span<Mover> movers, const HardSweep& how,
+                                 Lanes<W>& largest, Mover& none)
 {
     Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
     const Frame<W> frame(packet);
@@ -223,12 +233,50 @@ PLAB_INLINE void sweep_packet(PacketList<W>& list, const Packet<W>& packet, std:
         PacketPoint<W>& p = list.points()[i];
         const LaneVec<W> u = velocity_of(frame, p, list.given(), i, a, b);
         const Lanes<W> wanted = p.impulse.z - how.relaxation * (u.z - p.least) * p.inverse_normal;
-        const LaneVec<W> change = change_impulse(packet, frame, p, u, wanted, how.relaxation, how.friction_scale, a, b);
+        const LaneVec<W> change = change_impulse<kRound>(packet, frame, p, u, wanted, how.relaxation, how.friction_scale, a, b);
         if (!how.measures) continue;
         // What has no mobility does not change.
         const Lanes<W> least = Lanes<W>{} + 1e-300;
         largest = larger(largest, size_of(change.z) / larger(p.inverse_normal, least));
         largest = larger(largest, larger(size_of(change.x), size_of(change.y)) / larger(p.inverse_slip, least));
+    }
+    scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
+}
+
+template <int W>
+PLAB_INLINE void sweep_packet(PacketList<W>& list, const Packet<W>& packet, std::span<Mover> movers, const HardSweep& how,
+                              Lanes<W>& largest, Mover& none)
+{
+    packet.turning ? sweep_packet_of<false>(list, packet, movers, how, largest, none)
+                   : sweep_packet_of<true>(list, packet, movers, how, largest, none);
+}
+
+/// One packet of sweep_soft().
+template <bool kRound, int W>
+PLAB_INLINE void soften_packet(PacketList<W>& list, const Packet<W>& packet, std::span<Mover> movers, const SoftSweep& how,
+                               std::span<SoftPoint<W>> soft, Mover& none)
+{
+    const Lanes<W> zero{};
+    const auto one_sided = packet.one_sided > 0;
+    const auto choose = [&](double single, double both) __attribute__((always_inline)) { return one_sided ? zero + single : zero + both; };
+    const Lanes<W> bias_rate = choose(how.one_sided.bias_rate, how.between.bias_rate);
+    const Lanes<W> mass_scale = choose(how.one_sided.mass_scale, how.between.mass_scale);
+    const Lanes<W> impulse_scale = choose(how.one_sided.impulse_scale, how.between.impulse_scale);
+    Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
+    const Frame<W> frame(packet);
+    for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+    {
+        PacketPoint<W>& p = list.points()[i];
+        if (how.gathers) gather_point(p, soft[i]);
+        const LaneVec<W> u = velocity_of(frame, p, list.given(), i, a, b);
+        // A gap may close, and is hard; overlap is pushed out at a limited speed.
+        const Lanes<W> depth = soft[i].depth;
+        const auto gap = depth < 0;
+        const Lanes<W> least = gap ? depth * how.rate : smaller(bias_rate * depth, zero + how.push_speed);
+        const Lanes<W> scale = gap ? zero + 1.0 : mass_scale, leak = gap ? zero : impulse_scale;
+        const Lanes<W> wanted = p.impulse.z - scale * (u.z - least) * p.inverse_normal - leak * p.impulse.z;
+        (void)change_impulse<kRound>(packet, frame, p, u, wanted, 1.0, 1.0, a, b);
+        soft[i].greatest = larger(soft[i].greatest, p.impulse.z);
     }
     scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
 }
@@ -250,7 +298,7 @@ void set_mobility(PacketList<W>& list, std::span<const Mover> movers, std::size_
             take_inertia<W>(movers, packet.a, packet.inverse_inertia_a, none);
             take_inertia<W>(movers, packet.b, packet.inverse_inertia_b, none);
             packet.turning = any_mover(packet, movers, [](const Mover& m) { return !m.isotropic; });
-            set_packet_mobility(list, packet);
+            packet.turning ? set_packet_mobility<false>(list, packet) : set_packet_mobility<true>(list, packet);
         }
     });
 }
@@ -347,35 +395,9 @@ void sweep_soft(PacketList<W>& list, std::span<Mover> movers, const SoftSweep& h
     {
         Mover none;
         run_lanes<W>(PLAB_LANES {
-            const Lanes<W> zero{};
             for (const Packet<W>& packet : list.packets().subspan(begin, end - begin))
-            {
-                const auto one_sided = packet.one_sided > 0;
-                const auto choose = [&](double single, double both) __attribute__((always_inline))
-                {
-                    return one_sided ? zero + single : zero + both;
-                };
-                const Lanes<W> bias_rate = choose(how.one_sided.bias_rate, how.between.bias_rate);
-                const Lanes<W> mass_scale = choose(how.one_sided.mass_scale, how.between.mass_scale);
-                const Lanes<W> impulse_scale = choose(how.one_sided.impulse_scale, how.between.impulse_scale);
-                Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
-                const Frame<W> frame(packet);
-                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
-                {
-                    PacketPoint<W>& p = list.points()[i];
-                    if (how.gathers) gather_point(p, soft[i]);
-                    const LaneVec<W> u = velocity_of(frame, p, list.given(), i, a, b);
-                    // A gap may close, and is hard; overlap is pushed out at a limited speed.
-                    const Lanes<W> depth = soft[i].depth;
-                    const auto gap = depth < 0;
-                    const Lanes<W> least = gap ? depth * how.rate : smaller(bias_rate * depth, zero + how.push_speed);
-                    const Lanes<W> scale = gap ? zero + 1.0 : mass_scale, leak = gap ? zero : impulse_scale;
-                    const Lanes<W> wanted = p.impulse.z - scale * (u.z - least) * p.inverse_normal - leak * p.impulse.z;
-                    (void)change_impulse(packet, frame, p, u, wanted, 1.0, 1.0, a, b);
-                    soft[i].greatest = larger(soft[i].greatest, p.impulse.z);
-                }
-                scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
-            }
+                packet.turning ? soften_packet<false>(list, packet, movers, how, soft, none)
+                               : soften_packet<true>(list, packet, movers, how, soft, none);
         });
     };
     list.by_colour(part);

@@ -1,6 +1,7 @@
 /// What impulses act on: the movers of an island, and its contact points. In the notation of problem.h.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "plab/lanes.h"
@@ -11,8 +12,11 @@ namespace plab::managers
 
 using namespace lanes;  // NOLINT: the names of this folder's inner loops
 
-/// What the innermost loops need of a body, or of a shaft (which uses w.x alone).
-struct Mover
+/// A line of a cache, bytes.
+inline constexpr std::size_t kCacheLine = 64;
+
+/// What the innermost loops need of a body, or of a shaft (which uses w.x alone). Sweeps read and write one line of it, the velocities.
+struct alignas(kCacheLine) Mover
 {
     PaddedVec3 v;  ///< m/s
     PaddedVec3 w;  ///< rad/s, in W; a shaft: x only
@@ -23,7 +27,7 @@ struct Mover
 };
 
 /// Velocities of a mover.
-struct MoverSpeeds
+struct alignas(kCacheLine) MoverSpeeds
 {
     PaddedVec3 v;  ///< m/s
     PaddedVec3 w;  ///< rad/s, W
@@ -46,7 +50,7 @@ struct Anchor
 inline double twice_energy(const Anchor& m, const Vec3& v, const Vec3& w) { return m.mass * length_squared(v) + dot(w, m.inertia * w); }
 
 /// The sum of the impulses on a mover.
-struct Momentum
+struct alignas(kCacheLine) Momentum
 {
     PaddedVec3 push;  ///< N s
     PaddedVec3 turn;  ///< N m s

@@ -353,11 +353,14 @@ int SoftIsland<W>::step_hard()
 template <int W>
 int SoftIsland<W>::remove_gained_energy()
 {
-    constexpr int kSweeps = 2;
+    constexpr int kSweeps = 1;
     if (!gains(energy_)) return 0;
     const Swept done = sweep(problem_, contacts_, {kSweeps});  // with the targets that move() has set
-    apply();
-    if (gains() && !scale_down()) return done.sweeps + step_hard();
+    if (gains())
+    {
+        apply();
+        if (gains() && !scale_down()) return done.sweeps + step_hard();
+    }
     write();
     return done.sweeps;
 }

@@ -266,7 +266,8 @@ void ContactCache::drop_if(Ends ends)
         }
         else if (ends(pairs_[i]))
             continue;
-        if (kept != i) std::swap(pairs_[kept], pairs_[i]), keys_[kept] = keys_[i];
+        // The blocks of pairs that are dropped gather behind the others (PointBlock::operator=).
+        if (kept != i) pairs_[kept] = std::move(pairs_[i]), keys_[kept] = keys_[i];
         ++kept;
     }
     shrink(kept);

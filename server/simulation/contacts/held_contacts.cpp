@@ -169,13 +169,16 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
     share(islands,
           [&](HeldIsland& island)
           {
-              island.contacts.resize(island.contact_count()), island.slots.resize(island.contact_count());
+              if (island.contact_memory.size() < island.contact_count()) island.contact_memory.resize(island.contact_count());
+              island.contacts = std::span(island.contact_memory).first(island.contact_count());
+              island.slots.resize(island.contact_count());
               for_parts(&step_.workers, island.runs.size(), kRunPart,
                         [&](std::size_t begin, std::size_t end)
                         {
                             for (std::size_t k = begin; k < end; ++k)
                             {
                                 if (k + PairState::kAhead < end) island.runs[k + PairState::kAhead].pair->prefetch();
+                                if (k + kRunsAhead < end) prefetch(island, island.runs[k + kRunsAhead]);
                                 fill_run(island, island.runs[k], h, trial);
                             }
                         });
@@ -193,6 +196,17 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
             take_known(r.island->contacts[i], f.contact, contacts_.cache().contact_of(*r.run->pair, f), trial);
             r.island->slots[i] = f.slot;
         }
+}
+
+/// Asks for the memory between which fill_run() will copy contacts.
+void HeldIslands::prefetch(const HeldIsland& island, const Run& run)
+{
+    constexpr std::size_t kLine = 64;
+    const std::size_t count = run.end - run.first;
+    const char* const from = reinterpret_cast<const char*>(run.found);
+    for (std::size_t i = 0; i < count * sizeof(FoundContact); i += kLine) __builtin_prefetch(from + i, 0);
+    const char* const to = reinterpret_cast<const char*>(island.contacts.data() + run.first);
+    for (std::size_t i = 0; i < count * sizeof(Contact); i += kLine) __builtin_prefetch(to + i, 1);
 }
 
 void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
