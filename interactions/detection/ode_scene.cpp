@@ -1,6 +1,7 @@
 #include "ode_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -29,6 +30,21 @@ double further_pairs_of(const Collider& a, const Collider& b, std::size_t triang
     constexpr double kVertex = 1.0 / 64;
     const double vertices = kVertex * static_cast<double>(a.hull().vertices.size() + b.hull().vertices.size());
     return vertices + static_cast<double>(triangles) * (1 + vertices);
+}
+
+using FeatureOrder = std::array<std::uint8_t, ContactPoints::kCapacity>;
+
+/// The places of contact points in the order of their features, by insertion: mostly there are four of them.
+FeatureOrder by_feature(std::span<const ContactPoint> points)
+{
+    FeatureOrder order;
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+        std::size_t at = i;
+        for (; at > 0 && points[order[at - 1]].feature > points[i].feature; --at) order[at] = order[at - 1];
+        order[at] = static_cast<std::uint8_t>(i);
+    }
+    return order;
 }
 
 }  // namespace
@@ -226,8 +242,11 @@ void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shi
     contact_points.clear(margin_);
     collide(ca, X_a, cb, X_b, contact_points);
     narrow.further_pairs += further_pairs_of(ca, cb, contact_points.triangles()) + (narrow.parts_met++ > 0 ? 1.0 : 0.0);
-    for (const ContactPoint& contact_point : contact_points.all())
+    const std::span<const ContactPoint> all = contact_points.all();
+    const FeatureOrder order = by_feature(all);
+    for (std::size_t k = 0; k < all.size(); ++k)
     {
+        const ContactPoint& contact_point = all[order[k]];
         ContactPoint& at = narrow.found.emplace_back(MemberContact{pa.member, pb.member, contact_point}).at;
         at.point += origin;
         at.feature = feature_of(part_a - ma.first_part, part_b - mb.first_part, contact_point.feature);

@@ -16,15 +16,29 @@ constexpr std::size_t kMostOfPair = 16;     // points: more of them are rare, an
 }  // namespace
 
 template <int W>
-void PacketList<W>::find_pairs(std::span<const Point> from)
+void PacketList<W>::begin(Workers* workers)
 {
-    pairs_.clear();
-    for (std::uint32_t i = 0; i < from.size(); ++i)
-    {
-        if (pairs_.empty() || pairs_.back().a != from[i].a || pairs_.back().b != from[i].b)
-            pairs_.push_back({from[i].a, from[i].b, i, 0, 0});
-        ++pairs_.back().count;
-    }
+    workers_ = workers;
+    added_.clear();
+    given_.clear();
+}
+
+template <int W>
+void PacketList<W>::add(std::uint32_t a, std::uint32_t b, const Vec3& normal)
+{
+    const std::uint32_t next = added_.empty() ? 0 : added_.back().first + added_.back().count;
+    if (added_.empty() || added_.back().a != a || added_.back().b != b || last_normal_ != normal)
+        added_.push_back({a, b, next, 0, 0}), last_normal_ = normal;
+    ++added_.back().count;
+}
+
+/// Whether pairs_ and the packets are those of added_. The pairs alone decide on packets and colours.
+template <int W>
+bool PacketList<W>::is_arranged(std::size_t movers) const
+{
+    return movers == arranged_movers_ &&
+           std::equal(added_.begin(), added_.end(), pairs_.begin(), pairs_.end(),
+                      [](const Pair& x, const Pair& y) { return x.a == y.a && x.b == y.b && x.first == y.first && x.count == y.count; });
 }
 
 /// Gives each pair the first colour that neither of its movers has yet.
@@ -65,40 +79,20 @@ void PacketList<W>::order_pairs()
 template <int W>
 void PacketList<W>::add_packet(std::uint32_t pair, std::uint32_t pairs)
 {
-    Packet<W>& packet = packets_.emplace_back();
+    const auto number = static_cast<std::uint32_t>(packet_count_++);
+    if (packets_.size() < packet_count_) packets_.emplace_back();
+    // Masses and inertias are written for all lanes, others only for those in use.
+    Packet<W>& packet = packets_[number];
     packet.a.fill(kNoIndex), packet.b.fill(kNoIndex);
-    packet.first = static_cast<std::uint32_t>(point_count_);
+    packet.n = packet.t1 = {}, packet.one_sided = packet.points = Lanes<W>{};
+    packet.first = static_cast<std::uint32_t>(point_count_), packet.count = 0;
     first_pair_.push_back(pair);
     for (const std::uint32_t p : std::span(order_).subspan(pair, pairs)) packet.count = std::max(packet.count, pairs_[p].count);
     point_count_ += packet.count;
     for (int l = 0; l < static_cast<int>(pairs); ++l)
     {
         const Pair& of = pairs_[order_[pair + static_cast<std::uint32_t>(l)]];
-        for (std::uint32_t k = 0; k < of.count; ++k) places_[of.first + k] = {packet.first + k, l};
-    }
-}
-
-/// Writes a packet's sides and its points.
-template <int W>
-void PacketList<W>::fill(std::size_t number, std::span<const Point> from)
-{
-    Packet<W>& packet = packets_[number];
-    const std::span<const std::uint32_t> pairs = pairs_of(number);
-    // Pairs are in the order of falling counts. Lanes that stay empty must be zero; all others are written.
-    const std::uint32_t full = pairs.size() == W ? pairs_[pairs.back()].count : 0;
-    for (std::uint32_t i = packet.first + full; i < packet.first + packet.count; ++i) points_[i] = {};
-    for (int l = 0; l < static_cast<int>(pairs.size()); ++l)
-    {
-        const Pair& pair = pairs_[pairs[static_cast<std::size_t>(l)]];
-        packet.a[static_cast<std::size_t>(l)] = pair.a, packet.b[static_cast<std::size_t>(l)] = pair.b;
-        set_lane(packet.one_sided, l, pair.a == kNoIndex || pair.b == kNoIndex ? 1.0 : 0.0);
-        for (std::uint32_t k = 0; k < pair.count; ++k)
-        {
-            const Point& p = from[pair.first + k];
-            PacketPoint<W>& to = points_[packet.first + k];
-            set(to.n, l, p.n), set(to.t1, l, p.t1), set(to.r_a, l, p.r_a), set(to.r_b, l, p.r_b);
-            take(p, to, l);
-        }
+        for (std::uint32_t k = 0; k < of.count; ++k) places_[of.first + k] = {number, packet.first + k, l};
     }
 }
 
@@ -107,17 +101,36 @@ template <int W>
 void PacketList<W>::add_section(bool one_colour)
 {
     if (!one_colour && !sections_.empty() && !sections_.back().one_colour) return;
-    sections_.push_back({packets_.size(), one_colour});
+    sections_.push_back({packet_count_, one_colour});
 }
 
 template <int W>
-void PacketList<W>::load(std::span<const Point> from, std::size_t movers, Workers* workers)
+void PacketList<W>::add_packets_by_colour()
 {
-    packets_.clear(), sections_.clear(), first_pair_.clear();
-    point_count_ = 0;
-    workers_ = workers;
-    places_.resize(from.size());
-    find_pairs(from);
+    for (std::size_t i = 0; i < order_.size();)
+    {
+        const std::uint32_t colour = pairs_[order_[i]].colour;
+        if (i == 0 || pairs_[order_[i - 1]].colour != colour)
+        {
+            std::size_t last = i;
+            while (last < order_.size() && pairs_[order_[last]].colour == colour) ++last;
+            add_section(colour < kMostColours && last - i > W * kPart);
+        }
+        std::size_t end = i + 1;
+        while (end < order_.size() && end < i + W && colour < kMostColours && pairs_[order_[end]].colour == colour) ++end;
+        add_packet(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(end - i));
+        i = end;
+    }
+}
+
+template <int W>
+void PacketList<W>::arrange(std::size_t movers)
+{
+    if (is_arranged(movers)) return;
+    pairs_ = added_, arranged_movers_ = movers;
+    sections_.clear(), first_pair_.clear();
+    packet_count_ = point_count_ = 0;
+    places_.resize(pairs_.empty() ? 0 : pairs_.back().first + pairs_.back().count);
     if constexpr (W == 1)
     {
         add_section(false);
@@ -128,49 +141,41 @@ void PacketList<W>::load(std::span<const Point> from, std::size_t movers, Worker
     {
         colour_pairs(movers);
         order_pairs();
-        for (std::size_t i = 0; i < order_.size();)
-        {
-            const std::uint32_t colour = pairs_[order_[i]].colour;
-            if (i == 0 || pairs_[order_[i - 1]].colour != colour)
-            {
-                std::size_t last = i;
-                while (last < order_.size() && pairs_[order_[last]].colour == colour) ++last;
-                add_section(colour < kMostColours && last - i > W * kPart);
-            }
-            std::size_t end = i + 1;
-            while (end < order_.size() && end < i + W && colour < kMostColours && pairs_[order_[end]].colour == colour) ++end;
-            add_packet(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(end - i));
-            i = end;
-        }
+        add_packets_by_colour();
     }
     points_.resize(point_count_);
-    in_parts(
-        [&](std::size_t begin, std::size_t end)
+}
+
+template <int W>
+void PacketList<W>::load(std::span<const Point> from, std::size_t movers, Workers* workers)
+{
+    begin(workers);
+    for (const Point& p : from) add(p.a, p.b, p.n);
+    arrange(movers);
+    const auto take = [&](Packet<W>& packet, std::uint32_t first, std::uint32_t count, int l)
+    {
+        set_lane(packet.n, l, from[first].n), set_lane(packet.t1, l, from[first].t1);
+        for (std::uint32_t k = 0; k < count; ++k)
         {
-            for (std::size_t k = begin; k < end; ++k) fill(k, from);
-        });
+            const Point& p = from[first + k];
+            PacketPoint<W>& to = points_[packet.first + k];
+            set_lane(to.r_a, l, p.r_a), set_lane(to.r_b, l, p.r_b), set_lane(to.impulse, l, p.impulse);
+            set_lane(to.friction, l, p.friction), set_lane(to.least, l, p.least);
+        }
+    };
+    fill(
+        take, [](std::uint32_t) {}, [](std::size_t, std::size_t) {});
+    for (std::size_t i = 0; i < from.size(); ++i)
+        if (from[i].given != Vec3{}) set_given(i, from[i].given);
 }
 
 template <int W>
 void PacketList<W>::reserve(std::size_t points, std::size_t movers)
 {
-    packets_.reserve(points), points_.reserve(points), places_.reserve(points), pairs_.reserve(points);
+    packets_.reserve(points), points_.reserve(points), given_.reserve(points), places_.reserve(points);
+    added_.reserve(points), pairs_.reserve(points);
     order_.reserve(points), first_pair_.reserve(points), sections_.reserve(W == 1 ? 1 : 2 * kMostColours);
     if (W > 1) colours_of_mover_.reserve(movers), starts_.reserve((kMostColours + 1) * kMostOfPair + 1);
-}
-
-/// Takes what changes between sweeps of one step.
-template <int W>
-void PacketList<W>::take(const Point& p, PacketPoint<W>& to, int l)
-{
-    set(to.given, l, p.given), set(to.impulse, l, p.impulse);
-    set_lane(to.friction, l, p.friction), set_lane(to.least, l, p.least);
-}
-
-template <int W>
-void PacketList<W>::reload(std::span<const Point> from)
-{
-    for (std::size_t i = 0; i < from.size(); ++i) take(from[i], at(i), places_[i].lane);
 }
 
 template <int W>

@@ -1,6 +1,7 @@
 // The loops over packets of contact points. Each is written once, for any number of lanes; loops over four lanes are compiled twice, for
-// processors with and without AVX2, with the same results (lanes.h).
+// processors with and without AVX2, with the same results (plab/lanes.h).
 #include <algorithm>
+#include <atomic>
 
 #include "contact_packets.h"
 #include "movers.h"
@@ -9,32 +10,6 @@ namespace plab::managers
 {
 namespace
 {
-
-#if defined(__x86_64__)
-template <class Work>
-__attribute__((target("avx2"))) void run_with_avx2(const Work& work)
-{
-    work();
-}
-
-bool has_avx2()
-{
-    static const bool has = __builtin_cpu_supports("avx2") != 0;
-    return has;
-}
-#endif
-
-/// `work` must be an always-inline lambda, which then is compiled for the instruction set of the function that it is inlined into.
-template <int W, class Work>
-void run(const Work& work)
-{
-#if defined(__x86_64__)
-    if constexpr (W == 4)
-        if (has_avx2()) return run_with_avx2(work);
-#endif
-    work();
-}
-#define PLAB_LOOP [&]() __attribute__((always_inline))
 
 /// Velocities of the movers on one side of a packet.
 template <int W>
@@ -50,15 +25,15 @@ PLAB_INLINE T& at(std::span<T> all, std::uint32_t i, T& none)
     return i == kNoIndex ? none : all[i];
 }
 
-template <int W>
-PLAB_INLINE Velocities<W> gather(std::span<Mover> movers, const std::array<std::uint32_t, W>& which, Mover& none)
+template <int W, class Of>
+PLAB_INLINE Velocities<W> gather(std::span<Of> movers, const std::array<std::uint32_t, W>& which, Of& none)
 {
-    const Mover& m0 = at(movers, which[0], none);
+    const Of& m0 = at(movers, which[0], none);
     if constexpr (W == 1)
         return {gathered(m0.v), gathered(m0.w)};
     else
     {
-        const Mover &m1 = at(movers, which[1], none), &m2 = at(movers, which[2], none), &m3 = at(movers, which[3], none);
+        const Of &m1 = at(movers, which[1], none), &m2 = at(movers, which[2], none), &m3 = at(movers, which[3], none);
         return {gathered(m0.v, m1.v, m2.v, m3.v), gathered(m0.w, m1.w, m2.w, m3.w)};
     }
 }
@@ -110,18 +85,48 @@ PLAB_INLINE LaneVec<W> relative(const PacketPoint<W>& p, const Velocities<W>& a,
     return b.v + cross(b.w, p.r_b) - a.v - cross(a.w, p.r_a);
 }
 
+/// What the points of a packet have in common while they are swept.
 template <int W>
-PLAB_INLINE void push(const Packet<W>& packet, const PacketPoint<W>& p, const LaneVec<W>& t2, const LaneVec<W>& change, Velocities<W>& a,
+struct Frame
+{
+    LaneVec<W> n, t1, t2;
+
+    PLAB_INLINE explicit Frame(const Packet<W>& packet) : n(packet.n), t1(packet.t1), t2(cross(packet.n, packet.t1)) {}
+    PLAB_INLINE LaneVec<W> to_contact(const LaneVec<W>& v) const { return {dot(t1, v), dot(t2, v), dot(n, v)}; }
+    PLAB_INLINE LaneVec<W> to_world(const LaneVec<W>& v) const { return scaled(t1, v.x) + scaled(t2, v.y) + scaled(n, v.z); }
+};
+
+/// u, m/s. `given`: of all points of the list, or none.
+template <int W>
+PLAB_INLINE LaneVec<W> velocity_of(const Frame<W>& frame, const PacketPoint<W>& p, std::span<const LaneVec<W>> given, std::size_t i,
+                                   const Velocities<W>& a, const Velocities<W>& b)
+{
+    const LaneVec<W> u = frame.to_contact(relative(p, a, b));
+    return given.empty() ? u : u + given[i];
+}
+
+/// I^-1 v; `kRound`: the matrix is a number times the identity, and only its first element is read.
+template <bool kRound, int W>
+PLAB_INLINE LaneVec<W> turned(const LaneSymmetric<W>& inverse_inertia, const LaneVec<W>& v)
+{
+    if constexpr (kRound)
+        return scaled(v, inverse_inertia.xx);
+    else
+        return inverse_inertia * v;
+}
+
+template <bool kRound, int W>
+PLAB_INLINE void push(const Packet<W>& packet, const Frame<W>& frame, const PacketPoint<W>& p, const LaneVec<W>& change, Velocities<W>& a,
                       Velocities<W>& b)
 {
-    const LaneVec<W> j = scaled(p.t1, change.x) + scaled(t2, change.y) + scaled(p.n, change.z);
-    b.v = b.v + scaled(j, packet.inverse_mass_b), b.w = b.w + packet.inverse_inertia_b * cross(p.r_b, j);
-    a.v = a.v - scaled(j, packet.inverse_mass_a), a.w = a.w - packet.inverse_inertia_a * cross(p.r_a, j);
+    const LaneVec<W> j = frame.to_world(change);
+    b.v = b.v + scaled(j, packet.inverse_mass_b), b.w = b.w + turned<kRound>(packet.inverse_inertia_b, cross(p.r_b, j));
+    a.v = a.v - scaled(j, packet.inverse_mass_a), a.w = a.w - turned<kRound>(packet.inverse_inertia_a, cross(p.r_a, j));
 }
 
 /// Takes the normal impulse as given by `wanted`, clamped, and the friction that answers the slip with it; applies the change.
-template <int W>
-PLAB_INLINE LaneVec<W> change_impulse(const Packet<W>& packet, PacketPoint<W>& p, const LaneVec<W>& t2, const LaneVec<W>& u,
+template <bool kRound, int W>
+PLAB_INLINE LaneVec<W> change_impulse(const Packet<W>& packet, const Frame<W>& frame, PacketPoint<W>& p, const LaneVec<W>& u,
                                       const Lanes<W>& wanted, double relaxation, double friction_scale, Velocities<W>& a, Velocities<W>& b)
 {
     const LaneVec<W> before = p.impulse;
@@ -138,7 +143,7 @@ PLAB_INLINE LaneVec<W> change_impulse(const Packet<W>& packet, PacketPoint<W>& p
     }
     p.impulse.x = x, p.impulse.y = y;
     const LaneVec<W> by = p.impulse - before;
-    push(packet, p, t2, by, a, b);
+    push<kRound>(packet, frame, p, by, a, b);
     return by;
 }
 
@@ -149,74 +154,159 @@ PLAB_INLINE void gather_point(const PacketPoint<W>& p, SoftPoint<W>& soft)
     soft.greatest = larger(soft.greatest, p.impulse.z);
 }
 
-template <int W>
-PLAB_INLINE void set_point_mobility(const Packet<W>& packet, PacketPoint<W>& p)
+/// `number`: of the point in its packet.
+template <bool kRound, int W>
+PLAB_INLINE void set_point_mobility(const Packet<W>& packet, const Frame<W>& frame, PacketPoint<W>& p, std::uint32_t number)
 {
-    const LaneVec<W> t2 = cross(p.n, p.t1);
-    const LaneVec<W> a_x = cross(p.r_a, p.t1), a_y = cross(p.r_a, t2), a_z = cross(p.r_a, p.n);
-    const LaneVec<W> b_x = cross(p.r_b, p.t1), b_y = cross(p.r_b, t2), b_z = cross(p.r_b, p.n);
-    const LaneVec<W> of_a_x = packet.inverse_inertia_a * a_x, of_a_y = packet.inverse_inertia_a * a_y;
-    const LaneVec<W> of_b_x = packet.inverse_inertia_b * b_x, of_b_y = packet.inverse_inertia_b * b_y;
-    const LaneVec<W> of_a_z = packet.inverse_inertia_a * a_z, of_b_z = packet.inverse_inertia_b * b_z;
+    const LaneVec<W> a_x = cross(p.r_a, frame.t1), a_y = cross(p.r_a, frame.t2), a_z = cross(p.r_a, frame.n);
+    const LaneVec<W> b_x = cross(p.r_b, frame.t1), b_y = cross(p.r_b, frame.t2), b_z = cross(p.r_b, frame.n);
+    const LaneVec<W> of_a_x = turned<kRound>(packet.inverse_inertia_a, a_x), of_a_y = turned<kRound>(packet.inverse_inertia_a, a_y);
+    const LaneVec<W> of_b_x = turned<kRound>(packet.inverse_inertia_b, b_x), of_b_y = turned<kRound>(packet.inverse_inertia_b, b_y);
+    const LaneVec<W> of_a_z = turned<kRound>(packet.inverse_inertia_a, a_z), of_b_z = turned<kRound>(packet.inverse_inertia_b, b_z);
     const Lanes<W> mass = packet.inverse_mass_a + packet.inverse_mass_b;
     const Lanes<W> K_xx = mass + dot(a_x, of_a_x) + dot(b_x, of_b_x), K_yy = mass + dot(a_y, of_a_y) + dot(b_y, of_b_y);
     const Lanes<W> K_xy = dot(a_x, of_a_y) + dot(b_x, of_b_y), K_zz = mass + dot(a_z, of_a_z) + dot(b_z, of_b_z);
     p.K_xz = dot(a_x, of_a_z) + dot(b_x, of_b_z), p.K_yz = dot(a_y, of_a_z) + dot(b_y, of_b_z);
     const Lanes<W> mean = 0.5 * (K_xx + K_yy), half = 0.5 * (K_xx - K_yy), slip = mean + root(half * half + K_xy * K_xy);
-    const Lanes<W> one = Lanes<W>{} + 1.0;
-    p.inverse_normal = K_zz > 0 ? one / K_zz : Lanes<W>{};
-    p.inverse_slip = K_zz > 0 ? one / slip : Lanes<W>{};
+    const Lanes<W> one = Lanes<W>{} + 1.0, size = packet.points > number ? K_zz : Lanes<W>{};
+    p.inverse_normal = size > 0 ? one / K_zz : Lanes<W>{};
+    p.inverse_slip = size > 0 ? one / slip : Lanes<W>{};
+}
+
+template <bool kRound, int W>
+PLAB_INLINE void set_packet_mobility(PacketList<W>& list, const Packet<W>& packet)
+{
+    const Frame<W> frame(packet);
+    for (std::uint32_t k = 0; k < packet.count; ++k) set_point_mobility<kRound>(packet, frame, list.points()[packet.first + k], k);
+}
+
+/// Whether one(mover) is true for some mover of a packet.
+template <int W, class One>
+PLAB_INLINE bool any_mover(const Packet<W>& packet, std::span<const Mover> movers, const One& one)
+{
+    bool any = false;
+    for (std::size_t l = 0; l < W; ++l)
+        any = any || (packet.a[l] != kNoIndex && one(movers[packet.a[l]])) || (packet.b[l] != kNoIndex && one(movers[packet.b[l]]));
+    return any;
+}
+
+template <int W>
+PLAB_INLINE void take_inertia(std::span<const Mover> movers, const std::array<std::uint32_t, W>& which, LaneSymmetric<W>& inverse_inertia,
+                              const Mover& none)
+{
+    const auto of = [&](std::size_t l) __attribute__((always_inline))->const Mat3& { return at(movers, which[l], none).inverse_inertia; };
+    if constexpr (W == 1)
+        inverse_inertia = gathered(of(0));
+    else
+        inverse_inertia = gathered(of(0), of(1), of(2), of(3));
+}
+
+/// See follow_move().
+template <int W>
+PLAB_INLINE void follow_packet(PacketList<W>& list, Packet<W>& packet, std::span<const Mover> movers, const Moved& moved,
+                               std::span<SoftPoint<W>> soft, const Mover& none, const MoverSpeeds& still)
+{
+    const Velocities<W> a = gather<W>(moved.speeds, packet.a, still), b = gather<W>(moved.speeds, packet.b, still);
+    const std::span<const LaneVec<W>> given = list.given();
+    for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+    {
+        PacketPoint<W>& p = list.points()[i];
+        const Lanes<W> own = dot(packet.n, relative(p, a, b));
+        soft[i].depth = soft[i].depth - moved.h * (given.empty() ? own : own + given[i].z);
+        p.least = smaller(soft[i].depth, Lanes<W>{}) * moved.rate;
+    }
+    if (!packet.turning) return;
+    take_inertia<W>(movers, packet.a, packet.inverse_inertia_a, none), take_inertia<W>(movers, packet.b, packet.inverse_inertia_b, none);
+    if (any_mover(packet, movers, [](const Mover& m) { return m.turned; })) set_packet_mobility<false>(list, packet);
+}
+
+/// One packet of sweep_hard(). Raises `largest` to the largest change, m/s, if that is measured.
+template <bool kRound, int W>
+PLAB_INLINE void sweep_packet_of(PacketList<W>& list, const Packet<W>& packet, std::span<Mover> movers, const HardSweep& how,
+                                 Lanes<W>& largest, Mover& none)
+{
+    Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
+    const Frame<W> frame(packet);
+    for (std::uint32_t k = 0; k < packet.count; ++k)
+    {
+        const std::uint32_t i = packet.first + (how.backwards ? packet.count - 1 - k : k);
+        PacketPoint<W>& p = list.points()[i];
+        const LaneVec<W> u = velocity_of(frame, p, list.given(), i, a, b);
+        const Lanes<W> wanted = p.impulse.z - how.relaxation * (u.z - p.least) * p.inverse_normal;
+        const LaneVec<W> change = change_impulse<kRound>(packet, frame, p, u, wanted, how.relaxation, how.friction_scale, a, b);
+        if (!how.measures) continue;
+        // What has no mobility does not change.
+        const Lanes<W> least = Lanes<W>{} + 1e-300;
+        largest = larger(largest, size_of(change.z) / larger(p.inverse_normal, least));
+        largest = larger(largest, larger(size_of(change.x), size_of(change.y)) / larger(p.inverse_slip, least));
+    }
+    scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
+}
+
+template <int W>
+PLAB_INLINE void sweep_packet(PacketList<W>& list, const Packet<W>& packet, std::span<Mover> movers, const HardSweep& how,
+                              Lanes<W>& largest, Mover& none)
+{
+    packet.turning ? sweep_packet_of<false>(list, packet, movers, how, largest, none)
+                   : sweep_packet_of<true>(list, packet, movers, how, largest, none);
+}
+
+/// One packet of sweep_soft().
+template <bool kRound, int W>
+PLAB_INLINE void soften_packet(PacketList<W>& list, const Packet<W>& packet, std::span<Mover> movers, const SoftSweep& how,
+                               std::span<SoftPoint<W>> soft, Mover& none)
+{
+    const Lanes<W> zero{};
+    const auto one_sided = packet.one_sided > 0;
+    const auto choose = [&](double single, double both) __attribute__((always_inline)) { return one_sided ? zero + single : zero + both; };
+    const Lanes<W> bias_rate = choose(how.one_sided.bias_rate, how.between.bias_rate);
+    const Lanes<W> mass_scale = choose(how.one_sided.mass_scale, how.between.mass_scale);
+    const Lanes<W> impulse_scale = choose(how.one_sided.impulse_scale, how.between.impulse_scale);
+    Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
+    const Frame<W> frame(packet);
+    for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+    {
+        PacketPoint<W>& p = list.points()[i];
+        if (how.gathers) gather_point(p, soft[i]);
+        const LaneVec<W> u = velocity_of(frame, p, list.given(), i, a, b);
+        // A gap may close, and is hard; overlap is pushed out at a limited speed.
+        const Lanes<W> depth = soft[i].depth;
+        const auto gap = depth < 0;
+        const Lanes<W> least = gap ? depth * how.rate : smaller(bias_rate * depth, zero + how.push_speed);
+        const Lanes<W> scale = gap ? zero + 1.0 : mass_scale, leak = gap ? zero : impulse_scale;
+        const Lanes<W> wanted = p.impulse.z - scale * (u.z - least) * p.inverse_normal - leak * p.impulse.z;
+        (void)change_impulse<kRound>(packet, frame, p, u, wanted, 1.0, 1.0, a, b);
+        soft[i].greatest = larger(soft[i].greatest, p.impulse.z);
+    }
+    scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
 }
 
 }  // namespace
 
 template <int W>
-void set_mobility(PacketList<W>& list, std::span<const Mover> movers)
+void set_mobility(PacketList<W>& list, std::span<const Mover> movers, std::size_t begin, std::size_t end)
 {
-    const auto all_parts = [&](const auto& loop)
+    const Mover none;
+    const auto take_mass = [&](const std::array<std::uint32_t, W>& which, Lanes<W>& inverse_mass)
     {
-        list.in_parts(
-            [&](std::size_t begin, std::size_t end)
-            {
-                for (Packet<W>& packet : list.packets().subspan(begin, end - begin)) loop(packet);
-            });
+        for (int l = 0; l < W; ++l) set_lane(inverse_mass, l, at(movers, which[static_cast<std::size_t>(l)], none).inverse_mass);
     };
-    all_parts([](Packet<W>& packet) { packet.turning = true; });
-    refresh_mobility(list, movers);
-    const auto turns = [&](std::uint32_t mover) { return mover != kNoIndex && !movers[mover].isotropic; };
-    all_parts(
-        [&](Packet<W>& packet)
-        { packet.turning = std::any_of(packet.a.begin(), packet.a.end(), turns) || std::any_of(packet.b.begin(), packet.b.end(), turns); });
+    run_lanes<W>(PLAB_LANES {
+        for (Packet<W>& packet : list.packets().subspan(begin, end - begin))
+        {
+            take_mass(packet.a, packet.inverse_mass_a), take_mass(packet.b, packet.inverse_mass_b);
+            take_inertia<W>(movers, packet.a, packet.inverse_inertia_a, none);
+            take_inertia<W>(movers, packet.b, packet.inverse_inertia_b, none);
+            packet.turning = any_mover(packet, movers, [](const Mover& m) { return !m.isotropic; });
+            packet.turning ? set_packet_mobility<false>(list, packet) : set_packet_mobility<true>(list, packet);
+        }
+    });
 }
 
 template <int W>
-void refresh_mobility(PacketList<W>& list, std::span<const Mover> movers)
+void set_mobility(PacketList<W>& list, std::span<const Mover> movers)
 {
-    const auto take = [&](const std::array<std::uint32_t, W>& which, Lanes<W>& inverse_mass, LaneSymmetric<W>& inverse_inertia)
-    {
-        for (int l = 0; l < W; ++l)
-        {
-            const std::uint32_t i = which[static_cast<std::size_t>(l)];
-            if (i == kNoIndex) continue;
-            const Mat3& I = movers[i].inverse_inertia;
-            set_lane(inverse_mass, l, movers[i].inverse_mass);
-            set_lane(inverse_inertia.xx, l, I(0, 0)), set_lane(inverse_inertia.xy, l, I(0, 1)), set_lane(inverse_inertia.xz, l, I(0, 2));
-            set_lane(inverse_inertia.yy, l, I(1, 1)), set_lane(inverse_inertia.yz, l, I(1, 2)), set_lane(inverse_inertia.zz, l, I(2, 2));
-        }
-    };
-    const auto refresh = [&](std::size_t begin, std::size_t end)
-    {
-        run<W>(PLAB_LOOP {
-            for (Packet<W>& packet : list.packets().subspan(begin, end - begin))
-            {
-                if (!packet.turning) continue;
-                take(packet.a, packet.inverse_mass_a, packet.inverse_inertia_a);
-                take(packet.b, packet.inverse_mass_b, packet.inverse_inertia_b);
-                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i) set_point_mobility(packet, list.points()[i]);
-            }
-        });
-    };
-    list.in_parts(refresh);
+    list.in_parts([&](std::size_t begin, std::size_t end) { set_mobility(list, movers, begin, end); });
 }
 
 template <int W>
@@ -225,14 +315,15 @@ void sum_impulses(const PacketList<W>& list, std::span<Momentum> sums)
     const auto part = [&](std::size_t begin, std::size_t end)
     {
         Momentum none;
-        run<W>(PLAB_LOOP {
+        run_lanes<W>(PLAB_LANES {
             for (const Packet<W>& packet : list.packets().subspan(begin, end - begin))
             {
+                const Frame<W> frame(packet);
                 LaneVec<W> push, turn_a, turn_b;
                 for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
                 {
                     const PacketPoint<W>& p = list.points()[i];
-                    const LaneVec<W> j = scaled(p.t1, p.impulse.x) + scaled(cross(p.n, p.t1), p.impulse.y) + scaled(p.n, p.impulse.z);
+                    const LaneVec<W> j = frame.to_world(p.impulse);
                     push = push + j, turn_a = turn_a + cross(p.r_a, j), turn_b = turn_b + cross(p.r_b, j);
                 }
                 const LaneVec<W> zero;
@@ -253,26 +344,9 @@ double sweep_hard(PacketList<W>& list, std::span<Mover> movers, const HardSweep&
     {
         Lanes<W> largest{};
         Mover none;
-        run<W>(PLAB_LOOP {
+        run_lanes<W>(PLAB_LANES {
             for (std::size_t k = begin; k < end; ++k)
-            {
-                const Packet<W>& packet = list.packets()[how.backwards ? begin + end - 1 - k : k];
-                Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
-                for (std::uint32_t i = 0; i < packet.count; ++i)
-                {
-                    PacketPoint<W>& p = list.points()[packet.first + (how.backwards ? packet.count - 1 - i : i)];
-                    const LaneVec<W> t2 = cross(p.n, p.t1), u_W = relative(p, a, b);
-                    const LaneVec<W> u{dot(p.t1, u_W) + p.given.x, dot(t2, u_W) + p.given.y, dot(p.n, u_W) + p.given.z};
-                    const Lanes<W> wanted = p.impulse.z - how.relaxation * (u.z - p.least) * p.inverse_normal;
-                    const LaneVec<W> change = change_impulse(packet, p, t2, u, wanted, how.relaxation, how.friction_scale, a, b);
-                    if (!how.measures) continue;
-                    // An empty lane has no mobility and no change.
-                    const Lanes<W> least = Lanes<W>{} + 1e-300;
-                    largest = larger(largest, size_of(change.z) / larger(p.inverse_normal, least));
-                    largest = larger(largest, larger(size_of(change.x), size_of(change.y)) / larger(p.inverse_slip, least));
-                }
-                scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
-            }
+                sweep_packet(list, list.packets()[how.backwards ? begin + end - 1 - k : k], movers, how, largest, none);
         });
         for (int l = 0; l < W; ++l) raise_to(most, lane(largest, l));
     };
@@ -281,40 +355,18 @@ double sweep_hard(PacketList<W>& list, std::span<Mover> movers, const HardSweep&
 }
 
 template <int W>
-void sweep_soft(PacketList<W>& list, std::span<Mover> movers, const SoftSweep& how, std::span<SoftPoint<W>> soft)
+void follow_move_and_sweep(PacketList<W>& list, std::span<Mover> movers, const Moved& moved, std::span<SoftPoint<W>> soft)
 {
     const auto part = [&](std::size_t begin, std::size_t end)
     {
+        Lanes<W> largest{};
         Mover none;
-        run<W>(PLAB_LOOP {
-            const Lanes<W> zero{};
+        const MoverSpeeds still;
+        run_lanes<W>(PLAB_LANES {
             for (Packet<W>& packet : list.packets().subspan(begin, end - begin))
             {
-                const auto one_sided = packet.one_sided > 0;
-                const auto choose = [&](double single, double both) __attribute__((always_inline))
-                {
-                    return one_sided ? zero + single : zero + both;
-                };
-                const Lanes<W> bias_rate = choose(how.one_sided.bias_rate, how.between.bias_rate);
-                const Lanes<W> mass_scale = choose(how.one_sided.mass_scale, how.between.mass_scale);
-                const Lanes<W> impulse_scale = choose(how.one_sided.impulse_scale, how.between.impulse_scale);
-                Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
-                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
-                {
-                    PacketPoint<W>& p = list.points()[i];
-                    if (how.gathers) gather_point(p, soft[i]);
-                    const LaneVec<W> t2 = cross(p.n, p.t1), u_W = relative(p, a, b);
-                    const LaneVec<W> u{dot(p.t1, u_W) + p.given.x, dot(t2, u_W) + p.given.y, dot(p.n, u_W) + p.given.z};
-                    // A gap may close, and is hard; overlap is pushed out at a limited speed.
-                    const Lanes<W> depth = soft[i].depth;
-                    const auto gap = depth < 0;
-                    const Lanes<W> least = gap ? depth * how.rate : smaller(bias_rate * depth, zero + how.push_speed);
-                    const Lanes<W> scale = gap ? zero + 1.0 : mass_scale, leak = gap ? zero : impulse_scale;
-                    const Lanes<W> wanted = p.impulse.z - scale * (u.z - least) * p.inverse_normal - leak * p.impulse.z;
-                    (void)change_impulse(packet, p, t2, u, wanted, 1.0, 1.0, a, b);
-                    soft[i].greatest = larger(soft[i].greatest, p.impulse.z);
-                }
-                scatter<W>(movers, packet.a, a, none), scatter<W>(movers, packet.b, b, none);
+                follow_packet(list, packet, std::span<const Mover>(movers), moved, soft, none, still);
+                sweep_packet(list, packet, movers, {.measures = false}, largest, none);
             }
         });
     };
@@ -322,26 +374,33 @@ void sweep_soft(PacketList<W>& list, std::span<Mover> movers, const SoftSweep& h
 }
 
 template <int W>
-void advance_depths(PacketList<W>& list, std::span<Mover> movers, double h, std::span<SoftPoint<W>> soft)
+void follow_move(PacketList<W>& list, std::span<const Mover> movers, const Moved& moved, std::span<SoftPoint<W>> soft)
+{
+    const auto part = [&](std::size_t begin, std::size_t end)
+    {
+        const Mover none;
+        const MoverSpeeds still;
+        run_lanes<W>(PLAB_LANES {
+            for (Packet<W>& packet : list.packets().subspan(begin, end - begin))
+                follow_packet(list, packet, movers, moved, soft, none, still);
+        });
+    };
+    list.in_parts(part);
+}
+
+template <int W>
+void sweep_soft(PacketList<W>& list, std::span<Mover> movers, const SoftSweep& how, std::span<SoftPoint<W>> soft)
 {
     const auto part = [&](std::size_t begin, std::size_t end)
     {
         Mover none;
-        run<W>(PLAB_LOOP {
+        run_lanes<W>(PLAB_LANES {
             for (const Packet<W>& packet : list.packets().subspan(begin, end - begin))
-            {
-                const Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
-                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
-                {
-                    PacketPoint<W>& p = list.points()[i];
-                    soft[i].depth_before = soft[i].depth, soft[i].moved_with = p.impulse;
-                    soft[i].depth = soft[i].depth - h * (dot(p.n, relative(p, a, b)) + p.given.z);
-                    p.least = smaller(soft[i].depth, Lanes<W>{}) / h;
-                }
-            }
+                packet.turning ? soften_packet<false>(list, packet, movers, how, soft, none)
+                               : soften_packet<true>(list, packet, movers, how, soft, none);
         });
     };
-    list.in_parts(part);
+    list.by_colour(part);
 }
 
 template <int W>
@@ -349,7 +408,7 @@ void gather_and_clear(PacketList<W>& list, std::span<SoftPoint<W>> soft)
 {
     const auto part = [&](std::size_t begin, std::size_t end)
     {
-        run<W>(PLAB_LOOP {
+        run_lanes<W>(PLAB_LANES {
             for (const Packet<W>& packet : list.packets().subspan(begin, end - begin))
                 for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
                 {
@@ -361,14 +420,51 @@ void gather_and_clear(PacketList<W>& list, std::span<SoftPoint<W>> soft)
     list.in_parts(part);
 }
 
-#define PLAB_INSTANTIATE(W)                                                                                   \
-    template void set_mobility<W>(PacketList<W>&, std::span<const Mover>);                                    \
-    template void refresh_mobility<W>(PacketList<W>&, std::span<const Mover>);                                \
-    template void sum_impulses<W>(const PacketList<W>&, std::span<Momentum>);                                 \
-    template double sweep_hard<W>(PacketList<W>&, std::span<Mover>, const HardSweep&);                        \
-    template void sweep_soft<W>(PacketList<W>&, std::span<Mover>, const SoftSweep&, std::span<SoftPoint<W>>); \
-    template void advance_depths<W>(PacketList<W>&, std::span<Mover>, double, std::span<SoftPoint<W>>);       \
-    template void gather_and_clear<W>(PacketList<W>&, std::span<SoftPoint<W>>);
+template <int W>
+double report_contacts(const PacketList<W>& list, std::span<Mover> movers, std::span<const SoftPoint<W>> soft, bool returned,
+                       std::span<Contact> contacts)
+{
+    std::atomic<double> fastest{0};
+    const auto part = [&](std::size_t begin, std::size_t end)
+    {
+        Mover none;
+        Lanes<W> most{};
+        run_lanes<W>(PLAB_LANES {
+            for (std::size_t k = begin; k < end; ++k)
+            {
+                list.visit_contacts(k + 2, [&](std::uint32_t contact) { fetch(contacts[contact], true); });
+                const Packet<W>& packet = list.packets()[k];
+                const Velocities<W> a = gather<W>(movers, packet.a, none), b = gather<W>(movers, packet.b, none);
+                const Frame<W> frame(packet);
+                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i)
+                {
+                    const PacketPoint<W>& p = list.points()[i];
+                    const LaneVec<W> u = velocity_of(frame, p, list.given(), i, a, b), j = frame.to_world(p.impulse + soft[i].sum);
+                    const Lanes<W> slip = root(u.x * u.x + u.y * u.y), zero{};
+                    const Lanes<W> acts = soft[i].depth >= 0 ? p.inverse_normal : zero, closing = acts > 0 ? zero - u.z : zero;
+                    most = larger(most, returned ? (p.impulse.z > 0 ? zero : closing) : closing);
+                    list.visit_point(k, i,
+                                     [&](std::uint32_t contact, int l)
+                                     { contacts[contact].impulse = lane(j, l), contacts[contact].slip = lane(slip, l); });
+                }
+            }
+        });
+        for (int l = 0; l < W; ++l) raise_to(fastest, lane(most, l));
+    };
+    list.in_parts(part);
+    return fastest;
+}
+
+#define PLAB_INSTANTIATE(W)                                                                                          \
+    template void set_mobility<W>(PacketList<W>&, std::span<const Mover>);                                           \
+    template void set_mobility<W>(PacketList<W>&, std::span<const Mover>, std::size_t, std::size_t);                 \
+    template void sum_impulses<W>(const PacketList<W>&, std::span<Momentum>);                                        \
+    template double sweep_hard<W>(PacketList<W>&, std::span<Mover>, const HardSweep&);                               \
+    template void sweep_soft<W>(PacketList<W>&, std::span<Mover>, const SoftSweep&, std::span<SoftPoint<W>>);        \
+    template void follow_move<W>(PacketList<W>&, std::span<const Mover>, const Moved&, std::span<SoftPoint<W>>);     \
+    template void follow_move_and_sweep<W>(PacketList<W>&, std::span<Mover>, const Moved&, std::span<SoftPoint<W>>); \
+    template void gather_and_clear<W>(PacketList<W>&, std::span<SoftPoint<W>>);                                      \
+    template double report_contacts<W>(const PacketList<W>&, std::span<Mover>, std::span<const SoftPoint<W>>, bool, std::span<Contact>);
 PLAB_INSTANTIATE(1)
 PLAB_INSTANTIATE(4)
 

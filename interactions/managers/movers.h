@@ -1,22 +1,36 @@
 /// What impulses act on: the movers of an island, and its contact points. In the notation of problem.h.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
-#include "lanes.h"
+#include "plab/lanes.h"
 #include "plab/ref.h"
 
 namespace plab::managers
 {
 
-/// What the innermost loops need of a body, or of a shaft (which uses w.x alone).
-struct Mover
+using namespace lanes;  // NOLINT: the names of this folder's inner loops
+
+/// A line of a cache, bytes.
+inline constexpr std::size_t kCacheLine = 64;
+
+/// What the innermost loops need of a body, or of a shaft (which uses w.x alone). Sweeps read and write one line of it, the velocities.
+struct alignas(kCacheLine) Mover
 {
     PaddedVec3 v;  ///< m/s
     PaddedVec3 w;  ///< rad/s, in W; a shaft: x only
     double inverse_mass = 0;
     bool isotropic = false;  ///< the same inertia in all axes: it does not change when the body turns
+    bool turned = false;     ///< has turned so far in the last move, and in those before it, that mobilities are to be computed anew
     Mat3 inverse_inertia;    ///< in W; a shaft: only element (0,0)
+};
+
+/// Velocities of a mover.
+struct alignas(kCacheLine) MoverSpeeds
+{
+    PaddedVec3 v;  ///< m/s
+    PaddedVec3 w;  ///< rad/s, W
 };
 
 /// The remaining data of a mover, kept apart so that the inner loops touch less memory.
@@ -25,16 +39,18 @@ struct Anchor
     std::uint32_t host = kNoIndex;  ///< row in Bodies or Shafts
     bool shaft = false;
     double mass = 1;
-    Mat3 inertia;  ///< W
-    Vec3 v, w;     ///< velocities without the impulses of this solve
-    Vec3 written;  ///< N m s: the part of Momentum::turn that has been written to the table already
+    Mat3 inertia;       ///< W
+    Vec3 v, w;          ///< velocities without the impulses of this solve
+    Vec3 moved_with;    ///< N m s: Momentum::turn in the last move
+    double turned = 0;  ///< rad: bound on how far it has turned since Mover::turned was set last
+    Vec3 written;       ///< N m s: the part of Momentum::turn that has been written to the table already
 };
 
 /// J: twice the kinetic energy of a mover with these velocities.
 inline double twice_energy(const Anchor& m, const Vec3& v, const Vec3& w) { return m.mass * length_squared(v) + dot(w, m.inertia * w); }
 
 /// The sum of the impulses on a mover.
-struct Momentum
+struct alignas(kCacheLine) Momentum
 {
     PaddedVec3 push;  ///< N s
     PaddedVec3 turn;  ///< N m s

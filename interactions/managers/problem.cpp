@@ -18,6 +18,19 @@ double slip_mobility(const Mat3& K)
     return mean + std::sqrt(half * half + K(0, 1) * K(0, 1));
 }
 
+/// R A R^T of a symmetric matrix A, half of which is computed.
+Mat3 turned(const Mat3& R, const Mat3& A)
+{
+    const bool diagonal = A(0, 1) == 0 && A(0, 2) == 0 && A(1, 2) == 0;
+    const Mat3 T = diagonal ? Mat3{{{R.m[0][0] * A.m[0][0], R.m[0][1] * A.m[1][1], R.m[0][2] * A.m[2][2]},
+                                    {R.m[1][0] * A.m[0][0], R.m[1][1] * A.m[1][1], R.m[1][2] * A.m[2][2]},
+                                    {R.m[2][0] * A.m[0][0], R.m[2][1] * A.m[1][1], R.m[2][2] * A.m[2][2]}}}
+                            : R * A;
+    const auto entry = [&](int i, int j) { return T.m[i][0] * R.m[j][0] + T.m[i][1] * R.m[j][1] + T.m[i][2] * R.m[j][2]; };
+    const double xy = entry(0, 1), xz = entry(0, 2), yz = entry(1, 2);
+    return {{{entry(0, 0), xy, xz}, {xy, entry(1, 1), yz}, {xz, yz, entry(2, 2)}}};
+}
+
 /// Sets the inertias of a body at its present attitude.
 void set_inertia(Mover& mover, Anchor& anchor, const Bodies& bodies)
 {
@@ -28,9 +41,9 @@ void set_inertia(Mover& mover, Anchor& anchor, const Bodies& bodies)
         mover.inverse_inertia = bodies.inverse_inertia_B[b], anchor.inertia = bodies.inertia_B[b];
         return;
     }
-    const Mat3 R = rotation_matrix(bodies.orientation[b]), R_T = transposed(R);
-    mover.inverse_inertia = R * bodies.inverse_inertia_B[b] * R_T;
-    anchor.inertia = R * bodies.inertia_B[b] * R_T;
+    const Mat3 R = rotation_matrix(bodies.orientation[b]);
+    mover.inverse_inertia = turned(R, bodies.inverse_inertia_B[b]);
+    anchor.inertia = turned(R, bodies.inertia_B[b]);
 }
 
 void add_mobility(Point& p, const Mover& m, const Vec3& r)
@@ -75,15 +88,50 @@ void Problem::turn_with(const Bodies& bodies)
         if (!is_isotropic_at(p.a) || !is_isotropic_at(p.b)) set_mobility(p);
 }
 
-void Problem::turn_movers_and_apply(const Bodies& bodies)
+/// A mover has turned for h (s).
+void Problem::note_turn(std::size_t i, double h)
+{
+    constexpr double kMuch = 0x1p-8;  // rad: then mobilities differ by less than 1 %, and a sweep gets as far with them
+    Mover& m = movers[i];
+    double& turned = anchors[i].turned;
+    turned += std::fabs(h) * (std::fabs(m.w.x) + std::fabs(m.w.y) + std::fabs(m.w.z));
+    m.turned = !(turned < kMuch);
+    if (m.turned) turned = 0;
+}
+
+void Problem::turn_movers_and_apply(const Bodies& bodies, double h, std::span<MoverSpeeds> moved)
+{
+    for_each(movers.size(),
+             [&](std::size_t i)
+             {
+                 moved[i] = {movers[i].v, movers[i].w}, anchors[i].moved_with = sums[i].turn;
+                 turn_mover(i, bodies);
+                 apply_sums(i);
+                 note_turn(i, h);
+             });
+    for (Line& line : lines) set_mobility(line);
+}
+
+void Problem::turn_movers_back(const Bodies& bodies, double h)
 {
     for_each(movers.size(),
              [&](std::size_t i)
              {
                  turn_mover(i, bodies);
                  apply_sums(i);
+                 note_turn(i, h);
              });
     for (Line& line : lines) set_mobility(line);
+}
+
+void Problem::apply_moved(std::span<const MoverSpeeds> moved)
+{
+    for_each(movers.size(),
+             [&](std::size_t i)
+             {
+                 sums[i] = {(moved[i].v - anchors[i].v) * anchors[i].mass, anchors[i].moved_with};
+                 apply_sums(i);
+             });
 }
 
 void Problem::add_bodies(const Island& island, const Bodies& bodies)
@@ -137,16 +185,6 @@ void Problem::set_point(Point& p, const Contact& c, const Bodies& bodies) const
     p.impulse = within_disc(p.impulse, p.friction * p.impulse.z);
 }
 
-std::uint8_t Problem::marks_of(const Point& p, const Contact& c, const Bodies& bodies) const
-{
-    const auto is_carried = [&](std::uint32_t mover, Ref r) { return mover == kNoIndex && bodies.motion[r.index] != Motion::Static; };
-    int out = 0;
-    if (c.approach > 0) out |= c.restitution > 0 ? kMeets | kBounces : kMeets;
-    if (c.turning > 0) out |= kTurns;
-    if (is_carried(p.a, c.a) || is_carried(p.b, c.b)) out |= kCarried;
-    return static_cast<std::uint8_t>(out);
-}
-
 void Problem::add_line(const ConstraintRow& row, std::uint32_t index)
 {
     Line& line = lines.emplace_back();
@@ -171,41 +209,45 @@ void Problem::add_line(const ConstraintRow& row, std::uint32_t index)
 void Problem::reserve(const IslandSize& size)
 {
     movers.reserve(size.movers), anchors.reserve(size.movers), sums.reserve(size.movers);
-    points.reserve(size.points), marks.reserve(size.points), carried_.reserve(size.points);
+    points.reserve(size.points), carried_.reserve(size.points);
     mover_of_body_.resize(size.bodies, kNoIndex), mover_of_shaft_.resize(size.shafts, kNoIndex);
     single.reserve(std::min(size.points, kSweptInOrder), size.movers);
     if (size.points > kSweptInOrder) fours.reserve(size.points, size.movers);
 }
 
-void Problem::load(const Island& island, const Bodies& bodies, const Shafts& shafts)
+void Problem::load_movers(const Island& island, const Bodies& bodies, const Shafts& shafts)
 {
-    load_geometry(island, bodies, shafts);
-    for (Point& p : points) set_mobility(p);
-    // A method may turn to sweeps in any step; this step would be the first to allocate.
-    if (points.size() <= kSweptInOrder) single.reserve(points.size(), movers.size());
-}
-
-void Problem::load_geometry(const Island& island, const Bodies& bodies, const Shafts& shafts)
-{
-    movers.clear(), anchors.clear(), lines.clear();
+    movers.clear(), anchors.clear(), lines.clear(), points.clear(), carried_.clear();
     contacts_ = island.contacts, rows_ = island.rows;
     interruption = island.interruption;
     add_bodies(island, bodies);
     add_shafts(island, shafts);
-    carried_.clear();
-    points.resize(island.contacts.size()), marks.resize(island.contacts.size());
+    for (std::uint32_t i = 0; i < island.rows.size(); ++i) add_line(island.rows[i], i);
+}
+
+/// Only these entries were written, so the maps are empty again for the next island at little cost.
+void Problem::forget(const Island& island)
+{
+    for (const std::uint32_t b : island.bodies) mover_of_body_[b] = kNoIndex;
+    for (const std::uint32_t s : island.shafts) mover_of_shaft_[s] = kNoIndex;
+}
+
+void Problem::load(const Island& island, const Bodies& bodies, const Shafts& shafts)
+{
+    load_movers(island, bodies, shafts);
+    points.resize(island.contacts.size());
     for_each(points.size(),
              [&](std::size_t i)
              {
                  set_point(points[i], contacts_[i], bodies);
-                 marks[i] = marks_of(points[i], contacts_[i], bodies);
+                 set_mobility(points[i]);
              });
+    const auto is_carried = [&](std::uint32_t mover, Ref r) { return mover == kNoIndex && bodies.motion[r.index] != Motion::Static; };
     for (std::uint32_t i = 0; i < points.size(); ++i)
-        if ((marks[i] & kCarried) != 0) carried_.push_back(i);
-    for (std::uint32_t i = 0; i < island.rows.size(); ++i) add_line(island.rows[i], i);
-    // Only these entries were written, so the maps are empty again for the next island at little cost.
-    for (const std::uint32_t b : island.bodies) mover_of_body_[b] = kNoIndex;
-    for (const std::uint32_t s : island.shafts) mover_of_shaft_[s] = kNoIndex;
+        if (is_carried(points[i].a, contacts_[i].a) || is_carried(points[i].b, contacts_[i].b)) carried_.push_back(i);
+    forget(island);
+    // A method may turn to sweeps in any step; this step would be the first to allocate.
+    if (points.size() <= kSweptInOrder) single.reserve(points.size(), movers.size());
 }
 
 void Problem::read_speed(std::size_t i, const Bodies& bodies, const Shafts& shafts)
@@ -335,7 +377,7 @@ void Problem::sum_by_velocities()
     for_each(movers.size(), [&](std::size_t i) { sum_by_velocity(i); });
 }
 
-void Problem::write_speed(std::size_t i, Bodies& bodies, Shafts& shafts)
+void Problem::write_speed(std::size_t i, Bodies& bodies, Shafts& shafts, bool swept)
 {
     Anchor& m = anchors[i];
     if (m.shaft)
@@ -345,10 +387,13 @@ void Problem::write_speed(std::size_t i, Bodies& bodies, Shafts& shafts)
     }
     // The angular momentum is the state: it changes by the impulses themselves.
     bodies.velocity[m.host] = movers[i].v;
-    const Vec3& turn = sums[i].turn;
-    if (turn == m.written) return;
-    bodies.add_angular_impulse(m.host, turn - m.written);
+    const Vec3 turn = sums[i].turn, more = turn - m.written;
+    if (more == Vec3{}) return;
     m.written = turn;
+    if (!swept || bodies.needle[m.host] != 0) return bodies.add_angular_impulse(m.host, more);
+    Vec3& momentum = bodies.angular_momentum[m.host];
+    momentum += more;
+    bodies.angular_velocity[m.host] = movers[i].inverse_inertia * momentum;
 }
 
 void Problem::write_speeds(Bodies& bodies, Shafts& shafts)
@@ -362,9 +407,19 @@ double Problem::write_swept_speeds(Bodies& bodies, Shafts& shafts)
                      [&](std::size_t i)
                      {
                          sum_by_velocity(i);
-                         write_speed(i, bodies, shafts);
+                         write_speed(i, bodies, shafts, true);
                          return twice_energy(anchors[i], movers[i].v, movers[i].w);
                      });
+}
+
+void Problem::refresh_spins(Bodies& bodies)
+{
+    for_each(movers.size(),
+             [&](std::size_t i)
+             {
+                 const Anchor& m = anchors[i];
+                 if (!m.shaft && bodies.needle[m.host] == 0) bodies.refresh_spin(m.host);
+             });
 }
 
 double Problem::rate(const Line& line) const

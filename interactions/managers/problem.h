@@ -50,16 +50,23 @@ public:
     void load(const Island& island, const Bodies& bodies, const Shafts& shafts);
     /// Sets memory apart for islands of this size without rows.
     void reserve(const IslandSize& size);
-    /// The same but for the mobilities of the points, K.
-    void load_geometry(const Island& island, const Bodies& bodies, const Shafts& shafts);
+    /// Sets the movers and rows alone, without points. Until forget() is called, mover_of() knows the movers.
+    void load_movers(const Island& island, const Bodies& bodies, const Shafts& shafts);
+    /// The mover that a body or shaft is; kNoIndex: impulses do not move it.
+    std::uint32_t mover_of(Ref participant) const;
+    void forget(const Island& island);
     /// Updates inertias, mobilities and the spins without impulses to the present attitudes, after bodies have turned freely. Balls and
     /// cubes have the same inertia at all attitudes.
     /// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with
     /// another of its points, so the point must not turn with it.
     void turn_with(const Bodies& bodies);
-    /// The same for the movers and rows alone: the points keep their mobilities. The velocities of the movers become those with the present
-    /// sums of impulses.
-    void turn_movers_and_apply(const Bodies& bodies);
+    /// The same for the movers and rows alone, after they have turned for h (s): sets Mover::turned. The velocities of the movers become
+    /// those with the present sums of impulses; `moved` becomes what they were before.
+    void turn_movers_and_apply(const Bodies& bodies, double h, std::span<MoverSpeeds> moved);
+    /// The same after a move back by h, with the impulses of the move that is undone.
+    void turn_movers_back(const Bodies& bodies, double h);
+    /// Sets the sums to those with which turn_movers_and_apply() found the movers moved, and applies them.
+    void apply_moved(std::span<const MoverSpeeds> moved);
     /// Reads the velocities without impulses, and the given parts of u, from the tables.
     void read_speeds(const Bodies& bodies, const Shafts& shafts);
     /// Reads the given parts of u alone.
@@ -85,8 +92,10 @@ public:
     /// Takes the sums from the movers' velocities, which sweeps have changed impulse by impulse: m (v - v0), I (w - w0). They equal those
     /// of apply_impulses() but for rounding, without a walk over all points.
     void sum_by_velocities();
-    /// Does that, then writes. Returns J: the kinetic energy.
+    /// Does that, then writes. Returns J: the kinetic energy. The spins in the table have another rounding than Bodies::refresh_spin()
+    /// gives them, until refresh_spins() is called.
     double write_swept_speeds(Bodies& bodies, Shafts& shafts);
+    void refresh_spins(Bodies& bodies);
 
     Vec3 relative_velocity(const Point& p) const;  ///< u, m/s
     double rate(const Line& line) const;           ///< J v + given
@@ -95,8 +104,6 @@ public:
     /// m/s: how far from the contact law rounding may leave the result: a fraction of the largest speed, or of the speed that
     /// the largest impulse alone would give. The rounding errors of `terms` summands are taken to add up like a random walk.
     double rounding(double terms = 1) const;
-    /// The points that touch a body which is not a mover and may move all the same (kinematic): their `given` may differ from 0.
-    std::span<const std::uint32_t> carried() const { return carried_; }
     /// Whether the step has been interrupted; sweeps and factorisations then end early.
     bool interrupted() const { return interruption && interruption->due(); }
 
@@ -106,16 +113,7 @@ public:
     std::vector<Point> points;    ///< parallel to Island::contacts
     std::vector<Line> lines;      ///< parallel to Island::rows; rows without movers have count 0
     const Interruption* interruption = nullptr;
-    Workers* workers = nullptr;  ///< threads that the host lends; null: none
-    /// What is special about a contact: bits of `marks`, which is parallel to `points`.
-    enum Mark : std::uint8_t
-    {
-        kMeets = 1,    ///< it was met with a speed
-        kBounces = 2,  ///< and has restitution
-        kTurns = 4,    ///< Contact::turning
-        kCarried = 8,  ///< see carried()
-    };
-    std::vector<std::uint8_t> marks;
+    Workers* workers = nullptr;             ///< threads that the host lends; null: none
     mutable std::vector<double> part_sums;  ///< working memory of sum_parts()
     /// Working memory of sweeps over the points.
     PacketList<1> single;
@@ -148,20 +146,19 @@ private:
     void add_bodies(const Island& island, const Bodies& bodies);
     void add_shafts(const Island& island, const Shafts& shafts);
     void set_point(Point& point, const Contact& contact, const Bodies& bodies) const;
-    std::uint8_t marks_of(const Point& point, const Contact& contact, const Bodies& bodies) const;
     void read_speed(std::size_t mover, const Bodies& bodies, const Shafts& shafts);
     void turn_mover(std::size_t mover, const Bodies& bodies);
+    void note_turn(std::size_t mover, double h);
     void apply_sums(std::size_t mover);
     void sum_by_velocity(std::size_t mover);
-    void write_speed(std::size_t mover, Bodies& bodies, Shafts& shafts);
+    void write_speed(std::size_t mover, Bodies& bodies, Shafts& shafts, bool swept = false);
     void set_mobility(Point& p) const;
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);
-    std::uint32_t mover_of(Ref participant) const;
     bool is_isotropic_at(std::uint32_t mover) const { return mover == kNoIndex || movers[mover].isotropic; }
 
     std::vector<std::uint32_t> mover_of_body_, mover_of_shaft_;  ///< by row in Bodies or Shafts
-    std::vector<std::uint32_t> carried_;
+    std::vector<std::uint32_t> carried_;  ///< points that touch a body which is not a mover and may move all the same (kinematic)
     std::span<const Contact> contacts_;
     std::span<const ConstraintRow> rows_;
 };

@@ -102,12 +102,12 @@ void SoftIsland<W>::give_back()
     constexpr int kHalvings = 24;
     // Relative. An elastic impact ends with the energy that it began with, but the sums differ by rounding, and a share would be missing.
     constexpr double kSameEnergy = 0x1p-46;
+    if (!bounces_) return;
     gather_and_clear(contacts_, std::span<SoftPoint<W>>(soft_));
     for (Line& line : problem_.lines) line.impulse = 0;
     problem_.clear_sums();
-    problem_.read_given(bodies_, shafts_);
+    read_given();
     const double most = std::max(allowed_, problem_.read_speeds_and_apply(bodies_, shafts_)) * (1 + kSameEnergy);
-    if (!bounces_) return;
     double low = 0, high = 1;
     if (bounce(1) > most)
     {

@@ -23,8 +23,17 @@ struct SoftMemory
     StepMemory step;
     std::vector<SoftPoint<1>> single;  ///< parallel to the points of Problem::single
     std::vector<SoftPoint<4>> fours;
-    std::vector<std::uint32_t> meeting;  ///< contacts that were met with a speed when the step began
-    std::vector<double> lines_moved_with;
+    /// What is special about each contact.
+    enum Mark : std::uint8_t
+    {
+        kMeets = 1,    ///< it was met with a speed when the step began
+        kBounces = 2,  ///< and has restitution
+        kTurns = 4,    ///< Contact::turning
+        kCarried = 8,  ///< it touches a body that is not a mover and may move all the same (kinematic)
+    };
+    std::vector<std::uint8_t> marks;
+    std::vector<std::uint32_t> meeting, carried;  ///< contacts with these marks
+    std::vector<MoverSpeeds> moved;               ///< by mover: the velocities of the last move
     std::vector<double> line_sum;
     std::vector<double> line_closing;   ///< m/s or rad/s: closing speed at limits with restitution when the step began; else 0
     std::vector<double> line_greatest;  ///< N s or N m s, largest impulse of any sub-step
@@ -37,7 +46,8 @@ struct SoftMemory
     void reserve(const IslandSize& size)
     {
         step.reserve(size);
-        single.reserve(std::min(size.points, kSweptInOrder)), meeting.reserve(size.points), kicks.reserve(size.movers);
+        single.reserve(std::min(size.points, kSweptInOrder)), marks.reserve(size.points), meeting.reserve(size.points);
+        carried.reserve(size.points), kicks.reserve(size.movers), moved.reserve(size.movers);
         if (size.points > kSweptInOrder) fours.reserve(size.points);
     }
 };
@@ -52,14 +62,19 @@ public:
 
 private:
     void start();
+    void load_points();
+    void load_pair(Packet<W>& packet, std::uint32_t first, std::uint32_t count, int lane);
+    std::uint8_t marks_of(const Contact& contact, bool moves_a, bool moves_b) const;
+    void sort_marks();
+    void read_given();
     void kick();
     void meet();
     void sum();
     void apply();
     void write();
     void move();
-    void turn();
     void relax();
+    Moved moved(double h) const { return {memory_.moved, h, 1 / h_}; }
     bool gains(double energy) const;
     bool gains() const;
     int step_hard();
@@ -74,7 +89,6 @@ private:
     double bounce(double share);
     void bounce_with_limits(double share);
     void give_back();
-    double finish_point(std::size_t contact);
     void finish(Verdict& out);
 
     Island& island_;
@@ -83,7 +97,7 @@ private:
     const SoftChoices& choices_;
     SoftMemory& memory_;
     Problem& problem_;
-    PacketList<W>& contacts_;  ///< the contact points; those of problem_ serve to load it and to report
+    PacketList<W>& contacts_;  ///< the contact points; problem_ has none
     std::vector<SoftPoint<W>>& soft_;
     double h_;
     SoftSweep sweep_;

@@ -1,7 +1,6 @@
 #include "soft_step.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "sequential.h"
@@ -52,12 +51,13 @@ Verdict SoftIsland<W>::run()
         write();
         if (bounces_) count_travel();
         move();
-        for (int i = 0; i < choices_.relax_iterations; ++i) relax();
+        relax();
         write();
         out.iterations += 1 + choices_.relax_iterations + remove_gained_energy();
         for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
     }
     give_back();
+    problem_.refresh_spins(bodies_);
     finish(out);
     return out;
 }
@@ -65,30 +65,12 @@ Verdict SoftIsland<W>::run()
 template <int W>
 void SoftIsland<W>::start()
 {
-    problem_.load_geometry(island_, bodies_, shafts_);
-    problem_.scale_impulses(1.0 / choices_.substeps);
-    contacts_.load(problem_.points, problem_.movers.size(), problem_.workers);
-    set_mobility(contacts_, std::span<const Mover>(problem_.movers));
-    soft_.resize(contacts_.points().size());
-    contacts_.in_parts(
-        [&](std::size_t begin, std::size_t end)
-        {
-            for (std::size_t k = begin; k < end; ++k)
-            {
-                const Packet<W>& packet = contacts_.packets()[k];
-                for (std::uint32_t i = packet.first; i < packet.first + packet.count; ++i) soft_[i] = {};
-                contacts_.visit(k, [&](std::uint32_t contact, std::uint32_t point, int l)
-                                { set_lane(soft_[point].depth, l, island_.contacts[contact].depth); });
-            }
-        });
-    memory_.meeting.clear();
-    for (std::uint32_t i = 0; i < contacts_.size(); ++i)
-    {
-        const std::uint8_t marks = problem_.marks[i];
-        if ((marks & Problem::kMeets) != 0) memory_.meeting.push_back(i);
-        driven_ = driven_ || (marks & Problem::kTurns) != 0;
-        bounces_ = bounces_ || (marks & Problem::kBounces) != 0;
-    }
+    problem_.load_movers(island_, bodies_, shafts_);
+    for (Line& line : problem_.lines) line.impulse *= 1.0 / choices_.substeps;
+    load_points();
+    problem_.forget(island_);
+    sort_marks();
+    memory_.moved.resize(problem_.movers.size());
     memory_.line_sum.assign(problem_.lines.size(), 0.0);
     note_limits();
     bounces_ = bounces_ || limits_bounce_;
@@ -99,17 +81,101 @@ void SoftIsland<W>::start()
 }
 
 template <int W>
+void SoftIsland<W>::load_points()
+{
+    contacts_.begin(problem_.workers);
+    const Contact* last = nullptr;
+    std::uint32_t a = kNoIndex, b = kNoIndex;
+    for (const Contact& c : island_.contacts)
+    {
+        if (!last || last->a != c.a || last->b != c.b) a = problem_.mover_of(c.a), b = problem_.mover_of(c.b), last = &c;
+        contacts_.add(a, b, c.normal);
+    }
+    contacts_.arrange(problem_.movers.size());
+    soft_.resize(contacts_.points().size()), memory_.marks.resize(contacts_.size());
+    const std::span<const Mover> movers(problem_.movers);
+    contacts_.fill([&](Packet<W>& packet, std::uint32_t first, std::uint32_t count, int l) { load_pair(packet, first, count, l); },
+                   [&](std::uint32_t contact) { fetch(island_.contacts[contact], false); },
+                   [&](std::size_t begin, std::size_t end) { set_mobility(contacts_, movers, begin, end); });
+}
+
+template <int W>
+void SoftIsland<W>::load_pair(Packet<W>& packet, std::uint32_t first, std::uint32_t count, int l)
+{
+    const auto side = static_cast<std::size_t>(l);
+    const bool moves_a = packet.a[side] != kNoIndex, moves_b = packet.b[side] != kNoIndex;
+    const double share = moves_a || moves_b ? 1.0 / choices_.substeps : 0.0;
+    const Vec3 n = island_.contacts[first].normal, t1 = any_perpendicular(n), t2 = cross(n, t1);
+    set_lane(packet.n, l, n), set_lane(packet.t1, l, t1);
+    for (std::uint32_t k = 0; k < count; ++k)
+    {
+        const Contact& c = island_.contacts[first + k];
+        PacketPoint<W>& p = contacts_.points()[packet.first + k];
+        SoftPoint<W>& soft = soft_[packet.first + k];
+        if (l == 0) soft = {};
+        // The normal may have turned since, and the friction may have changed: the initial impulse is projected onto the cone.
+        Vec3 j{dot(t1, c.impulse), dot(t2, c.impulse), std::max(0.0, dot(n, c.impulse))};
+        j = within_disc(j, c.friction * j.z) * share;
+        set_lane(p.r_a, l, c.point - bodies_.position[c.a.index]), set_lane(p.r_b, l, c.point - bodies_.position[c.b.index]);
+        set_lane(p.impulse, l, j), set_lane(p.friction, l, c.friction), set_lane(p.least, l, 0);
+        set_lane(soft.depth, l, c.depth);
+        memory_.marks[first + k] = marks_of(c, moves_a, moves_b);
+    }
+}
+
+template <int W>
+std::uint8_t SoftIsland<W>::marks_of(const Contact& c, bool moves_a, bool moves_b) const
+{
+    const auto is_carried = [&](bool moves, Ref r) { return !moves && bodies_.motion[r.index] != Motion::Static; };
+    int out = 0;
+    if (c.approach > 0) out |= c.restitution > 0 ? SoftMemory::kMeets | SoftMemory::kBounces : SoftMemory::kMeets;
+    if (c.turning > 0) out |= SoftMemory::kTurns;
+    if (is_carried(moves_a, c.a) || is_carried(moves_b, c.b)) out |= SoftMemory::kCarried;
+    return static_cast<std::uint8_t>(out);
+}
+
+template <int W>
+void SoftIsland<W>::sort_marks()
+{
+    memory_.meeting.clear(), memory_.carried.clear();
+    for (std::uint32_t i = 0; i < memory_.marks.size(); ++i)
+    {
+        const std::uint8_t marks = memory_.marks[i];
+        if (marks == 0) continue;
+        if ((marks & SoftMemory::kMeets) != 0) memory_.meeting.push_back(i);
+        if ((marks & SoftMemory::kCarried) != 0) memory_.carried.push_back(i);
+        driven_ = driven_ || (marks & SoftMemory::kTurns) != 0;
+        bounces_ = bounces_ || (marks & SoftMemory::kBounces) != 0;
+    }
+}
+
+/// The velocities that bodies contribute which are not movers.
+template <int W>
+void SoftIsland<W>::read_given()
+{
+    problem_.read_given(bodies_, shafts_);  // of the rows
+    for (const std::uint32_t i : memory_.carried)
+    {
+        const Contact& c = island_.contacts[i];
+        const auto place = contacts_.place(i);
+        const Packet<W>& packet = contacts_.packets()[place.packet];
+        const auto side = static_cast<std::size_t>(place.lane);
+        Vec3 given;
+        if (packet.b[side] == kNoIndex && bodies_.motion[c.b.index] != Motion::Static) given += bodies_.velocity_at(c.b.index, c.point);
+        if (packet.a[side] == kNoIndex && bodies_.motion[c.a.index] != Motion::Static) given -= bodies_.velocity_at(c.a.index, c.point);
+        const Vec3 n = lane(packet.n, place.lane), t1 = lane(packet.t1, place.lane);
+        contacts_.set_given(i, {dot(t1, given), dot(cross(n, t1), given), dot(n, given)});
+        driven_ = driven_ || given != Vec3{};
+    }
+}
+
+template <int W>
 void SoftIsland<W>::kick()
 {
     if (bounces_) note_kicks(true);
     island_.motion->kick(h_);
     if (!island_.rows.empty()) island_.motion->refresh_rows();
-    problem_.read_given(bodies_, shafts_);
-    for (const std::uint32_t i : problem_.carried())
-    {
-        contacts_.set_given(i, problem_.points[i].given);
-        driven_ = driven_ || problem_.points[i].given != Vec3{};
-    }
+    read_given();
     meet();
     set_line_targets(problem_, island_, h_);
     if (!applied_ || !problem_.lines.empty()) sum();  // targets limit the impulses of lines
@@ -163,30 +229,30 @@ void SoftIsland<W>::write()
 }
 
 /// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with another
-/// of its points, and a point that turned with the body would appear to rise.
+/// of its points, and a point that turned with the body would appear to rise. The packets have to follow (follow_move).
 template <int W>
 void SoftIsland<W>::move()
 {
-    memory_.lines_moved_with.clear();
-    for (const Line& line : problem_.lines) memory_.lines_moved_with.push_back(line.impulse);
-    advance_depths(contacts_, std::span<Mover>(problem_.movers), h_, std::span<SoftPoint<W>>(soft_));
     island_.motion->move(h_);
-    turn();
+    // Inertias of the new attitudes, and the velocities with the impulses that write() applied.
+    problem_.turn_movers_and_apply(bodies_, h_, memory_.moved);
 }
 
-/// After a move: the inertias and mobilities of the present attitudes, and the velocities with the impulses that write() applied.
-template <int W>
-void SoftIsland<W>::turn()
-{
-    problem_.turn_movers_and_apply(bodies_);
-    refresh_mobility(contacts_, std::span<const Mover>(problem_.movers));
-}
-
+/// The sweeps after a move.
 template <int W>
 void SoftIsland<W>::relax()
 {
-    sweep_lines(false);
-    (void)sweep_hard(contacts_, std::span<Mover>(problem_.movers), {.measures = false});
+    const std::span<SoftPoint<W>> soft(soft_);
+    const std::span<Mover> movers(problem_.movers);
+    if (choices_.relax_iterations == 0) follow_move(contacts_, std::span<const Mover>(movers), moved(h_), soft);
+    for (int i = 0; i < choices_.relax_iterations; ++i)
+    {
+        sweep_lines(false);
+        if (i == 0)
+            follow_move_and_sweep(contacts_, movers, moved(h_), soft);
+        else
+            (void)sweep_hard(contacts_, movers, {.measures = false});
+    }
 }
 
 template <int W>
@@ -263,18 +329,14 @@ template <int W>
 int SoftIsland<W>::step_hard()
 {
     constexpr int kSweeps = 4;
-    // Moves back with the velocities of the move.
-    for (std::size_t i = 0; i < soft_.size(); ++i) contacts_.points()[i].impulse = soft_[i].moved_with;
-    for (std::size_t i = 0; i < problem_.lines.size(); ++i) problem_.lines[i].impulse = memory_.lines_moved_with[i];
-    apply();
-    write();
+    const std::span<SoftPoint<W>> soft(soft_);
+    const std::span<const Mover> movers(problem_.movers);
+    // Moves back with the impulses of the move.
+    problem_.apply_moved(memory_.moved);
+    problem_.write_speeds(bodies_, shafts_);
     island_.motion->move(-h_);
-    turn();
-    for (std::size_t i = 0; i < soft_.size(); ++i)
-    {
-        soft_[i].depth = soft_[i].depth_before;
-        contacts_.points()[i].least = smaller(soft_[i].depth, Lanes<W>{}) / h_;
-    }
+    problem_.turn_movers_back(bodies_, -h_);
+    follow_move(contacts_, movers, moved(-h_), soft);
     clear_impulses();
     apply();
     const Swept done = sweep(problem_, contacts_, {kSweeps});
@@ -282,6 +344,7 @@ int SoftIsland<W>::step_hard()
     if (gains() && !scale_down()) clear_impulses(), apply();
     write();
     move();
+    follow_move(contacts_, movers, moved(h_), soft);
     return done.sweeps;
 }
 
@@ -290,40 +353,24 @@ int SoftIsland<W>::step_hard()
 template <int W>
 int SoftIsland<W>::remove_gained_energy()
 {
-    constexpr int kSweeps = 2;
+    constexpr int kSweeps = 1;
     if (!gains(energy_)) return 0;
     const Swept done = sweep(problem_, contacts_, {kSweeps});  // with the targets that move() has set
-    apply();
-    if (gains() && !scale_down()) return done.sweeps + step_hard();
+    if (gains())
+    {
+        apply();
+        if (gains() && !scale_down()) return done.sweeps + step_hard();
+    }
     write();
     return done.sweeps;
-}
-
-/// Reports the impulse and the slip of a contact. Returns the speed at which its overlap grows although it may act, m/s.
-template <int W>
-double SoftIsland<W>::finish_point(std::size_t i)
-{
-    const Point& p = problem_.points[i];
-    Contact& c = island_.contacts[i];
-    const auto place = contacts_.place(i);
-    const SoftPoint<W>& soft = soft_[place.point];
-    const Vec3 u = problem_.relative_velocity(p), returned = contacts_.impulse(i);
-    const Vec3 j = returned + Vec3{lane(soft.sum.x, place.lane), lane(soft.sum.y, place.lane), lane(soft.sum.z, place.lane)};
-    c.impulse = to_world(p, j);
-    c.slip = std::sqrt(u.x * u.x + u.y * u.y);
-    return returned.z == 0 && p.mobile() && lane(soft.depth, place.lane) >= 0 ? -u.z : 0.0;
 }
 
 template <int W>
 void SoftIsland<W>::finish(Verdict& out)
 {
-    std::atomic<double> residual{out.residual};
-    for_parts(problem_.workers, problem_.points.size(), kMoverPart,
-              [&](std::size_t begin, std::size_t end)
-              {
-                  for (std::size_t i = begin; i < end; ++i) raise_to(residual, finish_point(i));
-              });
-    out.residual = residual;
+    const double closing = report_contacts(contacts_, std::span<Mover>(problem_.movers), std::span<const SoftPoint<W>>(soft_), bounces_,
+                                           std::span<Contact>(island_.contacts));
+    out.residual = std::max(out.residual, closing);
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
         const Line& line = problem_.lines[i];

@@ -132,7 +132,10 @@ struct PairState : PairHead
 
     /// For loops over pairs, which come to blocks in no order of memory: asks for the block of a pair this many places ahead.
     static constexpr std::size_t kAhead = 6;
-    void prefetch() const { __builtin_prefetch(contacts.begin()); }
+    void prefetch() const
+    {
+        for (std::uint32_t i = 0; i < count; ++i) __builtin_prefetch(contacts.begin() + i);
+    }
 
     std::span<KnownContact> all() { return {contacts.begin(), count}; }
     std::span<const KnownContact> all() const { return {contacts.begin(), count}; }
@@ -270,7 +273,8 @@ void ContactCache::drop_if(Ends ends)
         }
         else if (ends(pairs_[i]))
             continue;
-        if (kept != i) std::swap(pairs_[kept], pairs_[i]), keys_[kept] = keys_[i];
+        // The blocks of pairs that are dropped gather behind the others (PointBlock::operator=).
+        if (kept != i) pairs_[kept] = std::move(pairs_[i]), keys_[kept] = keys_[i];
         ++kept;
     }
     shrink(kept);
@@ -325,10 +329,16 @@ public:
     bool in_order() const { return in_order_; }
 
 protected:
+    /// Asks for the memory of a contact that will be added later.
+    static void fetch_place(const char* place)
+    {
+        for (std::size_t i = 0; i < sizeof(FoundContact); i += 64) __builtin_prefetch(place + i, 1);
+    }
     /// Adds what a detection fills in.
     FoundContact& put(const Contact& from)
     {
         FoundContact& f = out_->emplace_back();
+        fetch_place(reinterpret_cast<const char*>(&f) + 8 * sizeof f);
         Contact& c = f.contact;
         c.a = from.a, c.b = from.b, c.feature = from.feature, c.point = from.point, c.normal = from.normal, c.depth = from.depth;
         f.detector = detector_;

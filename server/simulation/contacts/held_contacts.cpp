@@ -188,13 +188,16 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
     share(islands,
           [&](HeldIsland& island)
           {
-              island.contacts.resize(island.contact_count()), island.slots.resize(island.contact_count());
+              if (island.contact_memory.size() < island.contact_count()) island.contact_memory.resize(island.contact_count());
+              island.contacts = std::span(island.contact_memory).first(island.contact_count());
+              island.slots.resize(island.contact_count());
               for_parts(&step_.workers, island.runs.size(), kRunPart,
                         [&](std::size_t begin, std::size_t end)
                         {
                             for (std::size_t k = begin; k < end; ++k)
                             {
                                 if (k + PairState::kAhead < end) island.runs[k + PairState::kAhead].pair->prefetch();
+                                if (k + kRunsAhead < end) prefetch(island, island.runs[k + kRunsAhead]);
                                 fill_run(island, island.runs[k], h, trial);
                             }
                         });
@@ -212,6 +215,17 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
             take_known(r.island->contacts[i], f.contact, contacts_.cache().contact_of(*r.run->pair, f), trial);
             r.island->slots[i] = f.slot;
         }
+}
+
+/// Asks for the memory between which fill_run() will copy contacts.
+void HeldIslands::prefetch(const HeldIsland& island, const Run& run)
+{
+    constexpr std::size_t kLine = 64;
+    const std::size_t count = run.end - run.first;
+    const char* const from = reinterpret_cast<const char*>(run.found);
+    for (std::size_t i = 0; i < count * sizeof(FoundContact); i += kLine) __builtin_prefetch(from + i, 0);
+    const char* const to = reinterpret_cast<const char*>(island.contacts.data() + run.first);
+    for (std::size_t i = 0; i < count * sizeof(Contact); i += kLine) __builtin_prefetch(to + i, 1);
 }
 
 void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
@@ -238,7 +252,9 @@ void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
             take_known(c, f.contact, all[slot], trial), island.slots[i] = slot;
     }
     const std::span<const Contact> contacts = island.of(run);
-    for (const Contact& c : contacts) run.most_depth = std::max(run.most_depth, std::fabs(c.depth));
+    const double least = -contacts_.overlap_tolerance(contacts.front().a, contacts.front().b);
+    for (const Contact& c : contacts)
+        if (c.depth >= least) run.most_depth = std::max(run.most_depth, std::fabs(c.depth));
     if (island.has_rows) return;
     if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return midpoint_.turns(c, h); }))
         std::atomic_ref(island.turns).store(true, std::memory_order_relaxed);

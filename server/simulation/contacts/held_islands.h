@@ -67,7 +67,8 @@ public:
     std::span<const std::uint32_t> members() const { return members_; }
 
 private:
-    void commit(double h, bool mean);
+    template <class After>
+    void commit(double h, bool mean, const After& after);
     double commit_part(double h, bool mean, std::size_t begin, std::size_t end, double worked);
     double correction_of(std::size_t member);
     Vec3 arm(std::uint32_t body, const Vec3& point) const;
@@ -154,7 +155,8 @@ private:
         std::vector<std::uint32_t> members,
             roots;                                  ///< indices into the system's lists
         std::vector<std::uint32_t> bodies, shafts;  ///< host rows
-        std::vector<Contact> contacts;
+        std::vector<Contact> contact_memory;        ///< keeps its size, as making contacts takes time
+        std::span<Contact> contacts;                ///< the first of them
         std::vector<ConstraintRow> rows;
         /// The contacts of a pair, which follow one another.
         struct Run
@@ -165,7 +167,7 @@ private:
             std::uint32_t order = 0;              ///< number of the pair among those of all islands
             bool known = false;                   ///< found by the last detection: the pair knows what is missing
             // Results of passes that threads share:
-            double most_depth = 0;    ///< m, largest depth or gap
+            double most_depth = 0;    ///< m, largest depth, or gap, of what may have Painleve's paradox
             bool incomplete = false;  ///< the pair does not know all of its contacts yet
             bool released = false;    ///< it pressed in the last step and does so no more
             bool counts_all = false;  ///< ContactBook::Pressing
@@ -198,6 +200,7 @@ private:
     void add_run(std::span<const FoundContact> found, PairState* pair, bool known);
     void fill(std::span<HeldIsland*> islands, double h, bool trial);
     void fill_run(HeldIsland& island, Run& run, double h, bool trial);
+    static void prefetch(const HeldIsland& island, const Run& run);
     static void take_known(Contact& contact, const Contact& found, KnownContact& known, bool trial);
     void make_islands(DisjointSets& islands);
     void set_approach(HeldIsland& island, const GroupSystem& system, double h);
@@ -253,7 +256,8 @@ private:
     Shares shares_;
     /// Bodies, contacts or pairs that a thread handles at once.
     static constexpr std::size_t kPart = kKickedPart, kRunPart = 32;
-    std::vector<SurfaceLaw> laws_;  ///< by detector, of its response
+    static constexpr std::size_t kRunsAhead = 2;  ///< so far ahead the memory of a run is asked for
+    std::vector<SurfaceLaw> laws_;                ///< by detector, of its response
     struct RunOf
     {
         HeldIsland* island = nullptr;

@@ -99,17 +99,24 @@ void HeldMotion::kick(double h)
     }
 }
 
-/// Books the displacement of a move before the orientations change: mean velocities of the move times its duration h (s).
-void HeldMotion::commit(double h, bool mean)
+/// Books the displacement of a move before the orientations change: mean velocities of the move times its duration h (s). Calls
+/// after(begin, end) for the members that are booked.
+template <class After>
+void HeldMotion::commit(double h, bool mean, const After& after)
 {
     since_start_ += h;
-    if (!books_) return;
+    const auto part = [&](std::size_t begin, std::size_t end, double worked)
+    {
+        if (books_) worked = commit_part(h, mean, begin, end, worked);
+        after(begin, end);
+        return worked;
+    };
     if (members_.size() <= kKickedPart)
-        worked_ = commit_part(h, mean, 0, members_.size(), worked_);
+        worked_ = part(0, members_.size(), worked_);
     else
         worked_ += sum_parts(workers_, members_.size(), kKickedPart, sums_,
-                             [&](std::size_t begin, std::size_t end) { return commit_part(h, mean, begin, end, 0); });
-    for (std::size_t k = 0; k < roots_.size(); ++k)
+                             [&](std::size_t begin, std::size_t end) { return part(begin, end, 0); });
+    for (std::size_t k = 0; books_ && k < roots_.size(); ++k)
     {
         const double speed = shafts_->speed[system_->roots()[roots_[k]]];
         means_[members_.size() + k].shaft += (mean ? 0.5 * (shaft_before_[k] + speed) : speed) * h;
@@ -131,14 +138,13 @@ double HeldMotion::commit_part(double h, bool mean, std::size_t begin, std::size
 
 void HeldMotion::move(double h)
 {
-    commit(h, false);
-    kicked_.move(h, workers_);
+    commit(h, false, [&](std::size_t begin, std::size_t end) { kicked_.move_some(begin, end, h); });
     for (const std::uint32_t r : roots_) shafts_->angle[system_->roots()[r]] += shafts_->speed[system_->roots()[r]] * h;
 }
 
 void HeldMotion::move_mean(double h)
 {
-    commit(h, true);
+    commit(h, true, [](std::size_t, std::size_t) {});
     (void)kicked_.move_mean(h);
     for (std::size_t k = 0; k < roots_.size(); ++k)
     {

@@ -249,8 +249,8 @@ void HeldIslands::report_impacts(const HeldIsland& island, double time)
     for (const Run& run : island.runs)
         for (std::uint32_t i = run.first; i < run.end; ++i)
         {
+            if (!(island.contacts[i].approach > 0) || island.contacts[i].impulse == Vec3{}) continue;
             Contact c = island.contacts[i];
-            if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
             c.depth = island.motion.start_depth(i);
             if (PairState& pair = *run.pair; pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, c, time);
             step_.emit(contacts_.contact_event("contact.impact", *run.pair, time, c, c.impulse));

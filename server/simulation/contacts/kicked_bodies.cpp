@@ -1,10 +1,12 @@
 #include "simulation/contacts/kicked_bodies.h"
 
 #include <algorithm>
+#include <array>
 
 #include "plab/free_rotation.h"
 #include "plab/rotation.h"
 #include "plab/symmetric.h"
+#include "simulation/contacts/turn_four.h"
 
 namespace plab::simulation
 {
@@ -100,18 +102,17 @@ double KickedBodies::work_of_contacts(double h) const
     return sum;
 }
 
-void KickedBodies::move(double h, Workers* workers)
+void KickedBodies::move_some(std::size_t begin, std::size_t end, double h)
 {
-    for_parts(workers, members_.size(), kKickedPart,
-              [&](std::size_t begin, std::size_t end)
-              {
-                  for (std::size_t k = begin; k < end; ++k)
-                  {
-                      const std::uint32_t b = body(k);
-                      bodies_->position[b] += bodies_->velocity[b] * h;
-                      turn_freely(*bodies_, b, {}, h);
-                  }
-              });
+    for (std::size_t k = begin; k < end; ++k) bodies_->position[body(k)] += bodies_->velocity[body(k)] * h;
+    std::size_t k = begin;
+    for (; k + 4 <= end; k += 4)
+    {
+        const std::array<std::uint32_t, 4> four{body(k), body(k + 1), body(k + 2), body(k + 3)};
+        if (turn_four(*bodies_, four, h)) continue;
+        for (const std::uint32_t b : four) turn_freely(*bodies_, b, {}, h);
+    }
+    for (; k < end; ++k) turn_freely(*bodies_, body(k), {}, h);
 }
 
 double KickedBodies::move_mean(double h)

@@ -35,7 +35,9 @@ public:
     /// the last one counts. `workers`: threads to share the work with; null: none.
     void kick(GroupSystem& system, Bodies& bodies, std::span<const std::uint32_t> members, double h, Workers* workers = nullptr);
     /// Moves with the present velocities; h < 0 undoes such a move.
-    void move(double h, Workers* workers = nullptr);
+    void move(double h) { move_some(0, members_.size(), h); }
+    /// The same for members `begin` to `end`; several threads may move different ones.
+    void move_some(std::size_t begin, std::size_t end, double h);
     /// Moves with the mean of the present velocities and those before the kick: exact for constant forces. If rotating with the mean
     /// momentum would create energy, as after an impact, bodies rotate with the momentum after it instead.
     /// Returns J: work of contacts and joints since the kick, including the energy error of the rotation.

@@ -196,7 +196,7 @@ void GroupSystem::kick(std::size_t member, double h)
     Bodies& bodies = frame_.world->host().bodies;
     const std::uint32_t b = bodies_[member];
     bodies.velocity[b] += acceleration(member) * h;
-    bodies.add_angular_impulse(b, scratch_->wrenches.torque[b] * h);
+    if (const Vec3& torque = scratch_->wrenches.torque[b]; torque != Vec3{}) bodies.add_angular_impulse(b, torque * h);
 }
 
 void GroupSystem::rates_of_shafts(double weight)

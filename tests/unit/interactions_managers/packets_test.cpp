@@ -142,3 +142,103 @@ TEST_CASE("the sums of the impulses by velocities are those of the impulses")
         CHECK(length(p.sums[i].turn - by_velocities[i].turn) < 1e-13 * largest);
     }
 }
+
+TEST_CASE("contacts between two bodies along two normals are two pairs, of different colours")
+{
+    IslandWorld w;
+    for (int i = 0; i < 12; ++i) w.add_box(1, {0.5, 0.5, 0.5}, {1.0 * i, 0, 0});
+    for (std::uint32_t i = 0; i < 12; i += 2)
+    {
+        for (int k = 0; k < 3; ++k) w.add_contact(i, i + 1, {i + 0.5, 0.1 * k, 0}, {1, 0, 0}, 0.5);
+        for (int k = 0; k < 2; ++k) w.add_contact(i, i + 1, {i + 0.5, 0.1 * k, 0.5}, normalized(Vec3{1, 0, 1}), 0.5);
+    }
+    Problem p = problem_of(w);
+    p.fours.load(p.points, p.movers.size());
+    std::vector<Vec3> normals;
+    for (std::size_t i = 0; i < p.fours.size(); ++i)
+    {
+        const auto place = p.fours.place(i);
+        CHECK(lane(p.fours.packets()[place.packet].n, place.lane) == p.points[i].n);
+        CHECK(place.point >= p.fours.packets()[place.packet].first);
+    }
+    CHECK(p.fours.packets().size() == 4);  // two colours of six pairs each
+}
+
+TEST_CASE("pairs that are arranged already give the bits of a list that is new")
+{
+    IslandWorld w;
+    add_tangle(w, 40, 200, 5);
+    Problem kept = problem_of(w);
+    const auto sweep_with = [](Problem& p)
+    {
+        p.fours.load(p.points, p.movers.size());
+        set_mobility(p.fours, std::span<const Mover>(p.movers));
+        (void)sweep(p, p.fours, {3});
+        p.fours.store(p.points);
+    };
+    sweep_with(kept);
+    const auto compare = [&]
+    {
+        Problem fresh = problem_of(w), again = problem_of(w);
+        again.fours = kept.fours;  // with what was arranged and computed before
+        sweep_with(again), sweep_with(fresh);
+        double pressing = 0;
+        for (std::size_t i = 0; i < w.contacts.size(); ++i)
+        {
+            CHECK(again.points[i].impulse == fresh.points[i].impulse);
+            pressing += fresh.points[i].impulse.z > 0 ? 1 : 0;
+        }
+        CHECK(pressing > 0);
+    };
+    // The same pairs at other places.
+    for (Contact& c : w.contacts) c.point.x += 0.01, c.friction *= 0.5;
+    compare();
+    // The same number of contacts between other bodies.
+    for (Contact& c : w.contacts)
+        if (c.a.index == 0) c.b.index = c.b.index % 39 + 1;
+    compare();
+    // A pair less.
+    w.contacts.resize(w.contacts.size() - 5);
+    compare();
+}
+
+TEST_CASE("depths follow a move, and mobilities the bodies that have turned by much")
+{
+    IslandWorld w;
+    add_tangle(w, 40, 200, 6);
+    Problem p = problem_of(w);
+    p.fours.load(p.points, p.movers.size()), p.single.load(p.points, p.movers.size());
+    set_mobility(p.fours, std::span<const Mover>(p.movers)), set_mobility(p.single, std::span<const Mover>(p.movers));
+    std::vector<SoftPoint<4>> wide(p.fours.points().size());
+    std::vector<SoftPoint<1>> narrow(p.single.points().size());
+    std::vector<MoverSpeeds> speeds;
+    for (std::size_t i = 0; i < p.movers.size(); ++i) speeds.push_back({p.movers[i].v, Vec3{0.1 * static_cast<double>(i), 1, -0.3}});
+    const std::vector<Mover> before = p.movers;
+    for (std::size_t i = 0; i < p.movers.size(); ++i)
+        p.movers[i].inverse_inertia = p.movers[i].inverse_inertia * 2.0, p.movers[i].turned = i % 3 == 0;
+    const double h = 0.01;
+    const Moved moved{speeds, h, 1 / h};
+    follow_move(p.fours, std::span<const Mover>(p.movers), moved, std::span<SoftPoint<4>>(wide));
+    follow_move(p.single, std::span<const Mover>(p.movers), moved, std::span<SoftPoint<1>>(narrow));
+    const auto velocity_at = [&](std::uint32_t mover, const Vec3& r)
+    { return mover == kNoIndex ? Vec3{} : speeds[mover].v + cross(speeds[mover].w, r); };
+    std::size_t renewed = 0;
+    for (std::size_t i = 0; i < p.points.size(); ++i)
+    {
+        const Point& at = p.points[i];
+        const double depth = -h * dot(at.n, velocity_at(at.b, at.r_b) - velocity_at(at.a, at.r_a));
+        const auto place = p.fours.place(i);
+        const auto alone = p.single.place(i);
+        CHECK(lane(wide[place.point].depth, place.lane) == doctest::Approx(depth).epsilon(1e-12));
+        CHECK(lane(wide[place.point].depth, place.lane) == narrow[alone.point].depth);
+        CHECK(p.single.points()[alone.point].least == doctest::Approx(std::min(depth, 0.0) / h));
+        const auto turned = [&](std::uint32_t m) { return m != kNoIndex && p.movers[m].turned; };
+        const double mass = (at.a == kNoIndex ? 0.0 : before[at.a].inverse_mass) + (at.b == kNoIndex ? 0.0 : before[at.b].inverse_mass);
+        const double K = at.K(2, 2), twice = 2 * (K - mass) + mass;
+        const bool is_new = turned(at.a) || turned(at.b);
+        CHECK(p.single.points()[alone.point].inverse_normal == doctest::Approx(1 / (is_new ? twice : K)).epsilon(1e-12));
+        renewed += is_new ? 1 : 0;
+    }
+    CHECK(renewed > 0.2 * static_cast<double>(p.points.size()));
+    CHECK(renewed < 0.8 * static_cast<double>(p.points.size()));
+}
