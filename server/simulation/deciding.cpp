@@ -130,6 +130,7 @@ void Simulation::carry_out_decision(const Decision& decision)
 bool Simulation::take_effect(const Decision& decision, const Request& request, const std::vector<std::string>& reasons)
 {
     Reply reply = Transaction(run_, context_, *this, request).run();
+    run_.stepper().charge(decision.by, static_cast<std::int64_t>(reply.pause_ns));
     if (!reply.done)
     {
         last_refusal_ = reply.errors.empty() ? std::string() : reply.errors.front().text();

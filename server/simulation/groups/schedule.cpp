@@ -11,7 +11,7 @@ bool measured_alone(const TypeInfo& type)
     const auto one_at_a_time = [](const CommandInfo& c)
     {
         return c.phase == Phase::Advance || c.phase == Phase::Solve || c.phase == Phase::Detect || c.phase == Phase::Locate ||
-               c.phase == Phase::Respond || c.phase == Phase::Touch || c.phase == Phase::Drive;
+               c.phase == Phase::Respond || c.phase == Phase::Touch || c.phase == Phase::Drive || c.phase == Phase::Decide;
     };
     return std::any_of(type.commands.begin(), type.commands.end(), one_at_a_time);
 }

@@ -34,7 +34,7 @@ struct Schedule
 };
 
 /// Whether the components of this type are timed one by one. That holds for types whose commands the host calls for one component at a
-/// time (solvers, managers, detections, responses), and for drives (scripts), whose calls take microseconds. For all other types the rows
+/// time (solvers, managers, detections, responses), and for drives (scripts) and decisions (governors), whose calls take microseconds. For all other types the rows
 /// share the measured time of the whole block.
 bool measured_alone(const TypeInfo& type);
 

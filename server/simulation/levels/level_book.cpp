@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "model/text.h"
+#include "simulation/costs/clock.h"
 #include "simulation/levels/desk.h"
 #include "world/bounding_radius.h"
 #include "world/command_call.h"
@@ -43,7 +44,7 @@ double real_of(const world::World& world, std::uint32_t component, const char* f
 
 }  // namespace
 
-LevelBook::LevelBook(world::World& world, const Stepper& stepper) : world_(world), stepper_(stepper) {}
+LevelBook::LevelBook(world::World& world, Stepper& stepper) : world_(world), stepper_(stepper) {}
 LevelBook::~LevelBook() = default;
 
 bool LevelBook::is_governor(std::uint32_t component) const
@@ -212,8 +213,11 @@ std::vector<Decision> LevelBook::decide(Tick tick, double time, double dt, const
             call.select(table);
             for (const Row& row : block.rows)
             {
-                desk.serve(table.component_of_row()[row]);
+                const std::uint32_t component = table.component_of_row()[row];
+                const std::uint64_t begin = now_ns();
+                desk.serve(component);
                 if (auto done = call.run(*block.command, Rows(&row, 1)); !done) desk.refuse(done.error().reason, events, time, tick);
+                if (block.alone) stepper_.charge(component, static_cast<std::int64_t>(now_ns() - begin));
             }
         }
     deciding_ = false;

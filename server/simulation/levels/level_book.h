@@ -50,7 +50,7 @@ public:
     /// Measures how far apart two levels of a component are after a step: see LevelControl::error().
     using MeasureError = std::function<double(std::uint32_t component, const Level* level, const Level* finest, double interval)>;
 
-    LevelBook(world::World& world, const Stepper& stepper);
+    LevelBook(world::World& world, Stepper& stepper);
     ~LevelBook();
     LevelBook(const LevelBook&) = delete;
     LevelBook& operator=(const LevelBook&) = delete;
@@ -106,7 +106,7 @@ private:
     LevelInfo info(const Governor& governor, const Watched& watched) const;
 
     world::World& world_;
-    const Stepper& stepper_;
+    Stepper& stepper_;
     std::vector<Governor> governors_;                  ///< in id order
     std::vector<Change> changes_;                      ///< by directory index
     std::vector<std::uint32_t> watcher_, reassigned_;  ///< governor of each component, by directory index; components

@@ -83,6 +83,8 @@ public:
     /// J, work of requests: energy that a set, push or swap changed at once.
     double& requests_work() { return requests_work_; }
     double requests_work() const { return requests_work_; }
+    /// Adds to the cost that the coming step has for a component: ns of what it did before the step (Phase::Decide).
+    void charge(std::uint32_t component, std::int64_t ns) { step_.meter.of_component(component) += ns; }
     CostBook& cost() { return cost_; }
     const CostBook& cost() const { return cost_; }
 
