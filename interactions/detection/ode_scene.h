@@ -18,7 +18,7 @@ class OdeScene
 {
 public:
     /// Brings parts and poses up to date; returns whether a rebuild was necessary. A context that advances only some bodies must
-    /// follow a full detection pass in the same step: then only the poses of those bodies can have changed.
+    /// follow a full detection pass, since when only the poses of bodies that were advanced have changed.
     bool update(const StepContext& context, const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies,
                 const Shapes& shapes, const ContactSink& order);
     /// Reports the contacts of all pairs with at least one body that `context` advances, persistent pairs first. If the sink has

@@ -65,7 +65,7 @@ public:
     bool detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
                 std::vector<FoundContact>& out, double margin = 0);
     /// The same with a sink of the caller. `active`: the bodies to consider, of which one at least is in each pair; null: all. A detector
-    /// must have looked at all bodies before in this step, and nobody but these may have moved since.
+    /// must have looked at all bodies before, and nobody but these and those of earlier queries may have moved since.
     void query(const Detector& detector, ContactSink& sink, const IndexSet* active = nullptr);
     /// Sets found() to what all detectors find.
     void detect_all();

@@ -5,9 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "simulation/contacts/sleeping_pairs.h"
-#include "world/state_hash.h"
-
 namespace plab::simulation
 {
 namespace
@@ -124,82 +121,6 @@ const KnownContact* ContactCache::find_contact(std::uint32_t detector, Ref a, Re
     return found == all.end() ? nullptr : &*found;
 }
 
-void ContactCache::refresh(const world::World& world, const std::vector<Detector>& detectors)
-{
-    for (const auto& island : rest_.islands) pairs_.insert(pairs_.end(), island->pairs.begin(), island->pairs.end());
-    keys_.resize(pairs_.size());  // sorted below
-    rest_.islands.clear(), rest_.note_change();
-    rest_.bodies.resize(std::min(rest_.bodies.size(), world.host().bodies.size()));
-    for (std::uint32_t b = 0; b < rest_.bodies.size(); ++b)
-        if (world.host().component_of({Facet::Body, b}) == kNoIndex) rest_.bodies[b] = {};
-    const auto gone = [&](const PairState& p)
-    {
-        const bool has_detector =
-            std::any_of(detectors.begin(), detectors.end(), [&](const Detector& d) { return d.component == p.detector; });
-        const auto lives = [&](Ref r) { return world.host().component_of(r) != kNoIndex; };
-        return !has_detector || !lives(p.a) || !lives(p.b);
-    };
-    const auto has_no_speculating_detector = [&](const PairState& p)
-    {
-        return p.ahead && std::none_of(detectors.begin(), detectors.end(),
-                                       [&](const Detector& d) { return d.component == p.detector && (d.speculates || d.adapts); });
-    };
-    drop_if([&](const PairState& p) { return gone(p) || has_no_speculating_detector(p); });
-    for (PairState& p : pairs_)
-    {
-        // Without a response nothing rests: a sensor supports no body.
-        const bool answered =
-            std::any_of(detectors.begin(), detectors.end(),
-                        [&](const Detector& d) { return d.component == p.detector && (d.responds || d.by_rows || d.by_force); });
-        if (answered) continue;
-        p.resting = false;
-        p.bounces = {};
-        for (KnownContact& k : p.all()) k.impulse = {};
-    }
-    sort(world);  // a new component changes ranks
-    may_have_rest_depth_ = true;
-}
-
-namespace
-{
-
-using world::hash_of, world::mix;
-
-std::uint64_t hash_of_contact(const KnownContact& k)
-{
-    const std::uint64_t h = mix(mix(hash_of(k.impulse), k.id), std::uint64_t{k.feature});
-    // The spring state is hashed only if there is one.
-    if (k.stretch == Vec3{} && k.rest_depth == 0 && k.preload == 0) return h;
-    return mix(mix(mix(h, hash_of(k.stretch)), k.rest_depth), k.preload);
-}
-
-std::uint64_t hash_of_pair(const world::World& world, const PairState& p)
-{
-    const std::uint64_t pair = std::uint64_t{world.rank(p.a)} << 32 | world.rank(p.b);
-    const std::uint64_t how = (p.resting ? 1u : 0u) | (p.ahead ? 2u : 0u) | (p.overlapping ? 4u : 0u) | std::uint64_t{p.count} << 3;
-    std::uint64_t h = mix(mix(hash_of(p.normal), pair), how);
-    for (const KnownContact& k : p.all()) h = mix(h, hash_of_contact(k));
-    if (p.bounces == BounceHistory{}) return h;
-    return mix(mix(mix(h, p.bounces.time), p.bounces.interval), p.bounces.previous);
-}
-
-std::uint64_t hash_of_name(const std::string& id)
-{
-    return world::hash_bytes(0, {reinterpret_cast<const std::uint8_t*>(id.data()), id.size()});
-}
-
-std::uint64_t hash_of_contact(const ForceContact& c)
-{
-    std::uint64_t h = mix(mix(0, c.id), std::uint64_t{c.feature} << 2 | (c.reported ? 1u : 0u) | (c.dormant ? 2u : 0u));
-    for (const Vec3& v : {c.stretch, c.impulse, c.force}) h = mix(h, hash_of(v));
-    for (const double x :
-         {c.rest_depth, c.preload, c.open_depth, c.approach, c.begin, c.depth, c.peak, c.half_period, c.swing_speed, c.peak_swing_speed})
-        h = mix(h, x);
-    return h;
-}
-
-}  // namespace
-
 void ContactCache::copy(const ContactCache& from)
 {
     shrink(std::min(pairs_.size(), from.pairs_.size()));
@@ -223,27 +144,6 @@ void ContactCache::copy(const ContactCache& from)
     copy_forces(from.force_pairs_, force_pairs_), copy_forces(from.parked_force_pairs_, parked_force_pairs_);
     next_id_ = from.next_id_, may_have_rest_depth_ = from.may_have_rest_depth_;
     rest_.copy(from.rest_);
-}
-
-std::uint64_t ContactCache::state_hash(const world::World& world, std::uint64_t h) const
-{
-    // Pairs of sleeping islands are summed, as they may be in either list.
-    std::uint64_t asleep = 0;
-    for (const PairState& p : pairs_)
-        if (rest_.asleep(p.a.index) || rest_.asleep(p.b.index))
-            asleep += hash_of_pair(world, p);
-        else
-            h = mix(h, hash_of_pair(world, p));
-    for (const ForcePair& p : force_pairs_)
-    {
-        // By name, so that the hash of these pairs does not depend on what else is in the scene.
-        h = mix(mix(h, hash_of_name(world.id_of(p.a))), hash_of_name(world.id_of(p.b)));
-        for (const ForceContact& c : p.all()) h = mix(h, hash_of_contact(c));
-    }
-    if (rest_.bodies.empty()) return h;
-    for (const auto& island : rest_.islands)
-        for (const PairState& p : island->pairs) asleep += hash_of_pair(world, p);
-    return rest_.hash(world, asleep == 0 ? h : mix(h, asleep));
 }
 
 namespace
