@@ -19,7 +19,7 @@ std::string scene_of_hands(const std::string& name, int hands)
     for (int i = 0; i < hands; ++i)
     {
         const std::string k = std::to_string(i);
-        text += "<component id='hand" + k + "' type='State/User'/><component id='cup" + k +
+        text += "<component id='hand" + k + "' type='State/User' position='0 " + k + " 0'/><component id='cup" + k +
                 "' type='State/RigidBody' mass='2' inertia='0.1 0.1 0.1' position='0 " + k + " 0'/><component id='grab" + k +
                 "' type='Constraint/Grab' user='hand" + k + "' body='cup" + k + "' reach='0.1'/>";
     }
