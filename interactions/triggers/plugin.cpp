@@ -25,7 +25,8 @@ void add_trigger(plab::Registrar& registrar, std::string name, std::string doc, 
 
 PLAB_PLUGIN("triggers", registrar)
 {
-    add_trigger<&watch_touch, TouchedRows>(registrar, "Trigger/Touched", "a user touches the object", "needs a detection that pairs them");
+    add_trigger<&watch_touch, TouchedRows>(registrar, "Trigger/Touched", "a user touches the object",
+                                           "needs a detection that pairs them, which it does if one of the two is dynamic");
     add_trigger<&watch_nearness, NearRows>(registrar, "Trigger/Near", "a user is near the object",
                                            "of a mesh all triangles are looked at in each step");
     add_trigger<&watch_ray, PointedAtRows>(registrar, "Trigger/PointedAt", "a user points at the object",

@@ -124,6 +124,7 @@ inline const std::vector<Layer>& layers()
         {"interactions/detection", {"server/sdk", "server/geometry"}, {"ode/", "Eigen/"}},
         {"interactions/constraints/joints", {"server/sdk", "interactions/constraints/angular_velocity"}, {}},
         {"interactions/constraints/angular_velocity", {"server/sdk"}, {}},
+        {"interactions/constraints/grab", {"server/sdk"}, {}},
         {"interactions/managers", {"server/sdk", "server/linear"}, {}},
         {"interactions/scripts/lua", {"server/sdk"}, {"lua.hpp"}},
         {"interactions/*", {"server/sdk"}, {}},

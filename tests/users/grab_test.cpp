@@ -178,7 +178,8 @@ TEST_CASE("a hand grabs what it touches, among several, and lifts it from a tabl
     {
         // From the side against the right cube, which it pushes by 1 cm; closing there, and up.
         const double x = n < 240 ? 1 - 0.36 * n / 240.0 : 0.64, z = n < 300 ? 0.1 : 0.1 + 0.5 * (n - 300) / 240.0;
-        return Sample{n, {x, 0, z}, {}, {}, {}, n < 238 ? 0.0 : 1.0};
+        const Vec3 v{n < 240 ? -0.36 : 0.0, 0, n < 300 ? 0.0 : 0.5};
+        return Sample{n, {x, 0, z}, {}, v, {}, n < 238 ? 0.0 : 1.0};
     };
     const auto run = [&](int threads, int cut)
     {

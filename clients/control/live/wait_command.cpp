@@ -1,9 +1,12 @@
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "control/console/json.h"
 #include "control/live/commands.h"
 #include "control/live/frames.h"
 #include "link/caller.h"
+#include "link/catalogue.h"
 #include "link/frame_reader.h"
 #include "link/numbers.h"
 
