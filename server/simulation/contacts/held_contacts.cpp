@@ -1,6 +1,7 @@
 // Contacts of islands that managers hold: which of them are known, which pairs become persistent, and what is kept for the next step.
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 
 #include "simulation/contacts/held_islands.h"
@@ -169,7 +170,7 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
     share(islands,
           [&](HeldIsland& island)
           {
-              if (island.contact_memory.size() < island.contact_count()) island.contact_memory.resize(island.contact_count());
+              make_room(island);
               island.contacts = std::span(island.contact_memory).first(island.contact_count());
               island.slots.resize(island.contact_count());
               for_parts(&step_.workers, island.runs.size(), kRunPart,
@@ -196,6 +197,15 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
             take_known(r.island->contacts[i], f.contact, contacts_.cache().contact_of(*r.run->pair, f), trial);
             r.island->slots[i] = f.slot;
         }
+}
+
+/// Room for the contacts of an island and for some more, as the number of points between two bodies varies from step to step.
+void HeldIslands::make_room(HeldIsland& island)
+{
+    const std::size_t count = island.contact_count();
+    if (island.contact_memory.size() >= count) return;
+    const std::size_t room = std::bit_ceil(count + count / 4);
+    island.contact_memory.resize(room), island.slots.reserve(room), island.jams.reserve(room);
 }
 
 /// Asks for the memory between which fill_run() will copy contacts.

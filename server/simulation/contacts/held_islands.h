@@ -195,6 +195,7 @@ private:
     void add_run(std::span<const FoundContact> found, PairState* pair, bool known);
     void fill(std::span<HeldIsland*> islands, double h, bool trial);
     void fill_run(HeldIsland& island, Run& run, double h, bool trial);
+    static void make_room(HeldIsland& island);
     static void prefetch(const HeldIsland& island, const Run& run);
     static void take_known(Contact& contact, const Contact& found, KnownContact& known, bool trial);
     void make_islands(DisjointSets& islands);
