@@ -1,7 +1,6 @@
 // Contacts of islands that managers hold: which of them are known, which pairs become persistent, and what is kept for the next step.
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 
 #include "simulation/contacts/held_islands.h"
@@ -167,12 +166,10 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
 {
     laws_.clear();
     for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d) laws_.push_back(contacts_.response_law(d));
+    make_room(islands);
     share(islands,
           [&](HeldIsland& island)
           {
-              make_room(island);
-              island.contacts = std::span(island.contact_memory).first(island.contact_count());
-              island.slots.resize(island.contact_count());
               for_parts(&step_.workers, island.runs.size(), kRunPart,
                         [&](std::size_t begin, std::size_t end)
                         {
@@ -199,13 +196,20 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
         }
 }
 
-/// Room for the contacts of an island and for some more, as the number of points between two bodies varies from step to step.
-void HeldIslands::make_room(HeldIsland& island)
+/// Gives each island memory for its contacts.
+void HeldIslands::make_room(std::span<HeldIsland*> islands)
 {
-    const std::size_t count = island.contact_count();
-    if (island.contact_memory.size() >= count) return;
-    const std::size_t room = std::bit_ceil(count + count / 4);
-    island.contact_memory.resize(room), island.slots.reserve(room), island.jams.reserve(room);
+    std::size_t count = 0;
+    for (const HeldIsland* island : islands) count += island->contact_count();
+    if (contact_memory_.size() < count) contact_memory_.resize(count), slot_memory_.resize(count), jam_memory_.resize(count);
+    std::size_t first = 0;
+    for (HeldIsland* island : islands)
+    {
+        const std::size_t own = island->contact_count();
+        island->contacts = std::span(contact_memory_).subspan(first, own);
+        island->slots = std::span(slot_memory_).subspan(first, own), island->jams = std::span(jam_memory_).subspan(first, own);
+        first += own;
+    }
 }
 
 /// Asks for the memory between which fill_run() will copy contacts.
