@@ -45,6 +45,7 @@ bool PacketList<W>::is_arranged(std::size_t movers) const
 template <int W>
 void PacketList<W>::colour_pairs(std::size_t movers)
 {
+    make_room(colours_of_mover_, movers);
     colours_of_mover_.assign(movers, 0);
     const auto colours = [&](std::uint32_t mover) { return mover == kNoIndex ? 0 : colours_of_mover_[mover]; };
     const auto colour_those = [&](bool one_sided)
@@ -127,10 +128,13 @@ template <int W>
 void PacketList<W>::arrange(std::size_t movers)
 {
     if (is_arranged(movers)) return;
+    make_room(pairs_, added_.size()), make_room(order_, added_.size());
     pairs_ = added_, arranged_movers_ = movers;
     sections_.clear(), first_pair_.clear();
     packet_count_ = point_count_ = 0;
-    places_.resize(pairs_.empty() ? 0 : pairs_.back().first + pairs_.back().count);
+    const std::size_t contacts = pairs_.empty() ? 0 : pairs_.back().first + pairs_.back().count;
+    make_room(places_, contacts);
+    places_.resize(contacts);
     if constexpr (W == 1)
     {
         add_section(false);
@@ -143,6 +147,7 @@ void PacketList<W>::arrange(std::size_t movers)
         order_pairs();
         add_packets_by_colour();
     }
+    make_room(points_, point_count_);
     points_.resize(point_count_);
 }
 

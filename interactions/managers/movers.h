@@ -1,8 +1,10 @@
 /// What impulses act on: the movers of an island, and its contact points. In the notation of problem.h.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "plab/lanes.h"
 #include "plab/ref.h"
@@ -11,6 +13,13 @@ namespace plab::managers
 {
 
 using namespace lanes;  // NOLINT: the names of this folder's inner loops
+
+/// Room for `count` elements, by powers of two: working memory that serves islands of all sizes soon fits all of them.
+template <class T>
+void make_room(std::vector<T>& memory, std::size_t count)
+{
+    if (memory.capacity() < count) memory.reserve(std::bit_ceil(count));
+}
 
 /// A line of a cache, bytes.
 inline constexpr std::size_t kCacheLine = 64;

@@ -147,6 +147,8 @@ private:
     void add_shafts(const Island& island, const Shafts& shafts);
     void set_point(Point& point, const Contact& contact, const Bodies& bodies) const;
     void read_speed(std::size_t mover, const Bodies& bodies, const Shafts& shafts);
+    /// Sets the inertias of a body at its present attitude.
+    static void set_inertia(Mover& mover, Anchor& anchor, const Bodies& bodies);
     void turn_mover(std::size_t mover, const Bodies& bodies);
     void note_turn(std::size_t mover, double h);
     void apply_sums(std::size_t mover);

@@ -70,6 +70,7 @@ void SoftIsland<W>::start()
     load_points();
     problem_.forget(island_);
     sort_marks();
+    make_room(memory_.moved, problem_.movers.size());
     memory_.moved.resize(problem_.movers.size());
     memory_.line_sum.assign(problem_.lines.size(), 0.0);
     note_limits();
@@ -77,12 +78,20 @@ void SoftIsland<W>::start()
     if (!bounces_) return;
     problem_.read_speeds(bodies_, shafts_);
     allowed_ = kinetic_energy_without(problem_);
+    make_room(memory_.kicks, problem_.anchors.size());
     memory_.kicks.resize(problem_.anchors.size());
 }
 
 template <int W>
 void SoftIsland<W>::load_points()
 {
+    // Many islands share this memory, and the number of points varies: there is room for the largest small island at once.
+    if constexpr (W == 1)
+    {
+        contacts_.reserve(kSweptInOrder, problem_.movers.size());
+        soft_.reserve(kSweptInOrder), memory_.marks.reserve(kSweptInOrder);
+        memory_.meeting.reserve(kSweptInOrder), memory_.carried.reserve(kSweptInOrder);
+    }
     contacts_.begin(problem_.workers);
     const Contact* last = nullptr;
     std::uint32_t a = kNoIndex, b = kNoIndex;
@@ -92,6 +101,7 @@ void SoftIsland<W>::load_points()
         contacts_.add(a, b, c.normal);
     }
     contacts_.arrange(problem_.movers.size());
+    make_room(soft_, contacts_.points().size()), make_room(memory_.marks, contacts_.size());
     soft_.resize(contacts_.points().size()), memory_.marks.resize(contacts_.size());
     const std::span<const Mover> movers(problem_.movers);
     contacts_.fill([&](Packet<W>& packet, std::uint32_t first, std::uint32_t count, int l) { load_pair(packet, first, count, l); },
@@ -353,7 +363,8 @@ int SoftIsland<W>::step_hard()
 template <int W>
 int SoftIsland<W>::remove_gained_energy()
 {
-    constexpr int kSweeps = 1;
+    // In an island of few contacts two sweeps cost little, and mostly leave nothing to scale down.
+    constexpr int kSweeps = W == 1 ? 2 : 1;
     if (!gains(energy_)) return 0;
     const Swept done = sweep(problem_, contacts_, {kSweeps});  // with the targets that move() has set
     if (gains())

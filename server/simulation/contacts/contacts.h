@@ -329,16 +329,13 @@ public:
     bool in_order() const { return in_order_; }
 
 protected:
-    /// Asks for the memory of a contact that will be added later.
-    static void fetch_place(const char* place)
-    {
-        for (std::size_t i = 0; i < sizeof(FoundContact); i += 64) __builtin_prefetch(place + i, 1);
-    }
     /// Adds what a detection fills in.
     FoundContact& put(const Contact& from)
     {
         FoundContact& f = out_->emplace_back();
-        fetch_place(reinterpret_cast<const char*>(&f) + 8 * sizeof f);
+        // Asks for the memory of a contact that will be added later.
+        const char* const ahead = reinterpret_cast<const char*>(&f) + 8 * sizeof f;
+        for (std::size_t i = 0; i < sizeof f; i += 64) __builtin_prefetch(ahead + i, 1);
         Contact& c = f.contact;
         c.a = from.a, c.b = from.b, c.feature = from.feature, c.point = from.point, c.normal = from.normal, c.depth = from.depth;
         f.detector = detector_;

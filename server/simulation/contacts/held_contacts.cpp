@@ -185,12 +185,10 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
 {
     laws_.clear();
     for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d) laws_.push_back(contacts_.response_law(d));
+    make_room(islands);
     share(islands,
           [&](HeldIsland& island)
           {
-              if (island.contact_memory.size() < island.contact_count()) island.contact_memory.resize(island.contact_count());
-              island.contacts = std::span(island.contact_memory).first(island.contact_count());
-              island.slots.resize(island.contact_count());
               for_parts(&step_.workers, island.runs.size(), kRunPart,
                         [&](std::size_t begin, std::size_t end)
                         {
@@ -215,6 +213,22 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
             take_known(r.island->contacts[i], f.contact, contacts_.cache().contact_of(*r.run->pair, f), trial);
             r.island->slots[i] = f.slot;
         }
+}
+
+/// Gives each island memory for its contacts.
+void HeldIslands::make_room(std::span<HeldIsland*> islands)
+{
+    std::size_t count = 0;
+    for (const HeldIsland* island : islands) count += island->contact_count();
+    if (contact_memory_.size() < count) contact_memory_.resize(count), slot_memory_.resize(count), jam_memory_.resize(count);
+    std::size_t first = 0;
+    for (HeldIsland* island : islands)
+    {
+        const std::size_t own = island->contact_count();
+        island->contacts = std::span(contact_memory_).subspan(first, own);
+        island->slots = std::span(slot_memory_).subspan(first, own), island->jams = std::span(jam_memory_).subspan(first, own);
+        first += own;
+    }
 }
 
 /// Asks for the memory between which fill_run() will copy contacts.

@@ -173,8 +173,8 @@ private:
             bool counts_all = false;  ///< ContactBook::Pressing
         };
         std::vector<Run> runs;
-        std::vector<std::uint32_t> slots;  ///< of each contact: FoundContact::slot
-        std::vector<std::uint8_t> jams;    ///< of each contact: whether it has Painleve's paradox
+        std::span<std::uint32_t> slots;  ///< of each contact: FoundContact::slot
+        std::span<std::uint8_t> jams;    ///< of each contact: whether it has Painleve's paradox
         HeldMotion motion;
         double size = 0;    ///< m, smallest radius of gyration
         double energy = 0;  ///< J, kinetic, when the manager begins
@@ -200,6 +200,7 @@ private:
     void add_run(std::span<const FoundContact> found, PairState* pair, bool known);
     void fill(std::span<HeldIsland*> islands, double h, bool trial);
     void fill_run(HeldIsland& island, Run& run, double h, bool trial);
+    void make_room(std::span<HeldIsland*> islands);
     static void prefetch(const HeldIsland& island, const Run& run);
     static void take_known(Contact& contact, const Contact& found, KnownContact& known, bool trial);
     void make_islands(DisjointSets& islands);
@@ -251,6 +252,10 @@ private:
     std::size_t island_count_ = 0;
     MidpointContacts midpoint_;
     std::vector<HeldIsland*> plain_, jointed_, all_;
+    // Of all islands, one after the other. They keep their size, as making contacts takes time.
+    std::vector<Contact> contact_memory_;
+    std::vector<std::uint32_t> slot_memory_;
+    std::vector<std::uint8_t> jam_memory_;
     std::vector<Island> solved_;          ///< what a manager is given
     std::vector<HeldIsland*> solved_of_;  ///< parallel
     Shares shares_;

@@ -144,7 +144,6 @@ void HeldIslands::find_paradoxes(HeldIsland& island)
               {
                   for (std::size_t k = begin; k < end; ++k) wedging_[island.bodies[k]] = contacts_.wedging_of(island.bodies[k]);
               });
-    island.jams.resize(island.contacts.size());
     const auto find_in = [&](const Run& run)
     {
         const std::span<const Contact> own = island.of(run);
