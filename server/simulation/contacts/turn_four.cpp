@@ -37,9 +37,8 @@ PLAB_INLINE LaneMat inverse_inertias_of(const Bodies& bodies, const Four& b)
     Lanes<4> first[4] = {load(m0), load(m1), load(m2), load(m3)}, second[4] = {load(m0 + 4), load(m1 + 4), load(m2 + 4), load(m3 + 4)};
     transpose(first[0], first[1], first[2], first[3]);
     transpose(second[0], second[1], second[2], second[3]);
-    return {{{first[0], first[1], first[2]},
-             {first[3], second[0], second[1]},
-             {second[2], second[3], Lanes<4>{m0[8], m1[8], m2[8], m3[8]}}}};
+    return {
+        {{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, {second[2], second[3], Lanes<4>{m0[8], m1[8], m2[8], m3[8]}}}};
 }
 
 /// exp_rotation() of a rotation vector with the square t2 < 0.25.

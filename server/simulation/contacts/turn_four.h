@@ -9,8 +9,9 @@
 namespace plab::simulation
 {
 
-/// Turns four bodies for h (s) with their angular momenta, as turn_freely() does. Returns false, and does nothing, unless this needs no more
-/// than a series: all four have one moment of inertia and turn by less than 1/2 rad, or all of them turn slowly (plab/free_rotation.h).
+/// Turns four bodies for h (s) with their angular momenta, as turn_freely() does. Returns false, and does nothing, unless this needs no
+/// more than a series: all four have one moment of inertia and turn by less than 1/2 rad, or all of them turn slowly
+/// (plab/free_rotation.h).
 bool turn_four(Bodies& bodies, const std::array<std::uint32_t, 4>& which, double h);
 
 }  // namespace plab::simulation
