@@ -34,8 +34,8 @@ struct Schedule
 };
 
 /// Whether the components of this type are timed one by one. That holds for types whose commands the host calls for one component at a
-/// time (solvers, managers, detections, responses), and for drives (scripts) and decisions (governors), whose calls take microseconds. For all other types the rows
-/// share the measured time of the whole block.
+/// time (solvers, managers, detections, responses), and for drives (scripts) and decisions (governors), whose calls take microseconds. For
+/// all other types the rows share the measured time of the whole block.
 bool measured_alone(const TypeInfo& type);
 
 /// Blocks in the order of type names, so that neither load order nor row numbers influence the state. `part`: null: all components.

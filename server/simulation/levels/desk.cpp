@@ -1,11 +1,50 @@
-#include "simulation/levels/desk.h"
-
+// Where components hand in what they decide: the host's side of plab/levels.h.
 #include <algorithm>
 #include <cassert>
 #include <limits>
 
+#include "simulation/costs/clock.h"
+#include "simulation/levels/level_book.h"
+#include "world/command_call.h"
+
 namespace plab::simulation
 {
+
+class LevelBook::Desk final : public LevelControl, public ViewpointSink, public RequestSink
+{
+public:
+    Desk(const LevelBook& book, const MeasureError& error) : book_(book), error_(error) {}
+
+    /// The calls that follow come from this component.
+    void serve(std::uint32_t component);
+    /// The component's command failed.
+    void refuse(const std::string& why, EventSink& events, double time, Tick tick) const;
+    std::vector<Decision> take() { return std::move(decisions_); }
+
+    // ViewpointSink
+    void add(Row row, const Viewpoint& viewpoint) override;
+
+    // LevelControl
+    std::int32_t levels(Row row) const override;
+    std::span<const GovernedComponent> watched(Row row) override;
+    std::span<const Viewpoint> viewpoints() const override { return viewpoints_; }
+    std::string_view id_of(std::uint32_t component) const override { return book_.world_.id_of(component); }
+    double error(Row row, std::size_t index, std::int32_t level, double interval) override;
+    void choose(Row row, std::size_t index, std::int32_t level, std::string reason) override;
+
+    // RequestSink
+    void ask(Row row, std::string_view verb, std::string_view target, std::string_view argument, std::string reason) override;
+
+private:
+    const LevelBook& book_;
+    const MeasureError& error_;
+    std::uint32_t by_ = kNoIndex;
+    const Governor* governor_ = nullptr;  ///< null: the component watches nothing
+    bool chose_ = false;                  ///< the last decision has choices of this component
+    std::vector<Viewpoint> viewpoints_;
+    std::vector<GovernedComponent> looked_;
+    std::vector<Decision> decisions_;
+};
 
 void LevelBook::Desk::serve(std::uint32_t component)
 {
@@ -66,6 +105,35 @@ void LevelBook::Desk::ask(Row /*row*/, std::string_view verb, std::string_view t
     Decision& d = decisions_.emplace_back();
     d.by = by_, d.verb = verb, d.target = target, d.argument = argument;
     d.reasons.push_back(std::move(reason));
+}
+
+std::vector<Decision> LevelBook::decide(Tick tick, double time, double dt, const MeasureError& error, EventSink& events)
+{
+    Desk desk(*this, error);
+    world::CommandCall call;
+    call.context.time = time, call.context.dt = dt, call.context.tick = tick, call.context.seed = world_.scene().settings.seed;
+    call.context.events = &events;
+    world::HostTables& host = world_.host();
+    call.arguments.bodies = &host.bodies, call.arguments.shafts = &host.shafts, call.arguments.quantities = &host.quantities;
+    call.arguments.shapes = &host.shapes;
+    call.arguments.viewpoints = &desk, call.arguments.levels = &desk, call.arguments.requests = &desk;
+    deciding_ = true;
+    for (const Phase phase : {Phase::View, Phase::Decide})
+        for (const Block& block : stepper_.schedule().of(phase))
+        {
+            const world::Table& table = *world_.tables()[block.table];
+            call.select(table);
+            for (const Row& row : block.rows)
+            {
+                const std::uint32_t component = table.component_of_row()[row];
+                const std::uint64_t begin = now_ns();
+                desk.serve(component);
+                if (auto done = call.run(*block.command, Rows(&row, 1)); !done) desk.refuse(done.error().reason, events, time, tick);
+                if (block.alone) stepper_.charge(component, static_cast<std::int64_t>(now_ns() - begin));
+            }
+        }
+    deciding_ = false;
+    return desk.take();
 }
 
 }  // namespace plab::simulation

@@ -5,10 +5,7 @@
 #include <limits>
 
 #include "model/text.h"
-#include "simulation/costs/clock.h"
-#include "simulation/levels/desk.h"
 #include "world/bounding_radius.h"
-#include "world/command_call.h"
 
 namespace plab::simulation
 {
@@ -193,35 +190,6 @@ GovernedComponent LevelBook::look(const Governor& governor, const Watched& watch
     out.center = 0.5 * (least + most);
     for (const Ref r : watched.objects) out.radius = std::max(out.radius, length(place(r) - out.center) + radius(r));
     return out;
-}
-
-std::vector<Decision> LevelBook::decide(Tick tick, double time, double dt, const MeasureError& error, EventSink& events)
-{
-    Desk desk(*this, error);
-    world::CommandCall call;
-    call.context.time = time, call.context.dt = dt, call.context.tick = tick, call.context.seed = world_.scene().settings.seed;
-    call.context.events = &events;
-    world::HostTables& host = world_.host();
-    call.arguments.bodies = &host.bodies, call.arguments.shafts = &host.shafts, call.arguments.quantities = &host.quantities;
-    call.arguments.shapes = &host.shapes;
-    call.arguments.viewpoints = &desk, call.arguments.levels = &desk, call.arguments.requests = &desk;
-    deciding_ = true;
-    for (const Phase phase : {Phase::View, Phase::Decide})
-        for (const Block& block : stepper_.schedule().of(phase))
-        {
-            const world::Table& table = *world_.tables()[block.table];
-            call.select(table);
-            for (const Row& row : block.rows)
-            {
-                const std::uint32_t component = table.component_of_row()[row];
-                const std::uint64_t begin = now_ns();
-                desk.serve(component);
-                if (auto done = call.run(*block.command, Rows(&row, 1)); !done) desk.refuse(done.error().reason, events, time, tick);
-                if (block.alone) stepper_.charge(component, static_cast<std::int64_t>(now_ns() - begin));
-            }
-        }
-    deciding_ = false;
-    return desk.take();
 }
 
 void LevelBook::note_change(std::uint32_t component, std::string reason, double time)
