@@ -27,12 +27,6 @@ PLAB_PLUGIN("bodies", registrar)
     add_state<prepare_static, StaticRows>(registrar, "State/Static", Facet::Body, "State/Body", "a body that never moves");
     add_state<prepare_kinematic, KinematicRows>(registrar, "State/Kinematic", Facet::Body, "State/Body",
                                                 "a body that moves with a prescribed velocity");
-    add_state<prepare_user, UserRows>(registrar, "State/User", Facet::Body, "State/Body",
-                                      "a person's hand or device: follows samples from outside, and knows the force on it")
-        .command<follow_samples>(plab::Phase::Drive, "User/Follow", "chooses the velocity that leads to the newest sample, extrapolated")
-        .command<feel>(plab::Phase::Finish, "User/Feel", "sums what contacts and held bodies exert")
-        .strengths("interaction by people and robots outside: it pushes, and Constraint/Grab makes it hold")
-        .limits("nothing pushes it back: a device must render `force`; faster than its limits it lags behind");
     add_state<prepare_rigid_body, RigidBodyRows>(registrar, "State/RigidBody", Facet::Body, "State/Body", "a body that moves by forces");
     add_state<prepare_shaft, ShaftRows>(registrar, "State/Shaft", Facet::Shaft, "State/Shaft",
                                         "one degree of freedom about an axle: a gear, a motor, a fan");
@@ -41,4 +35,10 @@ PLAB_PLUGIN("bodies", registrar)
     registrar.component<MaterialPairRows>("Material/Pair", "friction and restitution between two materials")
         .family("Material/Pair")
         .command<connect_material_pair>(plab::Phase::Connect, "Material/Connect", "registers the law of the pair with the host");
+    add_state<prepare_user, UserRows>(registrar, "State/User", Facet::Body, "State/Body",
+                                      "a person's hand or device: follows samples from outside, and knows the force on it")
+        .command<follow_samples>(plab::Phase::Drive, "User/Follow", "chooses the velocity that leads to the newest sample, extrapolated")
+        .command<feel>(plab::Phase::Finish, "User/Feel", "sums what contacts and held bodies exert")
+        .strengths("interaction by people and robots outside: it pushes, and Constraint/Grab makes it hold")
+        .limits("nothing pushes it back: a device must render `force`; faster than its limits it lags behind");
 }

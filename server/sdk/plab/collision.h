@@ -145,8 +145,8 @@ public:
     /// In the order of the pairs, which is that of ids; then the impacts, in their order of time, then what was added. Valid until the next
     /// call.
     virtual std::span<const TouchPoint> of(Ref body) const = 0;
-    /// A component that holds a body in another way adds its impulse here, so that the body's own type, and others whose names come later in
-    /// the alphabet, can tell the load of the body.
+    /// A component that holds a body in another way adds its impulse here, so that the body's own type, and others whose names come later
+    /// in the alphabet, can tell the load of the body.
     virtual void add(Ref body, const TouchPoint& point) = 0;
 };
 

@@ -59,7 +59,8 @@ inline double distance_to(const Shapes& shapes, std::uint32_t shape, const Vec3&
         case GeometryKind::Capsule:
             return length(p - Vec3{0, 0, std::clamp(p.z, -g.size.z, g.size.z)}) - g.size.x;
         case GeometryKind::Cylinder:
-            return detail::distance_to_box({std::sqrt(p.x * p.x + p.y * p.y), 0, p.z}, {g.size.x, std::numeric_limits<double>::max(), g.size.z});
+            return detail::distance_to_box({std::sqrt(p.x * p.x + p.y * p.y), 0, p.z},
+                                           {g.size.x, std::numeric_limits<double>::max(), g.size.z});
         case GeometryKind::Mesh:
             for (std::size_t t = 0; t + 2 < g.triangles.size(); t += 3)
                 nearest = std::min(nearest, detail::distance_to_triangle(p, g.vertices[g.triangles[t]], g.vertices[g.triangles[t + 1]],

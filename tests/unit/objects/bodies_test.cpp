@@ -264,7 +264,7 @@ TEST_CASE("the plugin declares its states with the commands of the paper")
 {
     Registrar registrar;
     plab_plugin_register(registrar);
-    REQUIRE(registrar.types().size() == 6);
+    REQUIRE(registrar.types().size() == 7);
     const char* names[] = {"State/Static", "State/Kinematic", "State/RigidBody", "State/Shaft"};
     for (std::size_t i = 0; i < 4; ++i)
     {
