@@ -65,6 +65,7 @@ Result<void> choose_by_distance(const StepContext& context, Row row, DistanceRow
         std::int32_t level = level_at(nearest);
         // Cheaper only beyond the bound and its hysteresis.
         if (level < g.level) level = std::min(g.level, level_at(nearest / (1 + governors.watch.hysteresis[row])));
+        if (!look.may_choose(k, level)) continue;
         (void)look.choose(k, level, who == kNoIndex ? "there is no viewer" : brief(nearest) + " m from " + std::string(control.id_of(who)));
     }
     return {};
@@ -154,6 +155,7 @@ Result<void> choose_by_sight(const StepContext& context, Row row, VisibilityRows
         governors.in_view[row] += visible ? 1 : 0, governors.hidden[row] += !visible && seen.hidden ? 1 : 0;
         std::int32_t level = visible ? level_at(seen.pixels) : 0;
         if (visible && level < g.level) level = std::min(g.level, level_at(seen.pixels * (1 + governors.watch.hysteresis[row])));
+        if (!look.may_choose(k, level)) continue;
         (void)look.choose(k, level,
                           visible       ? brief(seen.pixels) + " pixels for " + std::string(control.id_of(seen.by))
                           : seen.hidden ? "hidden from every viewer"

@@ -38,6 +38,12 @@ public:
 
     std::span<const GovernedComponent> watched() const { return watched_; }
     std::int32_t finest() const { return finest_; }
+    /// Whether choose() would change something: before a reason is written.
+    bool may_choose(std::size_t index, std::int32_t level) const
+    {
+        const std::int32_t now = watched_[index].level;
+        return level > now || (level < now && rested(index));
+    }
     /// Whether the component may become cheaper now.
     bool rested(std::size_t index) const;
     /// Changes the level, unless it is that level already. Returns whether it does.

@@ -10,7 +10,7 @@ void TriggerRows::describe(Schema& schema, bool needs_object)
     schema.role(user, "user", {Facet::Body}, "users, any of whom can do it");
     RoleBuilder what = schema.role(object, "object", {Facet::Body}, "what it happens to");
     if (!needs_object) what.optional();
-    schema.param(verb, "verb", unit::one, "of the request: swap, set, push, pause, ...");
+    schema.param(verb, "verb", unit::one, "of the request, such as swap, set, push or pause");
     schema.param(target, "target", unit::one, "of the request: id of a component").or_else("");
     schema.param(argument, "argument", unit::one, "of the request: the new type; of a set, name=value").or_else("");
     schema.param(reason, "reason", unit::one, "why, in words").or_else("");
@@ -41,7 +41,7 @@ void PointedAtRows::describe(Schema& schema)
 void KeyRows::describe(Schema& schema)
 {
     TriggerRows::describe(schema, false);
-    schema.param(button, "button", unit::one, "bits of the buttons, all of which must be pressed: 1, 2, 4, ...").or_else(1).at_least(1);
+    schema.param(button, "button", unit::one, "bits of the buttons, all of which must be pressed: powers of 2").or_else(1).at_least(1);
 }
 
 Result<void> prepare_trigger(Row row, const TriggerRows& triggers)

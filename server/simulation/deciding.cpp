@@ -10,9 +10,6 @@ namespace plab::simulation
 namespace
 {
 
-/// A trial of a level may take this long. It ends earlier in all but very large scenes, where the governor is told that it does not know.
-constexpr double kLongestTrial = 5e7;  // ns
-
 /// m, or rad of shafts: how far apart two courses are after `interval` (s) that part in each step of h (s) as they did in the first one.
 /// Both the distances and the differences of speed are taken to add up.
 double departure(const std::vector<ObjectMotion>& one, const std::vector<ObjectMotion>& other, double h, double interval)
@@ -52,7 +49,7 @@ Result<std::vector<ObjectMotion>> Simulation::motion_with(std::uint32_t componen
 {
     Request request;
     request.operations.push_back(SwapOperation{run_.world().id_of(component), level.type, level.values});
-    request.trial.budget = TrialChoice::Budget::Given, request.trial.ns = kLongestTrial;
+    request.trial.budget = TrialChoice::Budget::Unlimited;  // a limit by the clock would make decisions depend on it
     return Transaction(run_, context_, *this, request).first_step();
 }
 
@@ -67,7 +64,8 @@ double Simulation::error_of_level(std::uint32_t component, const Level& level, c
 
 void Simulation::measure_for_governors()
 {
-    if (!deciding_ || !run_.levels().watches_anything() || recent_steps_.empty()) return;
+    // Only a program that serves components measures for them; elsewhere nothing of a run depends on the clock.
+    if (!deciding_ || !context_.read_request || !run_.levels().watches_anything() || recent_steps_.empty()) return;
     // Most steps shall keep within a budget, so what counts is the cost that nine of ten steps do not exceed.
     const auto nine_of_ten = [this](double StepCost::*clock)
     {

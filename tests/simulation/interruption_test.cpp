@@ -66,7 +66,7 @@ TEST_CASE("a step that is abandoned at any time leaves no trace: the same bits b
                                                {"Resolution/None", "Response/Rows"},
                                                {"Resolution/None", "Response/Penalty"}})
     {
-        CAPTURE(response);
+        INFO(std::string(resolution), " ", std::string(response));
         const std::string text = pile(resolution, response);
         Scene alone(text), disturbed(text);
         REQUIRE_MESSAGE(alone.loaded(), alone.error());

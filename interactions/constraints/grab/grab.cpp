@@ -84,23 +84,23 @@ Ref nearest_of(const GrabRows& grabs, Row row, const Bodies& bodies, const Shape
     return nearest;
 }
 
-void let_go(const StepContext& context, Row row, GrabRows& grabs, const std::string& why)
+void let_go(const StepContext& context, Row row, GrabRows& grabs, std::string_view why)
 {
     if (grabs.held[row].empty()) return;
-    context.emit(row, "grab.released", Severity::Info, grabs.held[row] + ": " + why);
+    context.emit(row, "grab.released", Severity::Info, grabs.held[row] + ": " + std::string(why));
     grabs.held[row].clear();
 }
 
 void take_hold(const StepContext& context, Row row, GrabRows& grabs, const Bodies& bodies, Ref body, bool by_centre)
 {
-    const std::string id(context.lookup->id_of(body));
+    const std::string_view id = context.lookup->id_of(body);
     if (grabs.held[row] == id) return;
     let_go(context, row, grabs, "another body is grabbed");
     const std::uint32_t b = body.index, h = grabs.user[row].index;
     grabs.held[row] = id;
     grabs.point[row] = by_centre ? Vec3{} : rotate_back(bodies.orientation[b], bodies.position[h] - bodies.position[b]);
     grabs.attitude[row] = conjugate(bodies.orientation[h]) * bodies.orientation[b];
-    context.emit(row, "grab.holds", Severity::Info, id);
+    context.emit(row, "grab.holds", Severity::Info, std::string(id));
 }
 
 void decide(const StepContext& context, Row row, GrabRows& grabs, const Bodies& bodies, const Shapes& shapes)

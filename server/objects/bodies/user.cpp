@@ -19,7 +19,7 @@ void UserRows::describe(Schema& schema)
     schema.state(target_linear_velocity, "target_linear_velocity", unit::metre_per_second, "of the sample, in the world").input();
     schema.state(target_angular_velocity, "target_angular_velocity", unit::radian_per_second, "of the sample, in the world").input();
     schema.state(grip, "grip", unit::one, "how far the hand is closed: 0 open, 1 closed").at_least(0).at_most(1).input();
-    schema.state(buttons, "buttons", unit::one, "pressed buttons, one bit each: 1, 2, 4, ...").not_negative().input();
+    schema.state(buttons, "buttons", unit::one, "pressed buttons, one bit each").not_negative().input();
     schema.param(extrapolation, "extrapolation", unit::second, "for how long a sample is extrapolated; then it stands still")
         .or_else(0.1)
         .not_negative();

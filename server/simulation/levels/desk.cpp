@@ -13,7 +13,7 @@ namespace plab::simulation
 class LevelBook::Desk final : public LevelControl, public ViewpointSink, public RequestSink
 {
 public:
-    Desk(const LevelBook& book, const MeasureError& error) : book_(book), error_(error) {}
+    Desk(const LevelBook& book, const MeasureError& error) : book_(book), error_(error) { viewpoints_.clear(), looked_.clear(); }
 
     /// The calls that follow come from this component.
     void serve(std::uint32_t component);
@@ -41,10 +41,14 @@ private:
     std::uint32_t by_ = kNoIndex;
     const Governor* governor_ = nullptr;  ///< null: the component watches nothing
     bool chose_ = false;                  ///< the last decision has choices of this component
-    std::vector<Viewpoint> viewpoints_;
-    std::vector<GovernedComponent> looked_;
+    // Kept from step to step, so that a look at a scene in which nothing changes needs no memory.
+    static thread_local std::vector<Viewpoint> viewpoints_;
+    static thread_local std::vector<GovernedComponent> looked_;
     std::vector<Decision> decisions_;
 };
+
+thread_local std::vector<Viewpoint> LevelBook::Desk::viewpoints_;
+thread_local std::vector<GovernedComponent> LevelBook::Desk::looked_;
 
 void LevelBook::Desk::serve(std::uint32_t component)
 {

@@ -236,7 +236,7 @@ TEST_CASE("the view: a named camera, the front one, everything; and the effect o
     const std::vector<render::Item> items = model.draw(at(0)).items;
     const auto view_of = [&](const ViewChoice& choice, double time = 0)
     {
-        Viewpoint viewpoint(choice);
+        view::Viewpoint viewpoint(choice);
         return viewpoint.find(model, items, at(time));
     };
     CHECK(view_of({})->position == Vec3{0, -9, 0});
