@@ -25,7 +25,7 @@ struct BudgetRows
 /// which a viewer sees the component.
 void keep_budget(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control);
 
-/// Governor/Error: the cheapest level whose error stays below a bound.
+/// A governor by error: the cheapest level whose error stays below a bound.
 struct ErrorRows
 {
     WatchRows watch;
