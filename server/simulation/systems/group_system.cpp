@@ -21,7 +21,7 @@ Vec3 without_traces(const Vec3& v) { return {without_traces(v.x), without_traces
 void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed)
 {
     frame_ = frame;
-    ++configuration_;
+    configuration_ = scratch_->new_configuration();
     world::World& world = *frame.world;
     const world::HostTables& host = world.host();
     for (auto* list :
@@ -76,8 +76,8 @@ void GroupSystem::collect_members(std::span<const std::uint32_t> groups)
 
 void GroupSystem::activate()
 {
-    if (scratch_->is_active(this, configuration_)) return;
-    scratch_->activate(this, configuration_, active_bodies_, active_shafts_);
+    if (scratch_->is_active(configuration_)) return;
+    scratch_->activate(configuration_, active_bodies_, active_shafts_);
     for (std::size_t i = 0; i < own_bodies_; ++i) scratch_->book_body(active_bodies_[i]);
     for (std::size_t i = 0; i < own_shafts_; ++i) scratch_->book_shaft(active_shafts_[i]);
 }

@@ -179,7 +179,7 @@ private:
 
     StepFrame frame_;
     StageScratch* scratch_;
-    std::uint64_t configuration_ = 0;  ///< number of calls of configure()
+    std::uint64_t configuration_ = 0;  ///< StageScratch::new_configuration() at the last configure()
     std::vector<std::uint32_t> bodies_, shafts_, quantities_, prescribed_bodies_, prescribed_shafts_;
     std::vector<std::uint32_t> active_bodies_, active_shafts_;  ///< all members, including prescribed ones
     std::size_t own_bodies_ = 0, own_shafts_ = 0;               ///< these come first; the others are observed only and are not booked

@@ -8,7 +8,7 @@ namespace plab::simulation
 void StageScratch::fit(const world::World& world)
 {
     const world::HostTables& host = world.host();
-    owner_ = nullptr;
+    active_ = 0;
     places_.clear();
     set_bodies_.clear(), set_shafts_.clear();
     for (auto* flags : {&active_bodies, &accounted_bodies}) flags->assign(host.bodies.size(), 0);
@@ -72,11 +72,10 @@ void StageScratch::list_active(const RefList& all, RefList& out)
     for (const std::uint32_t place : found_) out.push_back(all[place]);
 }
 
-void StageScratch::activate(const void* owner, std::uint64_t configuration, std::span<const std::uint32_t> bodies,
-                            std::span<const std::uint32_t> shafts)
+void StageScratch::activate(std::uint64_t configuration, std::span<const std::uint32_t> bodies, std::span<const std::uint32_t> shafts)
 {
     deactivate();
-    owner_ = owner, configuration_ = configuration;
+    active_ = configuration;
     set_bodies_.assign(bodies.begin(), bodies.end());
     set_shafts_.assign(shafts.begin(), shafts.end());
     for (const std::uint32_t b : set_bodies_) active_bodies[b] = 1;

@@ -17,10 +17,12 @@ public:
     /// Resizes the arrays for the world. Nothing is active afterwards.
     void fit(const world::World& world);
 
-    /// Sets the flags, by host row, of the objects that are advanced, and clears those of the previous owner.
-    void activate(const void* owner, std::uint64_t configuration, std::span<const std::uint32_t> bodies,
-                  std::span<const std::uint32_t> shafts);
-    bool is_active(const void* owner, std::uint64_t configuration) const { return owner_ == owner && configuration_ == configuration; }
+    /// A number that no configuration of any system has had. An address would not tell them apart: a system that is gone leaves its own to
+    /// the next one.
+    std::uint64_t new_configuration() { return ++configurations_; }
+    /// Sets the flags, by host row, of the objects that are advanced, and clears those of the previous configuration.
+    void activate(std::uint64_t configuration, std::span<const std::uint32_t> bodies, std::span<const std::uint32_t> shafts);
+    bool is_active(std::uint64_t configuration) const { return active_ == configuration; }
     /// Those members of a list of participants, in its order, that are active.
     void list_active(const RefList& all, RefList& out);
     void book_body(std::uint32_t b) { accounted_bodies[b] = 1; }
@@ -49,8 +51,8 @@ private:
 
     CostMeter own_meter_;
     CostMeter* meter_ = &own_meter_;
-    const void* owner_ = nullptr;
-    std::uint64_t configuration_ = 0;
+    std::uint64_t configurations_ = 0;
+    std::uint64_t active_ = 0;  ///< configuration of the system to which the flags belong; 0: none
     std::vector<std::uint32_t> set_bodies_, set_shafts_;
     std::vector<Places> places_;
     std::vector<std::uint32_t> found_;
