@@ -22,6 +22,19 @@ std::string box(const std::string& id, const std::string& position)
            "' type='State/RigidBody' mass='2' shape='" + id + "_shape' position='" + position + "'/>";
 }
 
+/// The hand moves at 0.5 m/s along x for 120 steps. Returns the impulse that it felt, N s along x.
+double push(Scene& scene)
+{
+    double impulse = 0;
+    for (int n = 1; n <= 120; ++n)
+    {
+        send(scene, {n, {0.5 * (n - 1) * kFrame, 0, 0}, {}, {0.5, 0, 0}});
+        scene.step();
+        impulse += kFrame * scene.vec("hand", "force").x;
+    }
+    return impulse;
+}
+
 }  // namespace
 
 TEST_CASE("a sample is extrapolated to the end of each step, from its age, and no longer than allowed")
@@ -91,13 +104,7 @@ TEST_CASE("a hand pushes as any prescribed body does: what it pushes gets its sp
     // 2 kg in front of a hand that moves at 0.5 m/s, in free space: a plastic impact, J = m v.
     Scene scene(hand() + box("box", "0.2 0 0") + kContact);
     REQUIRE_MESSAGE(scene.loaded(), scene.error());
-    double impulse = 0;
-    for (int n = 1; n <= 120; ++n)
-    {
-        send(scene, {n, {0.5 * (n - 1) * kFrame, 0, 0}, {}, {0.5, 0, 0}});
-        scene.step();
-        impulse += kFrame * scene.vec("hand", "force").x;
-    }
+    const double impulse = push(scene);
     CHECK(near(scene.vec("box", "linear_velocity").x, 0.5, 1e-9));
     CHECK(std::fabs(impulse + 2 * 0.5) < 1e-9);
 }
@@ -129,13 +136,7 @@ TEST_CASE("a hand in impacts inside a step, and at its end, feels the impulse th
         CAPTURE(response);
         Scene scene(hand() + box("box", "0.2 0 0") + "<component id='contact' type='CDetection/ODE' between='*' " + response + "/>");
         REQUIRE_MESSAGE(scene.loaded(), scene.error());
-        double impulse = 0;
-        for (int n = 1; n <= 120; ++n)
-        {
-            send(scene, {n, {0.5 * (n - 1) * kFrame, 0, 0}, {}, {0.5, 0, 0}});
-            scene.step();
-            impulse += kFrame * scene.vec("hand", "force").x;
-        }
+        const double impulse = push(scene);
         const double gained = 2 * scene.vec("box", "linear_velocity").x;
         CHECK(gained > 0.9);
         CHECK(std::fabs(impulse + gained) < 1e-9);
