@@ -144,9 +144,9 @@ void People::move_one(Clients& clients, const std::vector<std::string>& there, c
         const simulation::Reply reply = carry_out(ask);
         if (!reply.done) why_not = reply.errors.empty() ? "refused" : reply.errors.front().text();
     }
-    if (why_not != client.told && !why_not.empty())
+    if (why_not != client.last_complaint && !why_not.empty())
         tell(kIsUser ? "user.refused" : "viewer.refused", is_other ? wanted_of(sample) : client.wanted, why_not);
-    client.told = why_not;
+    client.last_complaint = why_not;
     if (received.gone) clients.erase(sample.client);
 }
 

@@ -48,7 +48,7 @@ private:
         std::string component;  ///< that it moves; "": none
         std::uint64_t number = 0, skipped = 0;
         std::int64_t heard_ns = 0;
-        std::string told;  ///< the last complaint about it
+        std::string last_complaint;
     };
     using Clients = std::map<wire::ClientId, Client>;
 

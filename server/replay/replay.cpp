@@ -82,7 +82,7 @@ class Replay
 {
 public:
     Replay(record::RunLog& log, simulation::Simulation& simulation, model::TypeSource& types, const ReplayOptions& options)
-        : log_(&log), s_(&simulation), types_(&types), options_(&options), hashes_(log)
+        : log_(&log), simulation_(&simulation), types_(&types), options_(&options), hashes_(log)
     {
     }
 
@@ -103,7 +103,7 @@ private:
     }
 
     record::RunLog* log_;
-    simulation::Simulation* s_;
+    simulation::Simulation* simulation_;
     model::TypeSource* types_;
     const ReplayOptions* options_;
     Hashes hashes_;
@@ -129,8 +129,8 @@ Result<void> Replay::begin(const record::RecordedSnapshot& snapshot)
     if (!recorded) return recorded.errors();
     auto decoded = simulation::decode(recorded->data, *types_);
     if (!decoded) return decoded.errors();
-    if (auto restored = s_->restore(decoded->snapshot); !restored) return restored;
-    revisions_ahead_ = recorded->revision - s_->revision();
+    if (auto restored = simulation_->restore(decoded->snapshot); !restored) return restored;
+    revisions_ahead_ = recorded->revision - simulation_->revision();
     return {};
 }
 
@@ -159,19 +159,19 @@ void Replay::find_gaps(std::uint64_t run)
 /// Carries out requests that took effect before the next step.
 Result<void> Replay::ask_what_is_due()
 {
-    for (; next_ < journal_.size() && journal_[next_].step <= s_->tick(); ++next_)
+    for (; next_ < journal_.size() && journal_[next_].step <= simulation_->tick(); ++next_)
     {
         const wire::Journal& entry = journal_[next_];
-        if (entry.step < s_->tick()) continue;  // before the snapshot
+        if (entry.step < simulation_->tick()) continue;           // before the snapshot
         if (entry.origin == wire::kDecidedByComponent) continue;  // the component decides the same again
         wire::Request text;
         text.operations = entry.operations;
-        auto wanted = control::wanted_of(text, *types_, s_->limits());
+        auto wanted = control::wanted_of(text, *types_, simulation_->limits());
         if (!wanted) return wanted.errors();
         if (wanted->shutdown || !simulation::affects_the_run(wanted->request)) continue;
         // It took effect when it was recorded, whatever its trial would now give, since a trial may depend on the clock.
         wanted->request.trial.budget = simulation::TrialChoice::Budget::None;
-        const simulation::Reply reply = s_->carry_out_now(wanted->request);
+        const simulation::Reply reply = simulation_->carry_out_now(wanted->request);
         ++report_.requests;
         if (!reply.done)
             return reason("the request of step " + std::to_string(entry.step) +
@@ -182,10 +182,10 @@ Result<void> Replay::ask_what_is_due()
 
 Result<void> Replay::verify(std::uint64_t run)
 {
-    auto recorded = hashes_.at(s_->tick());
+    auto recorded = hashes_.at(simulation_->tick());
     if (!recorded) return recorded.errors();
     if (!*recorded) return {};
-    const std::uint64_t now = s_->state_hash();
+    const std::uint64_t now = simulation_->state_hash();
     report_.last_hash = now;
     if (now == **recorded)
     {
@@ -193,9 +193,9 @@ Result<void> Replay::verify(std::uint64_t run)
         return {};
     }
     Mismatch mismatch;
-    mismatch.run = run, mismatch.step = s_->tick(), mismatch.recorded = **recorded, mismatch.replayed = now;
-    mismatch.replayed_revision = s_->revision() + revisions_ahead_;
-    if (auto found = find_differences(*log_, *s_, *types_, mismatch, [&] { return ask_what_is_due(); }); !found) return found;
+    mismatch.run = run, mismatch.step = simulation_->tick(), mismatch.recorded = **recorded, mismatch.replayed = now;
+    mismatch.replayed_revision = simulation_->revision() + revisions_ahead_;
+    if (auto found = find_differences(*log_, *simulation_, *types_, mismatch, [&] { return ask_what_is_due(); }); !found) return found;
     report_.mismatch = std::move(mismatch);
     return {};
 }
@@ -208,21 +208,21 @@ Result<void> Replay::run(std::uint64_t run)
     if (auto read = read_journal(run); !read) return read;
     if (auto begun = hashes_.begin(run); !begun) return begun;
     ++report_.runs;
-    report_.made.push_back({run, s_->tick(), s_->tick(), s_->time()});
-    if (options_->begun) options_->begun(s_->time());
+    report_.made.push_back({run, simulation_->tick(), simulation_->tick(), simulation_->time()});
+    if (options_->begun) options_->begun(simulation_->time());
     while (!report_.mismatch)
     {
-        if (options_->until && s_->time() >= *options_->until - 0.5 * s_->dt()) break;
-        auto more = hashes_.more_after(s_->tick());
+        if (options_->until && simulation_->time() >= *options_->until - 0.5 * simulation_->dt()) break;
+        auto more = hashes_.more_after(simulation_->tick());
         if (!more) return more.errors();
         if (!*more || over()) break;  // at its end, a run is no longer interrupted
         if (auto asked = ask_what_is_due(); !asked) return asked;
-        if (!s_->step_once())
+        if (!simulation_->step_once())
         {
             report_.interrupted = true;  // interrupted during the step: it does not count, whatever was verified before
             break;
         }
-        ++report_.steps, report_.made.back().last = s_->tick();
+        ++report_.steps, report_.made.back().last = simulation_->tick();
         if (options_->verify)
             if (auto verified = verify(run); !verified) return verified;
         if (options_->stepped) options_->stepped();

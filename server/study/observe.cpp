@@ -72,7 +72,7 @@ double unexplained_energy(const simulation::Simulation& s, const simulation::Tot
 }
 
 Observation::Observation(const simulation::Simulation& s, RunRecord& out)
-    : s_(&s),
+    : simulation_(&s),
       out_(&out),
       start_(s.totals()),
       by_work_(energy_goes_unseen(s)),
@@ -103,13 +103,13 @@ void Observation::note(const Event& e)
         out_->contacts_cut = true;
         return;
     }
-    out_->contacts.push_back({e.kind, s_->world().id_of(e.a), s_->world().id_of(e.b), e.time});
+    out_->contacts.push_back({e.kind, simulation_->world().id_of(e.a), simulation_->world().id_of(e.b), e.time});
 }
 
 void Observation::step()
 {
-    for (const Event& e : s_->events()) note(e);
-    const simulation::StepReport& report = s_->stepper().report();
+    for (const Event& e : simulation_->events()) note(e);
+    const simulation::StepReport& report = simulation_->stepper().report();
     grow(out_->penetration, report.deepest);
     grow(out_->residual, report.worst_residual);
     out_->trials += static_cast<std::uint64_t>(report.trials);
@@ -120,8 +120,8 @@ void Observation::step()
 void Observation::sample_energy(const simulation::Totals& t)
 {
     EnergySeries& e = out_->energy;
-    e.time.push_back(s_->time()), e.energy.push_back(t.kinetic + t.stored);
-    e.drift.push_back(unexplained_energy(*s_, t, by_work_) - unexplained_at_start_);
+    e.time.push_back(simulation_->time()), e.energy.push_back(t.kinetic + t.stored);
+    e.drift.push_back(unexplained_energy(*simulation_, t, by_work_) - unexplained_at_start_);
     grow(e.scale, std::max(t.kinetic, std::fabs(t.stored - start_.stored)));
 }
 
@@ -138,23 +138,23 @@ void Observation::sample_parts()
 {
     for (PartFigures& part : out_->parts)
     {
-        const std::uint32_t i = s_->world().find(part.id);
+        const std::uint32_t i = simulation_->world().find(part.id);
         if (i == kNoIndex) continue;
-        grow(part.error, s_->error_of(i));
-        if (part.requested.starts_with("Constraint/")) grow(out_->violation, s_->error_of(i));
-        for (const Field& f : s_->world().table_of(i).schema().fields())
+        grow(part.error, simulation_->error_of(i));
+        if (part.requested.starts_with("Constraint/")) grow(out_->violation, simulation_->error_of(i));
+        for (const Field& f : simulation_->world().table_of(i).schema().fields())
         {
             if (f.kind != FieldKind::Output || f.type != FieldType::Integer) continue;
-            grow(part.largest[f.name], *number_of(s_->world().get(i, f.name)));
+            grow(part.largest[f.name], *number_of(simulation_->world().get(i, f.name)));
         }
     }
 }
 
 void Observation::sample()
 {
-    out_->times.push_back(s_->time());
-    for (std::size_t k = 0; k < out_->quantities.size(); ++k) read(s_->world(), out_->quantities[k], out_->time_series[k].values);
-    const simulation::Totals totals = s_->totals();
+    out_->times.push_back(simulation_->time());
+    for (std::size_t k = 0; k < out_->quantities.size(); ++k) read(simulation_->world(), out_->quantities[k], out_->time_series[k].values);
+    const simulation::Totals totals = simulation_->totals();
     sample_energy(totals);
     sample_momenta(totals);
     sample_parts();
@@ -162,16 +162,16 @@ void Observation::sample()
 
 void Observation::finish()
 {
-    const std::vector<std::string> words = publish::resolved_algorithms(*s_);
+    const std::vector<std::string> words = publish::resolved_algorithms(*simulation_);
     for (PartFigures& part : out_->parts)
     {
-        const std::uint32_t i = s_->world().find(part.id);
+        const std::uint32_t i = simulation_->world().find(part.id);
         if (i == kNoIndex) continue;
         part.resolved = words[i];
-        for (const Field& f : s_->world().table_of(i).schema().fields())
+        for (const Field& f : simulation_->world().table_of(i).schema().fields())
         {
             if (f.kind != FieldKind::Output) continue;
-            const Value v = s_->world().get(i, f.name);
+            const Value v = simulation_->world().get(i, f.name);
             if (const auto x = number_of(v)) part.outputs[f.name] = *x;
             if (const auto* text = std::get_if<std::string>(&v); text && f.name == "resolved" && part.resolved.empty())
                 part.resolved = *text;

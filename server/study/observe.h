@@ -24,7 +24,7 @@ private:
     void sample_momenta(const simulation::Totals& totals);
     void sample_parts();
 
-    const simulation::Simulation* s_;
+    const simulation::Simulation* simulation_;
     RunRecord* out_;
     simulation::Totals start_;
     bool by_work_ = false;

@@ -60,28 +60,30 @@ bool lost(const simulation::Simulation& s) { return !s.stepper().report().frozen
 class Recorder
 {
 public:
-    Recorder(simulation::Simulation& s, const RunOptions& options, RunRecord& out) : s_(s), options_(options), out_(out), observe_(s, out)
+    Recorder(simulation::Simulation& s, const RunOptions& options, RunRecord& out)
+        : simulation_(s), options_(options), out_(out), observe_(s, out)
     {
     }
 
     void go()
     {
-        out_.dt = s_.dt();
-        post_swaps(s_, options_.swaps);
-        const std::vector<Tick> samples = sample_ticks(options_, s_.dt());
+        out_.dt = simulation_.dt();
+        post_swaps(simulation_, options_.swaps);
+        const std::vector<Tick> samples = sample_ticks(options_, simulation_.dt());
         warming_ = std::max(kFewestToWarm, samples.back() / 10), warm_from_ = warming_;
         const double begin = thread_cpu_seconds();
         for (const Tick next : samples)
         {
-            while (s_.tick() < next && out_.ok()) step(begin);
+            while (simulation_.tick() < next && out_.ok()) step(begin);
             if (!out_.ok()) break;
             observe_.sample();
             if (!std::isfinite(out_.energy.energy.back()))
-                fail(Outcome::NotFinite, "the energy of the scene was no longer a number at t = " + model::format_real(s_.time()) + " s");
+                fail(Outcome::NotFinite,
+                     "the energy of the scene was no longer a number at t = " + model::format_real(simulation_.time()) + " s");
         }
         if (out_.ok() && out_.swaps.size() < options_.swaps.size())
-            fail(Outcome::SwapRefused, "the run ended after " + std::to_string(s_.tick()) + " steps, before the step of a swap");
-        out_.steps = s_.tick(), out_.reached = s_.time(), out_.hash = s_.state_hash();
+            fail(Outcome::SwapRefused, "the run ended after " + std::to_string(simulation_.tick()) + " steps, before the step of a swap");
+        out_.steps = simulation_.tick(), out_.reached = simulation_.time(), out_.hash = simulation_.state_hash();
         observe_.finish();
     }
 
@@ -89,29 +91,30 @@ private:
     void step(double begin)
     {
         const std::uint64_t before = options_.allocations ? options_.allocations() : 0;
-        const bool stepped = s_.step();
+        const bool stepped = simulation_.step();
         const std::uint64_t made = options_.allocations ? options_.allocations() - before : 0;
         if (!stepped) return fail(Outcome::Frozen, "the scene was paused and did not step");
         observe_.step();
-        if (take_replies() > 0) warm_from_ = s_.tick() + warming_;
-        if (options_.allocations && s_.tick() > warm_from_) out_.allocations = out_.allocations.value_or(0) + made;
+        if (take_replies() > 0) warm_from_ = simulation_.tick() + warming_;
+        if (options_.allocations && simulation_.tick() > warm_from_) out_.allocations = out_.allocations.value_or(0) + made;
         if (!out_.ok()) return;
         check();
         if (options_.is_stopped()) return fail(Outcome::Interrupted, "interrupted");
-        if (s_.tick() % kStepsPerCheck == 0 && thread_cpu_seconds() - begin > options_.budget)
+        if (simulation_.tick() % kStepsPerCheck == 0 && thread_cpu_seconds() - begin > options_.budget)
             fail(Outcome::TooSlow, "stopped after " + number_text(options_.budget) + " s of CPU time");
     }
     /// How many swaps were answered before this step.
     std::size_t take_replies()
     {
         const std::size_t before = out_.swaps.size();
-        for (simulation::Reply& reply : s_.take_replies())
+        for (simulation::Reply& reply : simulation_.take_replies())
         {
             if (!reply.done && out_.ok())
             {
                 char when[80];
-                const long long step = s_.tick() - 1;
-                std::snprintf(when, sizeof when, "the swap before step %lld, at t = %.9g s: ", step, static_cast<double>(step) * s_.dt());
+                const long long step = simulation_.tick() - 1;
+                std::snprintf(when, sizeof when, "the swap before step %lld, at t = %.9g s: ", step,
+                              static_cast<double>(step) * simulation_.dt());
                 fail(Outcome::SwapRefused, when + join(reply.errors));
             }
             out_.swaps.push_back(std::move(reply));
@@ -120,29 +123,31 @@ private:
     }
     void check()
     {
-        if (lost(s_))
-            return fail(Outcome::NotFinite, "the state of " + s_.world().id_of(s_.stepper().report().frozen.front()) +
-                                                " was no longer finite at t = " + model::format_real(s_.time()) + " s");
-        for (const Event& e : s_.events())
+        if (lost(simulation_))
+            return fail(Outcome::NotFinite, "the state of " + simulation_.world().id_of(simulation_.stepper().report().frozen.front()) +
+                                                " was no longer finite at t = " + model::format_real(simulation_.time()) + " s");
+        for (const Event& e : simulation_.events())
         {
-            if (e.kind == "motion.diverged") return fail(Outcome::BlewUp, e.message + "; t = " + model::format_real(s_.time()) + " s");
+            if (e.kind == "motion.diverged")
+                return fail(Outcome::BlewUp, e.message + "; t = " + model::format_real(simulation_.time()) + " s");
             if (e.severity == Severity::Failure)
-                return fail(Outcome::Quarantined,
-                            (e.component == kNoIndex ? std::string() : s_.world().id_of(e.component) + ": ") + e.kind + ": " + e.message);
+                return fail(
+                    Outcome::Quarantined,
+                    (e.component == kNoIndex ? std::string() : simulation_.world().id_of(e.component) + ": ") + e.kind + ": " + e.message);
         }
         if (!options_.floor) return;
-        const Bodies& bodies = s_.world().host().bodies;
-        for (const std::uint32_t i : s_.world().in_id_order())
+        const Bodies& bodies = simulation_.world().host().bodies;
+        for (const std::uint32_t i : simulation_.world().in_id_order())
         {
-            const world::Component& c = s_.world().component(i);
+            const world::Component& c = simulation_.world().component(i);
             if (c.facet != Facet::Body || !bodies.dynamic(c.host_index) || bodies.position[c.host_index].z >= *options_.floor) continue;
             return fail(Outcome::FellThrough, c.id + " was below z = " + model::format_real(*options_.floor) +
-                                                  " m at t = " + model::format_real(s_.time()) + " s");
+                                                  " m at t = " + model::format_real(simulation_.time()) + " s");
         }
     }
     void fail(Outcome outcome, std::string why) { out_.outcome = outcome, out_.why = std::move(why); }
 
-    simulation::Simulation& s_;
+    simulation::Simulation& simulation_;
     const RunOptions& options_;
     RunRecord& out_;
     Observation observe_;

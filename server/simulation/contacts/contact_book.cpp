@@ -95,7 +95,7 @@ Errors ContactBook::rebuild(bool sizes)
     found_.clear(), runs_.clear();
     if (sizes || !detectors_.empty()) measure_bodies();
     list_participants();
-    look_at(nullptr), look_at_all_once();
+    detect_among(nullptr), detect_all_once();
     return {};
 }
 
@@ -183,7 +183,7 @@ bool ContactBook::detect(const Detector& detector, std::uint32_t index, std::spa
 
 void ContactBook::detect_all()
 {
-    if (awake_ && !std::exchange(looked_at_all_, true))
+    if (awake_ && !std::exchange(has_detected_all_, true))
     {
         const IndexSet* const awake = std::exchange(awake_, nullptr);
         detect_all();

@@ -70,9 +70,9 @@ public:
     /// Sets found() to what all detectors find.
     void detect_all();
     /// From now on detect_all() leaves out pairs without one of these bodies; null: none is left out. All others must stay where they are.
-    void look_at(const IndexSet* awake) { awake_ = awake; }
+    void detect_among(const IndexSet* awake) { awake_ = awake; }
     /// Bodies that are left out may have moved: detectors have to look at all of them once.
-    void look_at_all_once() { looked_at_all_ = false; }
+    void detect_all_once() { has_detected_all_ = false; }
     /// Whether a detector was given this body by one of its roles.
     bool takes_part(std::uint32_t detector, std::uint32_t body) const;
     /// Sets found() to the contacts of known pairs, where all others are certain to be apart.
@@ -177,7 +177,7 @@ private:
     std::vector<std::vector<Participants>> participants_;  ///< by detector, then by address of the list
     std::vector<std::uint64_t> seen_in_;                   ///< by detector: the step (StepState::serial) in which it looked at all bodies
     const IndexSet* awake_ = nullptr;
-    bool looked_at_all_ = false;
+    bool has_detected_all_ = false;
     std::vector<Shortlist> shortlists_;  ///< lists keep their memory
     std::vector<std::uint32_t> short_places_;
     IndexSet asked_;  ///< bodies

@@ -287,7 +287,7 @@ void SleepingIslands::list_awake()
         for (const std::uint32_t b : r.islands[i]->bodies) island_of_body_[b] = i;
     r.awake = awake_bodies_.members(), r.lists_awake = true;
     listed_ = r.mark;
-    contacts_.look_at(any() ? &awake_bodies_ : nullptr);
+    contacts_.detect_among(any() ? &awake_bodies_ : nullptr);
     publish();
 }
 

@@ -23,7 +23,7 @@ bool SleepingIslands::begin_step()
     // The state may have been replaced as well, by a restored one.
     if (on_ && was_on && r.mark && r.mark == listed_) return false;
     if (!r.mark) r.note_change();
-    contacts_.look_at_all_once();
+    contacts_.detect_all_once();
     const bool asleep = std::any_of(r.bodies.begin(), r.bodies.end(), [](const BodyRest& b) { return b.asleep; });
     if (asleep && r.islands.empty()) put_pairs_away();
     list_awake();
