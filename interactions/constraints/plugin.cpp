@@ -9,6 +9,7 @@
 #include "joints/motor.h"
 #include "joints/rigid_joints.h"
 #include "joints/rolling.h"
+#include "joints/snap.h"
 
 namespace
 {
@@ -258,6 +259,19 @@ void register_grab(Registrar& registrar)
         .source("E. Catto, Soft constraints, GDC 2011");
 }
 
+void register_snap(Registrar& registrar)
+{
+    registrar.component<SnapRows>("Constraint/Snap", "draws two frames together, critically damped")
+        .family("Constraint/Snap")
+        .command<&draw_together>(Phase::Force, "Constraint/Force", "forces that make the distance and the angle die away")
+        .command<&finish_snap>(Phase::Finish, kFinish, "distance and angle at the end of the step")
+        .accuracy("the solver's order")
+        .strengths("brings free bodies together without a jump; momentum is kept, the work is booked")
+        .cost("5 or 6 equations for each pair and force evaluation")
+        .limits("explicit solvers: unstable for steps beyond 2 / w; a body that others hold comes more slowly, and may overshoot")
+        .source("Witkin, Gleicher, Welch, Interactive dynamics, SIGGRAPH 1990; R. Smith, Dynamics simulation, 2001");
+}
+
 }  // namespace
 
 PLAB_PLUGIN("constraints", registrar)
@@ -269,4 +283,5 @@ PLAB_PLUGIN("constraints", registrar)
     register_gears(registrar);
     register_rolling(registrar);
     register_grab(registrar);
+    register_snap(registrar);
 }

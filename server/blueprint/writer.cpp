@@ -5,6 +5,7 @@
 #include <set>
 
 #include "blueprint/entry_text.h"
+#include "blueprint/template.h"
 #include "blueprint/xgl.h"
 #include "model/numbers.h"
 #include "model/values.h"
@@ -160,6 +161,8 @@ private:
     {
         if (type_of(f.value) == FieldType::None) return;
         const Entries* entries = std::get_if<Entries>(&f.value);
+        if (const auto* text = std::get_if<std::string>(&f.value); text && f.name == "template")
+            if (const std::string element = write_template(*text, 2 * depth); !element.empty()) return void(out_ += element);
         const std::string open = indent(depth) + "<param" + attribute("name", f.name) + ">";
         if (!entries)
         {

@@ -42,6 +42,25 @@ double departure(const std::vector<ObjectMotion>& one, const std::vector<ObjectM
     return any_body ? bodies : shafts;
 }
 
+std::string file_of(const world::World& world, std::uint32_t component)
+{
+    const model::ComponentSpec* spec = world.scene().find(world.id_of(component));
+    return spec ? spec->where.file : std::string();
+}
+
+/// What was added or removed, in words.
+std::string ids_in(const std::vector<Operation>& operations)
+{
+    std::string out;
+    for (const Operation& operation : operations)
+    {
+        if (const auto* gone = std::get_if<RemoveOperation>(&operation)) out += (out.empty() ? "" : " ") + gone->id;
+        if (const auto* added = std::get_if<AddBlueprintOperation>(&operation))
+            for (const model::ComponentNode& node : added->blueprint->components) out += (out.empty() ? "" : " ") + node.id;
+    }
+    return out;
+}
+
 }  // namespace
 
 /// What the first step would be with a level, or as it is (null).
@@ -109,9 +128,12 @@ void Simulation::carry_out_decision(const Decision& decision)
     Request request;
     request.trial.budget = TrialChoice::Budget::None;
     request.operations = decision.operations;
+    request.made_by = run_.world().id_of(decision.by);
     if (!decision.verb.empty())
     {
-        auto read = context_.read_request ? context_.read_request(decision.verb, decision.target, decision.argument)
+        // Errors in what a component adds are told with the file in which the component stands.
+        const std::string target = decision.verb == "add" && decision.target.empty() ? file_of(run_.world(), decision.by) : decision.target;
+        auto read = context_.read_request ? context_.read_request(decision.verb, target, decision.argument)
                                           : Result<Request>(reason("this program does not read requests of components"));
         if (!read) return refuse_decision(decision.by, decision.verb + " " + decision.target, read.error().reason);
         request.operations = std::move(read->operations);
@@ -147,6 +169,14 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
         Event e;
         e.tick = tick(), e.time = time(), e.kind = "level.changed", e.component = component;
         e.message = swap.from + " -> " + swap.to + ": " + why;
+        decided_.events.push_back(std::move(e));
+    }
+    if (decision.verb == "add" || decision.verb == "remove")
+    {
+        Event e;
+        e.tick = tick(), e.time = time(), e.component = decision.by;
+        e.kind = decision.verb == "add" ? "component.made" : "component.removed";
+        e.message = ids_in(request.operations) + ": " + reasons.front();
         decided_.events.push_back(std::move(e));
     }
     reply.made = std::make_shared<const Request>(request), reply.decided_by = run_.world().id_of(decision.by);

@@ -1,0 +1,74 @@
+// What a template knows of a pair, and the blueprints that a rule asks for.
+#include "round.h"
+#include "template_text.h"
+
+namespace plab::rules
+{
+
+std::optional<Value> Round::known_of(const Site& site, std::string_view name) const
+{
+    if (name == "radius" && site.radius > 0) return Value(site.radius);
+    if (name == "connector") return Value(std::string(lookup_.id_of(site.component)));
+    const Ref shape = lookup_.participant(lookup_.component_of(site.object), "shape");
+    for (const Ref source : {site.connector, site.object, shape})
+        if (source.valid())
+            if (Value value = lookup_.value_of(source, name); type_of(value) != FieldType::None) return value;
+    return {};
+}
+
+std::optional<Value> Round::known(Row row, const Pair& pair, std::string_view name) const
+{
+    const Memory& memory = *rules_.memory[row];
+    const Site &a = memory.sites[pair.a], &b = memory.sites[pair.b];
+    if (name == "a") return Value(std::string(lookup_.id_of(a.object)));
+    if (name == "b") return Value(std::string(lookup_.id_of(b.object)));
+    if (name == "rule") return Value(std::string(lookup_.id_of(scene_.context.component_of_row[row])));
+    if (name == "distance") return Value(pair.measures.distance);
+    if (name == "along") return Value(pair.measures.along);
+    if (name == "radial") return Value(pair.measures.radial);
+    if (name == "angle") return Value(pair.measures.angle);
+    const Place at_a = place_of(a, scene_.bodies, scene_.shafts);
+    if (name == "point") return Value(at_a.X.p);
+    if (name == "axis") return Value(rotate(at_a.X.q, {0, 0, 1}));
+    if (name.starts_with("a.")) return known_of(a, name.substr(2));
+    if (name.starts_with("b.")) return known_of(b, name.substr(2));
+    for (const Entry& entry : pair.values)
+        if (entry.name == name) return std::visit([](const auto& v) { return Value(v); }, entry.value);
+    return {};
+}
+
+Result<std::string> Round::blueprint_for(const Pair& pair) const
+{
+    return fill_template(rules_.text[row_], [&](std::string_view name) { return known(row_, pair, name); });
+}
+
+std::string Round::drawing_for(const Pair& pair, const std::string& id) const
+{
+    const Site &a = memory_.sites[pair.a], &b = memory_.sites[pair.b];
+    const auto filled = [&](std::string_view name) -> std::optional<Value>
+    {
+        if (name == "id") return Value(id + ".draw");
+        if (name == "point_a") return Value(a.offset.p);
+        if (name == "point_b") return Value(b.offset.p);
+        if (name == "frame_a") return Value(a.offset.q);
+        if (name == "frame_b") return Value(b.offset.q);
+        if (name == "frequency") return Value(rules_.draw[row_]);
+        if (name == "turns") return Value(rules_.turns[row_]);
+        return known(row_, pair, name);
+    };
+    return fill_template(
+               "<plab version=\"1\"><component id=\"${id}\" type=\"Constraint/Snap\" a=\"${a}\" b=\"${b}\" point_a=\"${point_a}\" "
+               "point_b=\"${point_b}\" frame_a=\"${frame_a}\" frame_b=\"${frame_b}\" frequency=\"${frequency}\" "
+               "turns=\"${turns}\"/></plab>",
+               filled)
+        .take();
+}
+
+void apply_rules(const StepContext& context, Rows rows, RuleRows& rules, const Bodies& bodies, const Shafts& shafts,
+                 const Quantities& quantities, RequestSink& requests)
+{
+    const Scene scene{context, bodies, shafts, quantities};
+    for (const Row row : rows) Round(scene, row, rules, requests).run();
+}
+
+}  // namespace plab::rules
