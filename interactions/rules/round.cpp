@@ -117,6 +117,11 @@ void Round::latch(Link& link)
     changed_ = true, memory_.asked_at = scene_.context.tick;
     if (!applies(row_, pair))
         link.progress = Progress::Refused;
+    else if (const std::string loop = contradiction(pair); !loop.empty())
+    {
+        link.progress = Progress::Refused;
+        scene_.context.emit(row_, "rule.refused", Severity::Warning, words(pair) + ": " + loop);
+    }
     else if (const auto text = blueprint_for(pair); !text)
     {
         link.progress = Progress::Refused;
@@ -213,8 +218,14 @@ void Round::make(Pair pair)
     link.site_a = pair.a, link.site_b = pair.b;
     const auto text = blueprint_for(pair);
     link.id = text ? first_id(*text) : link.a + " " + link.b;
+    const std::string loop = text ? contradiction(pair) : std::string();
     const bool taken = text && std::any_of(memory_.links.begin(), memory_.links.end(), [&](const Link& l) { return l.id == link.id; });
-    if (!text || taken)
+    if (!loop.empty())
+    {
+        link.progress = Progress::Refused;
+        scene_.context.emit(row_, "rule.refused", Severity::Warning, words(pair) + ": " + loop);
+    }
+    else if (!text || taken)
     {
         // The template's id must name both, or the second pair of objects would need the same one.
         link.progress = Progress::Refused;

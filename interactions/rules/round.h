@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "loops.h"
 #include "rule.h"
 
 namespace plab::rules
@@ -52,6 +53,10 @@ private:
     Result<std::string> blueprint_for(const Pair& pair) const;
     std::string drawing_for(const Pair& pair, const std::string& id) const;
     std::string words(const Pair& pair) const;
+    /// Why the pair cannot be coupled as the rule says; empty: it can.
+    std::string contradiction(const Pair& pair) const;
+    /// What rules of this type have coupled.
+    std::vector<Coupling> couplings() const;
 
     const Scene& scene_;
     const Lookup& lookup_;

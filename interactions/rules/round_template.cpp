@@ -28,6 +28,9 @@ std::optional<Value> Round::known(Row row, const Pair& pair, std::string_view na
     if (name == "radial") return Value(pair.measures.radial);
     if (name == "angle") return Value(pair.measures.angle);
     const Place at_a = place_of(a, scene_.bodies, scene_.shafts);
+    // +1: the axes point the same way; -1: opposite ways.
+    if (name == "sense")
+        return Value(dot(rotate(at_a.X.q, {0, 0, 1}), rotate(place_of(b, scene_.bodies, scene_.shafts).X.q, {0, 0, 1})) < 0 ? -1.0 : 1.0);
     if (name == "point") return Value(at_a.X.p);
     if (name == "axis") return Value(rotate(at_a.X.q, {0, 0, 1}));
     if (name.starts_with("a.")) return known_of(a, name.substr(2));
@@ -62,6 +65,36 @@ std::string Round::drawing_for(const Pair& pair, const std::string& id) const
                "turns=\"${turns}\"/></plab>",
                filled)
         .take();
+}
+
+std::vector<Coupling> Round::couplings() const
+{
+    std::vector<Coupling> out;
+    for (Row row = 0; row < scene_.context.component_of_row.size(); ++row)
+    {
+        if (scene_.context.component_of_row[row] == kNoIndex || !rules_.memory[row] || rules_.couples[row].empty()) continue;
+        const Memory& memory = memory_of(row);
+        for (const Link& link : memory.links)
+        {
+            if (link.progress != Progress::Made || link.site_a == kNoIndex || link.site_b == kNoIndex) continue;
+            const Pair pair{link.site_a, link.site_b, measures_of(memory, link.site_a, link.site_b), {}};
+            const auto ratio = number_of(rules_.couples[row], [&](std::string_view name) { return known(row, pair, name); });
+            if (ratio && *ratio != 0) out.push_back({memory.sites[link.site_a].object, memory.sites[link.site_b].object, *ratio, link.id});
+        }
+    }
+    return out;
+}
+
+std::string Round::contradiction(const Pair& pair) const
+{
+    if (rules_.couples[row_].empty()) return {};
+    const auto ratio = number_of(rules_.couples[row_], [&](std::string_view name) { return known(row_, pair, name); });
+    if (!ratio) return ratio.error().reason;
+    const auto path = find_path(couplings(), memory_.sites[pair.a].object, memory_.sites[pair.b].object);
+    if (!path || agree(path->ratio, *ratio)) return {};
+    const std::string a(lookup_.id_of(memory_.sites[pair.a].object)), b(lookup_.id_of(memory_.sites[pair.b].object));
+    return "a loop that cannot turn: " + b + " would make " + in_digits(*ratio) + " turns per turn of " + a + ", but makes " +
+           in_digits(path->ratio) + " by " + path->ids;
 }
 
 void apply_rules(const StepContext& context, Rows rows, RuleRows& rules, const Bodies& bodies, const Shafts& shafts,

@@ -51,21 +51,14 @@ std::string unescaped(std::string_view text)
     return out;
 }
 
-std::string text_of(double value)
-{
-    char digits[40];
-    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-    return {digits, end};
-}
-
 std::string text_of(const Value& value)
 {
     if (const auto* text = std::get_if<std::string>(&value)) return escaped(*text);
-    if (const auto* number = std::get_if<double>(&value)) return text_of(*number);
+    if (const auto* number = std::get_if<double>(&value)) return in_digits(*number);
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
     if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "true" : "false";
-    if (const auto* v = std::get_if<Vec3>(&value)) return text_of(v->x) + " " + text_of(v->y) + " " + text_of(v->z);
-    if (const auto* q = std::get_if<Quat>(&value)) return text_of(q->w) + " " + text_of(q->x) + " " + text_of(q->y) + " " + text_of(q->z);
+    if (const auto* v = std::get_if<Vec3>(&value)) return in_digits(v->x) + " " + in_digits(v->y) + " " + in_digits(v->z);
+    if (const auto* q = std::get_if<Quat>(&value)) return in_digits(q->w) + " " + in_digits(q->x) + " " + in_digits(q->y) + " " + in_digits(q->z);
     return {};
 }
 
@@ -89,6 +82,13 @@ Error in_template(std::string_view content, const std::string& why)
 }
 
 }  // namespace
+
+std::string in_digits(double value)
+{
+    char digits[40];
+    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+    return {digits, end};
+}
 
 Result<void> check_template(std::string_view text)
 {
@@ -131,7 +131,7 @@ Result<std::string> fill_template(std::string_view text, const Known& known)
         }
         const auto number = number_of(content, known);
         if (!number) return in_template(content, number.error().reason);
-        out += text_of(*number);
+        out += in_digits(*number);
         return {};
     };
     auto rest = for_each_place(text, fill);

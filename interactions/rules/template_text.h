@@ -21,6 +21,8 @@ Result<void> check_template(std::string_view text);
 Result<std::string> fill_template(std::string_view text, const Known& known);
 /// An expression by the same names.
 Result<double> number_of(std::string_view expression, const Known& known);
+/// In all digits.
+std::string in_digits(double value);
 /// The id of the first component in the text; empty: it has none.
 std::string first_id(std::string_view blueprint);
 
