@@ -51,6 +51,7 @@ std::string Round::drawing_for(const Pair& pair, const std::string& id) const
     const auto filled = [&](std::string_view name) -> std::optional<Value>
     {
         if (name == "id") return Value(id + ".draw");
+        if (name == "type") return Value(rules_.draw_by[row_]);
         if (name == "point_a") return Value(a.offset.p);
         if (name == "point_b") return Value(b.offset.p);
         if (name == "frame_a") return Value(a.offset.q);
@@ -60,7 +61,7 @@ std::string Round::drawing_for(const Pair& pair, const std::string& id) const
         return known(row_, pair, name);
     };
     return fill_template(
-               "<plab version=\"1\"><component id=\"${id}\" type=\"Constraint/Snap\" a=\"${a}\" b=\"${b}\" point_a=\"${point_a}\" "
+               "<plab version=\"1\"><component id=\"${id}\" type=\"${type}\" a=\"${a}\" b=\"${b}\" point_a=\"${point_a}\" "
                "point_b=\"${point_b}\" frame_a=\"${frame_a}\" frame_b=\"${frame_b}\" frequency=\"${frequency}\" "
                "turns=\"${turns}\"/></plab>",
                filled)

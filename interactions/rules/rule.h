@@ -39,6 +39,7 @@ struct RuleRows
     Column<std::string> code;
     Column<Entries> values;
     Column<double> draw, latch, latch_angle, latch_speed;  ///< Hz, m, rad, m/s
+    Column<std::string> draw_by;
     Column<bool> turns;
     Column<std::string> couples;  ///< an expression
     Column<Entries> links;        ///< state

@@ -58,7 +58,8 @@ std::string text_of(const Value& value)
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
     if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "true" : "false";
     if (const auto* v = std::get_if<Vec3>(&value)) return in_digits(v->x) + " " + in_digits(v->y) + " " + in_digits(v->z);
-    if (const auto* q = std::get_if<Quat>(&value)) return in_digits(q->w) + " " + in_digits(q->x) + " " + in_digits(q->y) + " " + in_digits(q->z);
+    if (const auto* q = std::get_if<Quat>(&value))
+        return in_digits(q->w) + " " + in_digits(q->x) + " " + in_digits(q->y) + " " + in_digits(q->z);
     return {};
 }
 

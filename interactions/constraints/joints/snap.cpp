@@ -112,7 +112,29 @@ void solve(std::array<std::array<double, kMostRows>, kMostRows>& k, std::array<d
     }
 }
 
+/// e'' as it is wanted.
+double wanted(const ConstraintRow& row, double w, const Bodies& bodies) { return -w * w * row.error - 2 * w * rate_of(row, bodies); }
+
+double frequency_of(const SnapRows& rows, Row row) { return 2 * std::numbers::pi * rows.frequency[row]; }
+
 }  // namespace
+
+void constrain_snap(const StepContext& step, Rows which, const SnapRows& rows, const Bodies& bodies, RowSink& sink)
+{
+    for (const Row row : which)
+    {
+        const Gathered gathered = rows_of(rows, row, bodies);
+        sink.begin(step.component_of_row[row]);
+        for (std::uint32_t i = 0; i < gathered.count; ++i)
+        {
+            ConstraintRow r = gathered.rows[i];
+            r.kind = RowKind::Rate, r.feature = i;
+            r.rate = rate_of(r, bodies);
+            r.bias += wanted(r, frequency_of(rows, row), bodies);
+            sink.add(r);
+        }
+    }
+}
 
 void draw_together(const StepContext& step, Rows which, const SnapRows& rows, const Bodies& bodies, Wrenches& wrenches)
 {
@@ -121,13 +143,13 @@ void draw_together(const StepContext& step, Rows which, const SnapRows& rows, co
         const bool acts = (rows.a[row].valid() && step.active(rows.a[row])) || step.active(rows.b[row]);
         if (!acts) continue;
         const Gathered gathered = rows_of(rows, row, bodies);
-        const double w = 2 * std::numbers::pi * rows.frequency[row];
+        const double w = frequency_of(rows, row);
         std::array<std::array<double, kMostRows>, kMostRows> k{};
         std::array<double, kMostRows> lambda{};
         for (std::size_t i = 0; i < gathered.count; ++i)
         {
             const ConstraintRow& r = gathered.rows[i];
-            lambda[i] = -w * w * r.error - 2 * w * rate_of(r, bodies) + r.bias;
+            lambda[i] = r.bias + wanted(r, w, bodies);
             for (std::size_t j = 0; j <= i; ++j) k[i][j] = k[j][i] = coupling_of(r, gathered.rows[j], bodies);
         }
         solve(k, lambda, gathered.count);

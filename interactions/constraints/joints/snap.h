@@ -2,12 +2,18 @@
 ///
 /// With the error e of frame b in the axes of frame a (m; rad), e' = J v and e'' = J v' + J' v (sides.h), the forces J^T lambda make
 ///
-///   e'' = -w^2 e - 2 w e',    (J M^-1 J^T) lambda = -w^2 e - 2 w J v + bias,    bias = -J' v
+///   e'' = -w^2 e - 2 w e',  so that  e(t) = (e0 + (e0' + w e0) t) exp(-w t):
 ///
-/// so two free bodies come together as e(t) = (e0 + (e0' + w e0) t) exp(-w t): within 1.1 % of e0 after 6.5 / w, without overshoot from
-/// rest. Both sides feel the same force at the same point, so momentum and angular momentum are those of the two before. The work of the
-/// forces is booked as that of any force. Other forces on the bodies add to e''. Sources: A. Witkin, M. Gleicher, W. Welch, Interactive
-/// dynamics, SIGGRAPH 1990; R. Smith, Dynamics simulation, 2001, on soft constraints.
+/// within 1.1 % of e0 after 6.5 / w, without overshoot from rest.
+///
+///   Rows    J v' = bias - w^2 e - 2 w J v with bias = -J' v: rows that ask for an acceleration. They are solved together with the joints
+///           of the two, so it is true whatever else holds them. Their speed is asked to be what it is, so nothing jumps when they come.
+///   Force   (J M^-1 J^T) lambda = bias - w^2 e - 2 w J v: true for two bodies that nothing else holds.
+///
+/// Both sides feel the same force at the same point, so momentum and angular momentum are those of the two before. The work is booked.
+///
+/// Sources: A. Witkin, M. Gleicher, W. Welch, Interactive dynamics, SIGGRAPH 1990; R. Smith, Dynamics simulation, 2001, on soft
+/// constraints.
 #pragma once
 
 #include "joints/pair.h"
@@ -27,6 +33,7 @@ struct SnapRows
     void describe(Schema& s);
 };
 
+void constrain_snap(const StepContext& step, Rows which, const SnapRows& rows, const Bodies& bodies, RowSink& sink);
 void draw_together(const StepContext& step, Rows which, const SnapRows& rows, const Bodies& bodies, Wrenches& wrenches);
 void finish_snap(Rows which, SnapRows& rows, const Bodies& bodies);
 
