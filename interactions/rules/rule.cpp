@@ -33,7 +33,8 @@ void RuleRows::describe(Schema& schema)
         .not_negative()
         .may_be_infinite();
     schema.param(hold, "hold", unit::one, "the two have parted when the bounds times this are exceeded").or_else(1.5).at_least(1);
-    schema.param(text, "template", unit::one, "blueprint of what is added, with ${a}, ${b}, ${a.radius}, ...");
+    schema.param(text, "template", unit::one,
+                 "blueprint of what is added; a dollar sign with braces stands for values of the two, see server/docs/rules.md");
     schema.param(removes, "removes", unit::one, "what was added is removed when the two part").or_else(false);
     schema.param(priority, "priority", unit::one, "the higher one of two rules gets a pair").or_else(0);
     schema.param(slot, "slot", unit::one, "rules with the same slot exclude one another for a pair of objects").or_else("");

@@ -91,8 +91,13 @@ Place place_of(const Site& site, const Bodies& bodies, const Shafts& shafts)
 
 Vec3 origin_of(const Site& site, const Bodies& bodies, const Shafts& shafts)
 {
-    const Pose frame = frame_of(site.object, bodies, shafts);
-    return site.offset.p == Vec3{} ? frame.p : frame * site.offset.p;
+    const std::uint32_t i = site.object.index;
+    if (site.object.facet == Facet::Body)
+    {
+        const Vec3 from_center = site.offset.p - bodies.center_B[i];
+        return from_center == Vec3{} ? bodies.position[i] : bodies.position[i] + rotate(bodies.orientation[i], from_center);
+    }
+    return site.offset.p == Vec3{} ? shafts.axle[i].p : frame_of(site.object, bodies, shafts) * site.offset.p;
 }
 
 Vec3 spin_of(const Site& site, const Bodies& bodies, const Shafts& shafts)
