@@ -4,10 +4,10 @@
 /// (a) and driven (b), and may set the rule's values as state, for the template.
 #pragma once
 
-#include "lua/machine.h"
 #include "plab/result.h"
 #include "plab/tables.h"
 #include "relation.h"
+#include "scripts/lua/machine.h"
 
 namespace plab::rules
 {

@@ -5,11 +5,13 @@
 #include <string_view>
 
 #include "blueprint/foreign.h"
-#include "blueprint/template.h"
 #include "model/blueprint.h"
 
 namespace plab::blueprint
 {
+
+/// The handlers of all foreign elements: <MESH> and <template>.
+ForeignHandlers standard_handlers();
 
 /// Reads a whole scene (<plab>) or a fragment for a request (<plab> or a single <component>). Collects errors as long as the
 /// XML is well-formed; their places name `file_name`. Never throws, whatever `text` contains.
