@@ -173,6 +173,7 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
     }
     if (decision.verb == "add" || decision.verb == "remove")
     {
+        run_.changes.touched.push_back(run_.world().id_of(decision.by));  // it remembers what it did
         Event e;
         e.tick = tick(), e.time = time(), e.component = decision.by;
         e.kind = decision.verb == "add" ? "component.made" : "component.removed";
@@ -186,6 +187,7 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
 
 void Simulation::refuse_decision(std::uint32_t by, const std::string& what, const std::string& why)
 {
+    run_.changes.touched.push_back(run_.world().id_of(by));
     Event e;
     e.tick = tick(), e.time = time(), e.kind = "decide.refused", e.severity = Severity::Warning, e.component = by;
     e.message = what + ": " + why;

@@ -143,6 +143,18 @@ TEST_CASE("wrong use is 2, bad scenes are 1, both with a message")
     CHECK(has(check.text, "State/Shaft"));
 }
 
+TEST_CASE("what rules have made: explained, and frozen into a scene without rules")
+{
+    const std::string scene = quoted(std::string(PLAB_SOURCE_DIR) + "/scenes/workshop.xml");
+    const Outcome none = plabd("--explain " + scene), made = plabd("--explain --until 9.5 " + scene);
+    CHECK(has(none.text, "mesh, wheels that mesh turn against one another: nothing yet"));
+    CHECK(has(made.text, "mesh, wheels that mesh turn against one another: mesh.large_gear.small_gear (Constraint/Gear)"));
+    const Outcome frozen = plabd("--expand --until 9.5 " + scene);
+    CHECK(frozen.code == 0);
+    CHECK(!has(frozen.text, "Rule/Pair"));
+    CHECK(has(frozen.text, "clutch.axle"));
+}
+
 TEST_CASE("help, version, check, expand, explain")
 {
     CHECK(has(plabd("--help").text, "Examples:"));

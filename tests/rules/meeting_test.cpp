@@ -1,4 +1,5 @@
 // What a rule makes when two objects meet, once, and the same in a replay, after a rewind and from a snapshot.
+#include "blueprint/writer.h"
 #include "rules/workbench.h"
 
 using namespace plab;
@@ -180,4 +181,45 @@ TEST_CASE("a template that cannot be filled, or whose component is refused, is t
     t.step(5);
     CHECK(t.count("decide.refused") == 1);
     CHECK_MESSAGE(message_of(t, "decide.refused").find(":3:") != std::string::npos, message_of(t, "decide.refused"));
+}
+
+TEST_CASE("a condition that fails quarantines its rule, and says where")
+{
+    Scene s(kTwoWheels +
+            "<component id='r' type='Rule/Pair' reach='1'><param name='code'>\nfunction applies()\n return nothing.here\nend</param>"
+            "<template><component id='${a}-${b}' type='Constraint/Gear' driver='${a}' driven='${b}'/></template></component>");
+    serve(s);
+    s.warnings_expected = true;
+    s.step(5);
+    CHECK(s.count("rule.failed") == 1);
+    CHECK_MESSAGE(message_of(s, "rule.failed").find("code:3:") != std::string::npos, message_of(s, "rule.failed"));
+    CHECK(!exists(s, "one-two"));
+}
+
+TEST_CASE("the long form has the template as an element, and gives the same rule")
+{
+    const std::string text = whole_scene(kTwoWheels + meshing(), "dt='1/240'");
+    const auto scene = compile_text(text);
+    REQUIRE(scene.ok());
+    const std::string long_form = blueprint::write_long_form(*scene, library());
+    CHECK(long_form.find("<template><component id=\"${rule}.${a}.${b}\"") != std::string::npos);
+    const auto again = compile_read(blueprint::read_blueprint(long_form, "long.xml"));
+    REQUIRE_MESSAGE(again.ok(), reasons(again));
+    Scene s("");
+    REQUIRE(s.simulation().load(*again).ok());
+    serve(s);
+    set(s, "two", "position", "0.352 0 0");
+    s.step();
+    CHECK(exists(s, "mesh.one.two"));
+}
+
+TEST_CASE("a template is one component, of the blueprint's grammar, with the places of its own errors")
+{
+    const auto error = [](const std::string& inside)
+    { return Scene("<component id='r' type='Rule/Pair' reach='1'><template>\n" + inside + "</template></component>").error(); };
+    for (const auto& [inside, why] : {std::pair("<component id='x'/><component id='y'/>", "holds one <component>"),
+                                      std::pair("text", "holds text"), std::pair("<repeat count='2'/>", "holds one <component>"),
+                                      std::pair("\n<component id='x'>stray<param name='p'>1</param></component>", ":3:"),
+                                      std::pair("<component id='x'><param nam='p'>1</param></component>", ":2:")})
+        CHECK_MESSAGE(error(inside).find(why) != std::string::npos, error(inside));
 }
