@@ -5,32 +5,50 @@
 
 namespace plab::rules
 {
-namespace
-{
 
-struct Reached
+Couplings::Root Couplings::root_of(Ref object)
 {
-    Ref object;
-    Path path;
-};
+    Root to{object, 1};
+    for (auto at = above_.find(object); at != above_.end() && at->second.object != to.object; at = above_.find(to.object))
+        to = {at->second.object, to.ratio * at->second.ratio};
+    above_[object] = to;
+    return to;
+}
 
-}  // namespace
-
-std::optional<Path> find_path(const std::vector<Coupling>& couplings, Ref from, Ref to)
+void Couplings::add(Coupling coupling)
 {
-    std::vector<Reached> reached{{from, {}}};
-    for (std::size_t k = 0; k < reached.size(); ++k)
+    const Root a = root_of(coupling.a), b = root_of(coupling.b);
+    // b = ratio a: the root of b makes ratio * a.ratio / b.ratio turns per turn of that of a.
+    if (a.object != b.object) above_[b.object] = {a.object, coupling.ratio * a.ratio / b.ratio};
+    at_[coupling.a].push_back(all_.size()), at_[coupling.b].push_back(all_.size());
+    all_.push_back(std::move(coupling));
+}
+
+std::optional<double> Couplings::ratio(Ref a, Ref b)
+{
+    const Root to_a = root_of(a), to_b = root_of(b);
+    if (to_a.object != to_b.object) return {};
+    return to_b.ratio / to_a.ratio;
+}
+
+std::optional<Path> Couplings::path(Ref from, Ref to) const
+{
+    std::map<Ref, Path> reached{{from, {}}};
+    std::vector<Ref> next{from};
+    for (std::size_t k = 0; k < next.size(); ++k)
     {
-        const Reached at = reached[k];
-        if (at.object == to) return at.path;
-        for (const Coupling& c : couplings)
+        const Ref at = next[k];
+        const Path way = reached.at(at);
+        if (at == to) return way;
+        const auto here = at_.find(at);
+        if (here == at_.end()) continue;
+        for (const std::size_t i : here->second)
         {
-            if (c.a != at.object && c.b != at.object) continue;
-            const bool forward = c.a == at.object;
-            const Ref next = forward ? c.b : c.a;
-            if (std::any_of(reached.begin(), reached.end(), [&](const Reached& r) { return r.object == next; })) continue;
-            reached.push_back(
-                {next, {at.path.ratio * (forward ? c.ratio : 1 / c.ratio), at.path.ids + (at.path.ids.empty() ? "" : ", ") + c.id}});
+            const Coupling& c = all_[i];
+            const bool forward = c.a == at;
+            const Ref there = forward ? c.b : c.a;
+            Path further{way.ratio * (forward ? c.ratio : 1 / c.ratio), way.ids + (way.ids.empty() ? "" : ", ") + c.id};
+            if (reached.emplace(there, std::move(further)).second) next.push_back(there);
         }
     }
     return {};

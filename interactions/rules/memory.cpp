@@ -14,7 +14,6 @@ void Memory::refresh(const Lookup& lookup, const Wanted& a, const Wanted& b, con
         by_object_.clear();
         for (std::uint32_t i = 0; i < sites.size(); ++i) by_object_.emplace_back(sites[i].object, i);
         std::sort(by_object_.begin(), by_object_.end());
-        search_.forget();
     }
     links = to_links(kept);
     // Sites are in the order of their ids.

@@ -20,8 +20,6 @@ class PairSearch
 public:
     using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< i < j
 
-    /// The list is made anew at the next call of follow().
-    void forget() { made_from_.clear(); }
     /// Brings the list up to date. Costs a comparison for each point as long as the list is complete.
     void follow(std::span<const Vec3> points, double reach);
     /// All pairs within reach, and some beyond, in order.

@@ -117,7 +117,7 @@ void Round::latch(Link& link)
     changed_ = true, memory_.asked_at = scene_.context.tick;
     if (!applies(row_, pair))
         link.progress = Progress::Refused;
-    else if (const std::string loop = contradiction(pair); !loop.empty())
+    else if (const std::string loop = couple(pair, link.id); !loop.empty())
     {
         link.progress = Progress::Refused;
         scene_.context.emit(row_, "rule.refused", Severity::Warning, words(pair) + ": " + loop);
@@ -218,8 +218,11 @@ void Round::make(Pair pair)
     link.site_a = pair.a, link.site_b = pair.b;
     const auto text = blueprint_for(pair);
     link.id = text ? first_id(*text) : link.a + " " + link.b;
-    const std::string loop = text ? contradiction(pair) : std::string();
-    const bool taken = text && std::any_of(memory_.links.begin(), memory_.links.end(), [&](const Link& l) { return l.id == link.id; });
+    if (ids_.empty())
+        for (const Link& l : memory_.links) ids_.insert(l.id);
+    const bool taken = !ids_.insert(link.id).second;
+    // What is only drawn is not coupled yet.
+    const std::string loop = text && !taken && rules_.draw[row_] == 0 ? couple(pair, link.id) : std::string();
     if (!loop.empty())
     {
         link.progress = Progress::Refused;
@@ -245,7 +248,6 @@ void Round::make(Pair pair)
         requests_.ask(row_, "add", "", *text, words(pair) + " meet");
     }
     memory_.links.push_back(std::move(link));
-    memory_.index_links();
     changed_ = true, memory_.asked_at = scene_.context.tick;
 }
 

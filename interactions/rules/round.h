@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 
 #include "loops.h"
@@ -53,10 +54,10 @@ private:
     Result<std::string> blueprint_for(const Pair& pair) const;
     std::string drawing_for(const Pair& pair, const std::string& id) const;
     std::string words(const Pair& pair) const;
-    /// Why the pair cannot be coupled as the rule says; empty: it can.
-    std::string contradiction(const Pair& pair) const;
+    /// Why the pair cannot be coupled as the rule says; empty: it can, and counts as coupled from now on.
+    std::string couple(const Pair& pair, const std::string& id);
     /// What rules of this type have coupled.
-    std::vector<Coupling> couplings() const;
+    Couplings find_couplings() const;
 
     const Scene& scene_;
     const Lookup& lookup_;
@@ -66,6 +67,8 @@ private:
     Memory& memory_;
     Bounds bounds_;
     bool changed_ = false;
+    std::optional<Couplings> couplings_;  ///< once they are needed
+    std::set<std::string> ids_;           ///< of the links, once they are needed
 };
 
 }  // namespace plab::rules

@@ -68,9 +68,9 @@ std::string Round::drawing_for(const Pair& pair, const std::string& id) const
         .take();
 }
 
-std::vector<Coupling> Round::couplings() const
+Couplings Round::find_couplings() const
 {
-    std::vector<Coupling> out;
+    Couplings out;
     for (Row row = 0; row < scene_.context.component_of_row.size(); ++row)
     {
         if (scene_.context.component_of_row[row] == kNoIndex || !rules_.memory[row] || rules_.couples[row].empty()) continue;
@@ -80,22 +80,30 @@ std::vector<Coupling> Round::couplings() const
             if (link.progress != Progress::Made || link.site_a == kNoIndex || link.site_b == kNoIndex) continue;
             const Pair pair{link.site_a, link.site_b, measures_of(memory, link.site_a, link.site_b), {}};
             const auto ratio = number_of(rules_.couples[row], [&](std::string_view name) { return known(row, pair, name); });
-            if (ratio && *ratio != 0) out.push_back({memory.sites[link.site_a].object, memory.sites[link.site_b].object, *ratio, link.id});
+            if (ratio && *ratio != 0) out.add({memory.sites[link.site_a].object, memory.sites[link.site_b].object, *ratio, link.id});
         }
     }
     return out;
 }
 
-std::string Round::contradiction(const Pair& pair) const
+std::string Round::couple(const Pair& pair, const std::string& id)
 {
     if (rules_.couples[row_].empty()) return {};
     const auto ratio = number_of(rules_.couples[row_], [&](std::string_view name) { return known(row_, pair, name); });
     if (!ratio) return ratio.error().reason;
-    const auto path = find_path(couplings(), memory_.sites[pair.a].object, memory_.sites[pair.b].object);
-    if (!path || agree(path->ratio, *ratio)) return {};
-    const std::string a(lookup_.id_of(memory_.sites[pair.a].object)), b(lookup_.id_of(memory_.sites[pair.b].object));
-    return "a loop that cannot turn: " + b + " would make " + in_digits(*ratio) + " turns per turn of " + a + ", but makes " +
-           in_digits(path->ratio) + " by " + path->ids;
+    if (*ratio == 0) return "couples must not be zero";
+    if (!couplings_) couplings_ = find_couplings();
+    const Ref a = memory_.sites[pair.a].object, b = memory_.sites[pair.b].object;
+    const auto present = couplings_->ratio(a, b);
+    if (!present || agree(*present, *ratio))
+    {
+        couplings_->add({a, b, *ratio, id});
+        return {};
+    }
+    const auto path = couplings_->path(a, b);
+    const std::string name_a(lookup_.id_of(a)), name_b(lookup_.id_of(b));
+    return "a loop that cannot turn: " + name_b + " would make " + in_digits(*ratio) + " turns per turn of " + name_a + ", but makes " +
+           in_digits(*present) + " by " + path->ids;
 }
 
 void apply_rules(const StepContext& context, Rows rows, RuleRows& rules, const Bodies& bodies, const Shafts& shafts,

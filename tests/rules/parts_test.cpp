@@ -122,13 +122,33 @@ TEST_CASE("links as text and back; what is no link is left out")
 
 TEST_CASE("paths of couplings")
 {
+    const auto near = [](double x, double y) { return std::fabs(x - y) <= 1e-9 * std::fabs(y); };
     const auto shaft = [](std::uint32_t i) { return Ref{Facet::Shaft, i}; };
-    const std::vector<Coupling> couplings{{shaft(0), shaft(1), -2, "p"}, {shaft(2), shaft(1), 4, "q"}, {shaft(3), shaft(4), 1, "r"}};
-    const auto path = find_path(couplings, shaft(0), shaft(2));
+    Couplings couplings;
+    couplings.add({shaft(0), shaft(1), -2, "p"});
+    couplings.add({shaft(2), shaft(1), 4, "q"});
+    couplings.add({shaft(3), shaft(4), 1, "r"});
+    CHECK(*couplings.ratio(shaft(0), shaft(2)) == -0.5);
+    CHECK(*couplings.ratio(shaft(2), shaft(0)) == -2);
+    CHECK(!couplings.ratio(shaft(0), shaft(4)));
+    CHECK(!couplings.path(shaft(0), shaft(3)));
+    couplings.add({shaft(4), shaft(2), 3, "s"});
+    CHECK(near(*couplings.ratio(shaft(3), shaft(1)), 12));
+    const auto path = couplings.path(shaft(0), shaft(4));
     REQUIRE(path.has_value());
-    CHECK(path->ratio == -0.5);
-    CHECK(path->ids == "p, q");
-    CHECK(!find_path(couplings, shaft(0), shaft(3)));
+    CHECK(near(path->ratio, -0.5 / 3));
+    CHECK(path->ids == "p, q, s");
+    // Any order of couplings gives the ratios of the numbers from which they were made.
+    std::mt19937_64 random(3);
+    std::vector<double> turns;
+    for (int i = 0; i < 200; ++i) turns.push_back(std::uniform_real_distribution<double>(0.5, 2)(random) * (i % 2 == 0 ? 1 : -1));
+    Couplings many;
+    for (int n = 0; n < 300; ++n)
+    {
+        const auto i = static_cast<std::uint32_t>(random() % 200), k = static_cast<std::uint32_t>(random() % 200);
+        if (const auto ratio = many.ratio(shaft(i), shaft(k))) CHECK(near(*ratio, turns[k] / turns[i]));
+        many.add({shaft(i), shaft(k), turns[k] / turns[i], "c"});
+    }
     CHECK(agree(1.0 / 3, 1.0 / 3 * (1 + 1e-12)));
     CHECK(!agree(1, -1));
 }
