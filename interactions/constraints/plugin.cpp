@@ -271,7 +271,7 @@ void register_snap(Registrar& registrar)
         .cost("5 or 6 equations for each pair and force evaluation")
         .limits("explicit solvers: unstable for steps beyond 2 / w; bodies that others hold come more slowly, and overshoot")
         .source(kSnapSource);
-    registrar.component<SnapRows>("Constraint/Snap/Rows", "draws two frames together, critically damped whatever else holds them")
+    registrar.component<SnapRows>("Constraint/Snap/Acceleration", "draws two frames together, critically damped whatever else holds them")
         .command<&constrain_snap>(Phase::Constrain, kRows,
                                   "five or six rows: the accelerations that make the distance and the angle die away")
         .command<&finish_snap>(Phase::Finish, kFinish, "distance and angle at the end of the step")

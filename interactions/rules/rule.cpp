@@ -44,8 +44,8 @@ void RuleRows::describe(Schema& schema)
         .or_else(0)
         .not_negative();
     schema.param(draw_by, "draw_by", unit::one, "what draws them")
-        .or_else("Constraint/Snap/Rows")
-        .one_of({"Constraint/Snap/Rows", "Constraint/Snap/Force"});
+        .or_else("Constraint/Snap/Acceleration")
+        .one_of({"Constraint/Snap/Acceleration", "Constraint/Snap/Force"});
     schema.param(turns, "turns", unit::one, "drawing turns all axes into one another, not only the z axes").or_else(false);
     schema.param(latch, "latch", unit::metre, "distance at which what was drawn together is latched").or_else(1e-4).positive();
     schema.param(latch_angle, "latch_angle", unit::radian, "angle at which it is").or_else(1e-3).positive();

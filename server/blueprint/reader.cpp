@@ -7,7 +7,6 @@
 
 #include "blueprint/template.h"
 #include "blueprint/tree.h"
-#include "blueprint/xgl.h"
 
 namespace plab::blueprint
 {

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "blueprint/foreign.h"
+#include "blueprint/xgl.h"
 #include "model/blueprint.h"
 
 namespace plab::blueprint

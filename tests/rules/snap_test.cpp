@@ -35,7 +35,7 @@ std::pair<Vec3, Vec3> momenta(const Scene& s, const std::vector<std::pair<std::s
 
 TEST_CASE("two free bodies: the distance is d0 (1 + w t) exp(-w t), to the order of the solver")
 {
-    for (const std::string type : {"Rows", "Force"})
+    for (const std::string type : {"Acceleration", "Force"})
     {
         CAPTURE(type);
         double errors[2] = {};
@@ -63,7 +63,7 @@ TEST_CASE("two free bodies: the distance is d0 (1 + w t) exp(-w t), to the order
 
 TEST_CASE("frames away from the centres, bodies that turn: the origins and axes meet, momenta are kept, and the ledger explains the energy")
 {
-    for (const std::string type : {"Rows", "Force"})
+    for (const std::string type : {"Acceleration", "Force"})
     {
         CAPTURE(type);
         const std::vector<std::pair<std::string, double>> bodies{{"one", 2.0}, {"two", 0.5}};

@@ -6,9 +6,9 @@
 ///
 /// within 1.1 % of e0 after 6.5 / w, without overshoot from rest.
 ///
-///   Rows    J v' = bias - w^2 e - 2 w J v with bias = -J' v: rows that ask for an acceleration. They are solved together with the joints
-///           of the two, so it is true whatever else holds them. Their speed is asked to be what it is, so nothing jumps when they come.
-///   Force   (J M^-1 J^T) lambda = bias - w^2 e - 2 w J v: true for two bodies that nothing else holds.
+///   Acceleration   J v' = bias - w^2 e - 2 w J v with bias = -J' v: rows that ask for an acceleration. They are solved together with the
+///                  joints of the two, so it is true whatever else holds them. Their speed is asked to be what it is, so nothing jumps.
+///   Force          (J M^-1 J^T) lambda = bias - w^2 e - 2 w J v: true for two bodies that nothing else holds.
 ///
 /// Both sides feel the same force at the same point, so momentum and angular momentum are those of the two before. The work is booked.
 ///
