@@ -9,6 +9,7 @@
 #include "joints/motor.h"
 #include "joints/rigid_joints.h"
 #include "joints/rolling.h"
+#include "joints/snap.h"
 
 namespace
 {
@@ -258,6 +259,29 @@ void register_grab(Registrar& registrar)
         .source("E. Catto, Soft constraints, GDC 2011");
 }
 
+void register_snap(Registrar& registrar)
+{
+    constexpr const char* kSnapSource = "Witkin, Gleicher, Welch, Interactive dynamics, SIGGRAPH 1990; R. Smith, Dynamics simulation, 2001";
+    registrar
+        .component<SnapRows>("Constraint/Snap/Force", "draws two frames together by a force, critically damped if nothing else holds them")
+        .command<&draw_together>(Phase::Force, "Constraint/Force", "forces that make the distance and the angle die away")
+        .command<&finish_snap>(Phase::Finish, kFinish, "distance and angle at the end of the step")
+        .accuracy("the solver's order")
+        .strengths("brings free bodies together without a jump, also where contacts are near; momentum is kept, the work is booked")
+        .cost("5 or 6 equations for each pair and force evaluation")
+        .limits("explicit solvers: unstable for steps beyond 2 / w; bodies that others hold come more slowly, and overshoot")
+        .source(kSnapSource);
+    registrar.component<SnapRows>("Constraint/Snap/Acceleration", "draws two frames together, critically damped whatever else holds them")
+        .command<&constrain_snap>(Phase::Constrain, kRows,
+                                  "five or six rows: the accelerations that make the distance and the angle die away")
+        .command<&finish_snap>(Phase::Finish, kFinish, "distance and angle at the end of the step")
+        .accuracy("the solver's order")
+        .strengths("brings bodies and mechanisms together without a jump; momentum is kept, the work is booked")
+        .cost("5 or 6 rows")
+        .limits("bodies that a manager steps, because they touch others, are not drawn: use Constraint/Snap/Force")
+        .source(kSnapSource);
+}
+
 }  // namespace
 
 PLAB_PLUGIN("constraints", registrar)
@@ -269,4 +293,5 @@ PLAB_PLUGIN("constraints", registrar)
     register_gears(registrar);
     register_rolling(registrar);
     register_grab(registrar);
+    register_snap(registrar);
 }

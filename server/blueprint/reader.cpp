@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 
+#include "blueprint/template.h"
 #include "blueprint/tree.h"
 
 namespace plab::blueprint
@@ -34,7 +35,23 @@ Result<std::string> read_bytes(const std::string& path, std::size_t most)
     return bytes;
 }
 
+/// One value, "template". The grammar is checked here; ids and values that contain ${...} are not.
+Result<std::vector<model::ValueNode>> read_template(const XmlElement& element)
+{
+    auto text = template_text(element);
+    if (!text) return text.errors();
+    if (auto read = read_blueprint(*text, ""); !read) return read.errors();
+    return std::vector<model::ValueNode>{{"template", text.take(), {{}, element.where.line, element.where.column}}};
+}
+
 }  // namespace
+
+ForeignHandlers standard_handlers()
+{
+    ForeignHandlers handlers = xgl_handlers();
+    handlers.add({"template", "", &read_template});
+    return handlers;
+}
 
 Result<model::Blueprint> read_blueprint(std::string_view text, const std::string& file_name, const ForeignHandlers& handlers,
                                         const XmlLimits& limits)

@@ -6,6 +6,7 @@
 
 #include "blueprint/entry_text.h"
 #include "blueprint/xgl.h"
+#include "blueprint/xml.h"
 #include "model/numbers.h"
 #include "model/values.h"
 
@@ -47,6 +48,30 @@ const T* find_value(const ComponentSpec& c, std::string_view name)
     for (const FieldSpec& f : c.fields)
         if (f.name == name) return std::get_if<T>(&f.value);
     return nullptr;
+}
+
+/// Whether the text is XML.
+bool is_well_formed(std::string_view text)
+{
+    class Nothing final : public XmlSink
+    {
+    public:
+        bool begin(const XmlElement&) override { return true; }
+        void child(XmlElement) override {}
+        void end(XmlElement) override {}
+    } nothing;
+    Errors errors;
+    return parse_xml(text, {}, nothing, errors) && errors.empty();
+}
+
+/// The <template> element of a text that the reader made of one (blueprint/template.h); empty if it is none.
+std::string template_element(std::string_view text)
+{
+    constexpr std::string_view kOpen = "<plab version=\"1\">", kClose = "</plab>";
+    if (!text.starts_with(kOpen) || !text.ends_with(kClose) || !is_well_formed(text)) return {};
+    text.remove_prefix(kOpen.size()), text.remove_suffix(kClose.size());
+    text.remove_prefix(std::min(text.size(), text.find_first_not_of('\n')));
+    return "<template>" + std::string(text) + "</template>\n";
 }
 
 class LongForm
@@ -160,6 +185,8 @@ private:
     {
         if (type_of(f.value) == FieldType::None) return;
         const Entries* entries = std::get_if<Entries>(&f.value);
+        if (const auto* text = std::get_if<std::string>(&f.value); text && f.name == "template")
+            if (const std::string element = template_element(*text); !element.empty()) return void(out_ += indent(depth) + element);
         const std::string open = indent(depth) + "<param" + attribute("name", f.name) + ">";
         if (!entries)
         {

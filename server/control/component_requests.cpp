@@ -46,7 +46,7 @@ simulation::RequestReader component_request_reader(model::TypeSource& types, con
         wire::Operation& op = text.operations.emplace_back();
         op.verb = verb, op.target = target, op.argument = argument;
         if (verb == "add")
-            op.blueprint = argument, op.argument = "a component's request";
+            op.blueprint = argument, op.argument = target.empty() ? "a component's request" : target, op.target.clear();
         else if (verb == "swap" || verb == "set" || verb == "push")
             if (auto split = split_values(argument, op); !split) return split.errors();
         auto wanted = wanted_of(text, types, limits);

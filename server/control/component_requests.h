@@ -9,7 +9,7 @@ namespace plab::control
 
 /// Reads verb, target and argument as RequestSink::ask() gets them:
 ///
-///   add              argument: a blueprint, XML text
+///   add FILE         argument: a blueprint, XML text; the file's name is for messages and may be empty
 ///   remove ID        no argument
 ///   swap ID          argument: the new type, then NAME=VALUE ...
 ///   set ID           argument: NAME=VALUE ...

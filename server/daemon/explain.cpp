@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "model/numbers.h"
 #include "publish/figures.h"
 #include "simulation/contacts/contact_rules.h"
 #include "simulation/step/step_tree.h"
@@ -104,6 +105,24 @@ std::string explain_choices(const simulation::Simulation& s)
         if (const model::ComponentType* type = s.world().type_of(i); type && type->schema.find_field("reason"))
             out += "  " + s.world().id_of(i) + " (" + type->info.name + "): " + resolved[i] + "\n";
     return out.empty() ? out : "chosen in a first step\n" + out;
+}
+
+std::string explain_rules(const simulation::Simulation& s)
+{
+    std::map<std::string, std::string> made;
+    for (const model::ComponentSpec& spec : s.world().scene().components)
+        if (!spec.made_by.empty() && spec.parent.empty())
+            made[spec.made_by] += " " + spec.id + (spec.type.empty() ? "" : " (" + spec.type + ")");
+    std::string out;
+    for (const model::ComponentSpec& spec : s.world().scene().components)
+    {
+        const model::ComponentType* type = spec.type.empty() ? nullptr : s.world().type_of(s.world().find(spec.id));
+        const auto by_it = made.find(spec.id);
+        if ((!type || type->info.family != "Rule") && by_it == made.end()) continue;
+        out += "  " + spec.id + (spec.name.empty() ? "" : ", " + spec.name) + ":" + (by_it == made.end() ? " nothing yet" : by_it->second) +
+               "\n";
+    }
+    return out.empty() ? out : "made by rules at " + model::format_real(s.time()) + " s\n" + out;
 }
 
 }  // namespace plab::daemon

@@ -7,6 +7,7 @@
 #include "control/component_requests.h"
 #include "daemon/ending.h"
 #include "daemon/explain.h"
+#include "daemon/frozen.h"
 #include "daemon/options.h"
 #include "daemon/replaying.h"
 #include "daemon/runner.h"
@@ -73,6 +74,13 @@ int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::DaemonOptio
     return run_scene(simulation, library, options, start, snapshot->waiting);
 }
 
+/// Makes the steps before `time`, s; none if it is negative.
+void run_until(plab::simulation::Simulation& simulation, double time)
+{
+    while (simulation.time() < time - 0.5 * simulation.dt())
+        if (!simulation.step_once()) return;
+}
+
 int carry_out(const plab::daemon::DaemonOptions& options)
 {
     const auto start = std::chrono::steady_clock::now();
@@ -109,12 +117,17 @@ int carry_out(const plab::daemon::DaemonOptions& options)
             std::printf("%s: %zu components, no errors\n", options.scene.c_str(), scene->components.size());
             return 0;
         case plab::daemon::Task::Expand:
-            std::fputs(plab::blueprint::write_long_form(*scene, library).c_str(), stdout);
+            run_until(simulation, options.until);
+            std::fputs(
+                plab::blueprint::write_long_form(options.until > 0 ? plab::daemon::frozen_scene(simulation) : *scene, library).c_str(),
+                stdout);
             return 0;
         case plab::daemon::Task::Explain:
+            run_until(simulation, options.until);
             std::fputs(plab::daemon::explain(simulation, library).c_str(), stdout);
             simulation.step();  // state-dependent choices exist only after a step
             std::fputs(plab::daemon::explain_choices(simulation).c_str(), stdout);
+            std::fputs(plab::daemon::explain_rules(simulation).c_str(), stdout);
             return 0;
         default:
             return run_scene(simulation, library, options, start);

@@ -256,8 +256,9 @@ void add_run_options(CLI::App& app, DaemonOptions& options, WrittenOptions& writ
 void add_task_options(CLI::App& app, DaemonOptions& options, WrittenOptions& written)
 {
     app.add_flag("--check", written.check, "check the blueprint and exit");
-    app.add_flag("--expand", written.expand, "print the long form of the blueprint");
-    app.add_flag("--explain", written.explain, "print what is loaded, resolved and left out, and why");
+    app.add_flag("--expand", written.expand,
+                 "print the long form of the blueprint; with --until, of the scene as it is then, without rules");
+    app.add_flag("--explain", written.explain, "print what is loaded, resolved and left out, and why; with --until, then");
     app.add_option("--reference", options.reference,
                    "print the reference of all component types, of one (Response/Rows, Rows) or of a kind")
         ->expected(0, 1)

@@ -75,6 +75,7 @@ struct ComponentSpec
     bool explicit_commands = false;     ///< a simulation command selects: only `commands` take part
     std::vector<std::string> commands;  ///< names of exported commands that take part
     bool generated = false;             ///< generated because the short form left it out
+    std::string made_by;                ///< id of the component that asked for it (Phase::Decide); empty: an author or a client
     SourceLocation where;
 };
 

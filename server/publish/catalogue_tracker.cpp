@@ -11,35 +11,41 @@ namespace plab::publish
 namespace
 {
 
-using Names = std::unordered_map<std::string_view, std::string_view>;
+/// The components that have a name for people, or that another component asked for, by id.
+using Named = std::unordered_map<std::string_view, const model::ComponentSpec*>;
 
-/// Names for people, by id.
-Names names_of(const model::SceneSpec& scene)
+Named named_in(const model::SceneSpec& scene)
 {
-    Names out;
+    Named out;
     for (const model::ComponentSpec& spec : scene.components)
-        if (!spec.name.empty()) out.emplace(spec.id, spec.name);
+        if (!spec.name.empty() || !spec.made_by.empty()) out.emplace(spec.id, &spec);
     return out;
 }
 
-std::string name_in(const Names& names, const std::string& id)
+/// Which component asked for it, as a parameter of the kind "made".
+void add_maker(const model::ComponentSpec* spec, std::vector<wire::Parameter>& out)
 {
-    const auto found = names.find(id);
-    return found == names.end() ? std::string() : std::string(found->second);
+    if (spec && !spec->made_by.empty()) out.push_back({"made_by", spec->made_by, "", "made"});
 }
 
-void add_entry(const simulation::Simulation& s, const Roster::Member& member, const std::string& name, CatalogueChange& out)
+void add_entry(const simulation::Simulation& s, const Roster::Member& member, const std::string& id, const Named& named,
+               CatalogueChange& out)
 {
+    const auto found = named.find(id);
+    const model::ComponentSpec* spec = found == named.end() ? nullptr : found->second;
+    const std::string name = spec ? spec->name : std::string();
     switch (member.kind)
     {
         case Roster::Kind::Object:
             out.objects.push_back(object_entry(s, member, name));
+            add_maker(spec, out.objects.back().parameters);
             break;
         case Roster::Kind::Shape:
             out.shapes.push_back(shape_entry(s, member));
             break;
         case Roster::Kind::Interaction:
             out.interactions.push_back(interaction_entry(s, member, name));
+            add_maker(spec, out.interactions.back().parameters);
             break;
     }
 }
@@ -139,8 +145,8 @@ CatalogueChange CatalogueTracker::everything(const simulation::Simulation& s) co
 {
     CatalogueChange out;
     out.everything = true, out.scene = scene_entry(s, roster_), out.types = types_;
-    const Names names = names_of(s.world().scene());
-    for (const auto& [id, member] : roster_.members()) add_entry(s, member, name_in(names, id), out);
+    const Named named = named_in(s.world().scene());
+    for (const auto& [id, member] : roster_.members()) add_entry(s, member, id, named, out);
     return out;
 }
 
@@ -150,9 +156,9 @@ CatalogueChange CatalogueTracker::changes(const simulation::Simulation& s) const
     out.scene = scene_entry(s, roster_);
     if (types_changed_) out.types = types_;
     out.gone.assign(gone_.begin(), gone_.end());
-    const Names names = names_of(s.world().scene());
+    const Named named = named_in(s.world().scene());
     for (const std::string& id : touched_)
-        if (const Roster::Member* member = roster_.find(id)) add_entry(s, *member, name_in(names, id), out);
+        if (const Roster::Member* member = roster_.find(id)) add_entry(s, *member, id, named, out);
     return out;
 }
 

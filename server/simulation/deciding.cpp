@@ -42,6 +42,25 @@ double departure(const std::vector<ObjectMotion>& one, const std::vector<ObjectM
     return any_body ? bodies : shafts;
 }
 
+std::string file_of(const world::World& world, std::uint32_t component)
+{
+    const model::ComponentSpec* spec = world.scene().find(world.id_of(component));
+    return spec ? spec->where.file : std::string();
+}
+
+/// What was added or removed.
+std::vector<std::string> ids_in(const std::vector<Operation>& operations)
+{
+    std::vector<std::string> out;
+    for (const Operation& operation : operations)
+    {
+        if (const auto* gone = std::get_if<RemoveOperation>(&operation)) out.push_back(gone->id);
+        if (const auto* added = std::get_if<AddBlueprintOperation>(&operation))
+            for (const model::ComponentNode& node : added->blueprint->components) out.push_back(node.id);
+    }
+    return out;
+}
+
 }  // namespace
 
 /// What the first step would be with a level, or as it is (null).
@@ -100,7 +119,55 @@ void Simulation::decide()
     } events(decided_.events);
     const auto error = [this](std::uint32_t component, const Level* level, const Level* finest, double interval)
     { return error_of_level(component, *level, *finest, interval); };
-    for (const Decision& decision : run_.levels().decide(tick(), time(), dt(), error, events)) carry_out_decision(decision);
+    const std::vector<Decision> decisions = run_.levels().decide(tick(), time(), dt(), error, events);
+    for (auto first = decisions.begin(); first != decisions.end();)
+    {
+        const auto differs = [&](const Decision& d) { return d.by != first->by || d.verb != "add"; };
+        const auto last = std::find_if(first + 1, decisions.end(), differs);
+        const auto end = first->verb == "add" ? last : first + 1;
+        carry_out_decisions({first, end});
+        first = end;
+    }
+}
+
+/// Additions of one component are one transaction, because the cost of a transaction grows with the scene. If it is refused, each half is
+/// tried by itself, down to those that are impossible: the same ones as if they were tried one after the other.
+void Simulation::carry_out_decisions(std::span<const Decision> decisions)
+{
+    if (decisions.size() == 1) return carry_out_decision(decisions.front());
+    if (take_effect_together(decisions)) return;
+    carry_out_decisions(decisions.first(decisions.size() / 2));
+    carry_out_decisions(decisions.subspan(decisions.size() / 2));
+}
+
+Result<Request> Simulation::read_decision(const Decision& decision) const
+{
+    if (!context_.read_request) return reason("this program does not read requests of components");
+    // Errors in what a component adds are told with the file in which the component stands.
+    const bool names_file = decision.verb == "add" && decision.target.empty();
+    return context_.read_request(decision.verb, names_file ? file_of(run_.world(), decision.by) : decision.target, decision.argument);
+}
+
+bool Simulation::take_effect_together(std::span<const Decision> additions)
+{
+    Decision whole;
+    whole.by = additions.front().by, whole.verb = "add";
+    model::Blueprint blueprint;
+    for (const Decision& addition : additions)
+    {
+        const auto read = read_decision(addition);
+        if (!read) return false;
+        const auto* add = read->operations.size() == 1 ? std::get_if<AddBlueprintOperation>(&read->operations.front()) : nullptr;
+        if (!add || !add->blueprint->repeats.empty()) return false;
+        if (blueprint.components.empty()) blueprint.file = add->blueprint->file;
+        blueprint.components.insert(blueprint.components.end(), add->blueprint->components.begin(), add->blueprint->components.end());
+        whole.reasons.push_back(addition.reasons.front());
+    }
+    Request request;
+    request.trial.budget = TrialChoice::Budget::None;
+    request.made_by = run_.world().id_of(whole.by);
+    request.operations.push_back(AddBlueprintOperation(std::move(blueprint)));
+    return take_effect(whole, request, whole.reasons);
 }
 
 /// An exchange that is refused must not keep the others of the same decision from taking effect.
@@ -109,10 +176,10 @@ void Simulation::carry_out_decision(const Decision& decision)
     Request request;
     request.trial.budget = TrialChoice::Budget::None;
     request.operations = decision.operations;
+    request.made_by = run_.world().id_of(decision.by);
     if (!decision.verb.empty())
     {
-        auto read = context_.read_request ? context_.read_request(decision.verb, decision.target, decision.argument)
-                                          : Result<Request>(reason("this program does not read requests of components"));
+        auto read = read_decision(decision);
         if (!read) return refuse_decision(decision.by, decision.verb + " " + decision.target, read.error().reason);
         request.operations = std::move(read->operations);
     }
@@ -132,7 +199,7 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
     if (!reply.done)
     {
         last_refusal_ = reply.errors.empty() ? std::string() : reply.errors.front().text();
-        if (request.operations.size() < 2 && !decision.verb.empty())
+        if (reasons.size() < 2 && !decision.verb.empty())
             refuse_decision(decision.by, decision.verb + " " + decision.target, last_refusal_);
         return false;
     }
@@ -149,6 +216,19 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
         e.message = swap.from + " -> " + swap.to + ": " + why;
         decided_.events.push_back(std::move(e));
     }
+    if (decision.verb == "add" || decision.verb == "remove")
+    {
+        run_.changes.touched.push_back(run_.world().id_of(decision.by));  // it remembers what it did
+        const std::vector<std::string> ids = ids_in(request.operations);
+        for (std::size_t k = 0; k < ids.size(); ++k)
+        {
+            Event e;
+            e.tick = tick(), e.time = time(), e.component = decision.by;
+            e.kind = decision.verb == "add" ? "component.made" : "component.removed";
+            e.message = ids[k] + ": " + reasons[std::min(k, reasons.size() - 1)];
+            decided_.events.push_back(std::move(e));
+        }
+    }
     reply.made = std::make_shared<const Request>(request), reply.decided_by = run_.world().id_of(decision.by);
     own_requests_.push_back(std::move(reply));
     return true;
@@ -156,6 +236,7 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
 
 void Simulation::refuse_decision(std::uint32_t by, const std::string& what, const std::string& why)
 {
+    run_.changes.touched.push_back(run_.world().id_of(by));
     Event e;
     e.tick = tick(), e.time = time(), e.kind = "decide.refused", e.severity = Severity::Warning, e.component = by;
     e.message = what + ": " + why;

@@ -60,8 +60,8 @@ public:
     bool apply_due();
     /// The replies since the last call, in order.
     std::vector<Reply> take_replies();
-    /// The requests that the simulation made itself before the last step, with their replies: measurements for governors, and what components
-    /// decided (Reply::made).
+    /// The requests that the simulation made itself before the last step, with their replies: measurements for governors, and what
+    /// components decided (Reply::made).
     const std::vector<Reply>& own_requests() const { return own_requests_; }
     /// What requests, scripts (when they set parameters) and failures changed about components since the last call.
     Changes take_changes();
@@ -113,7 +113,10 @@ private:
     // deciding.cpp
     void measure_for_governors();
     void decide();
+    void carry_out_decisions(std::span<const Decision> decisions);
     void carry_out_decision(const Decision& decision);
+    Result<Request> read_decision(const Decision& decision) const;
+    bool take_effect_together(std::span<const Decision> additions);
     bool take_effect(const Decision& decision, const Request& request, const std::vector<std::string>& reasons);
     void refuse_decision(std::uint32_t by, const std::string& what, const std::string& why);
     void read_changed_governors();

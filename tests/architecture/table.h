@@ -127,6 +127,7 @@ inline const std::vector<Layer>& layers()
         {"interactions/constraints/grab", {"server/sdk"}, {}},
         {"interactions/managers", {"server/sdk", "server/linear"}, {}},
         {"interactions/scripts/lua", {"server/sdk"}, {"lua.hpp"}},
+        {"interactions/rules", {"server/sdk", "interactions/scripts/lua"}, {}},
         {"interactions/*", {"server/sdk"}, {}},
         {"idl/values", {}, {}},  // plain values: files that include them see no DDS
         {"idl/json", {"idl/values"}, {"nlohmann/"}},

@@ -143,6 +143,31 @@ TEST_CASE("wrong use is 2, bad scenes are 1, both with a message")
     CHECK(has(check.text, "State/Shaft"));
 }
 
+TEST_CASE("what rules have made: explained, and frozen into a scene without rules")
+{
+    const std::string scene = quoted(std::string(PLAB_SOURCE_DIR) + "/scenes/workshop.xml");
+    const Outcome none = plabd("--explain " + scene), made = plabd("--explain --until 9.5 " + scene);
+    CHECK(has(none.text, "mesh, wheels that mesh turn against one another: nothing yet"));
+    CHECK(has(made.text, "mesh, wheels that mesh turn against one another: mesh.large_gear.small_gear (Constraint/Gear)"));
+    const Outcome frozen = plabd("--expand --until 9.5 " + scene);
+    CHECK(frozen.code == 0);
+    CHECK(!has(frozen.text, "Rule/Pair"));
+    CHECK(has(frozen.text, "clutch.axle"));
+    // What was frozen goes on as the scene itself does.
+    const std::string file = temporary("frozen.xml");
+    std::ofstream(file) << frozen.text;
+    const auto frozen_end = nlohmann::json::parse(plabd(quoted(file) + " --no-bus --until 4 --out -").text);
+    const auto whole_end = nlohmann::json::parse(plabd(scene + " --no-bus --until 13.5 --out -").text);
+    for (const char* const id : {"red", "green"})
+        for (int k = 0; k < 3; ++k)
+        {
+            const double one = frozen_end["objects"][id]["position"][k].get<double>();
+            const double other = whole_end["objects"][id]["position"][k].get<double>();
+            CHECK(std::abs(one - other) < 1e-6);
+        }
+    CHECK(whole_end["objects"]["red"]["position"][0].get<double>() > 1.7);
+}
+
 TEST_CASE("help, version, check, expand, explain")
 {
     CHECK(has(plabd("--help").text, "Examples:"));

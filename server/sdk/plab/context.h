@@ -76,6 +76,22 @@ public:
     /// The present value of a field; no value if there is no such field. Inputs and parameters do not change within a step; what another
     /// component changes in the same phase may have changed already or not, by the order of types.
     virtual Value value_of(Ref ref, std::string_view field) const = 0;
+
+    // The components as a whole, for those that look for others by what they are.
+    /// Directory indices of all components with a type, in the order of their ids.
+    virtual std::span<const std::uint32_t> components() const { return {}; }
+    /// Another number whenever components, or parameters that requests set, may have changed.
+    virtual std::uint64_t structure() const { return 0; }
+    virtual std::string_view id_of(std::uint32_t /*component*/) const { return {}; }
+    virtual std::string_view type_of(std::uint32_t /*component*/) const { return {}; }
+    virtual Ref ref_of(std::uint32_t /*component*/) const { return {}; }
+    virtual std::uint32_t component_of(Ref /*ref*/) const { return kNoIndex; }
+    /// Whether there is a component, or a group, with this id.
+    virtual bool exists(std::string_view /*id*/) const { return false; }
+    /// Whether the text fits one of the patterns, which are separated by blanks: * is any text, ? any character.
+    virtual bool matches(std::string_view /*patterns*/, std::string_view /*text*/) const { return false; }
+    /// The first participant in a role; not valid if there is none.
+    virtual Ref participant(std::uint32_t /*component*/, std::string_view /*role*/) const { return {}; }
 };
 
 /// The members of a long list of participants that are being advanced, so that the cost of a field over ten thousand bodies is

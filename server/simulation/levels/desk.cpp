@@ -6,6 +6,7 @@
 #include "simulation/costs/clock.h"
 #include "simulation/levels/level_book.h"
 #include "world/command_call.h"
+#include "world/world_lookup.h"
 
 namespace plab::simulation
 {
@@ -120,6 +121,8 @@ std::vector<Decision> LevelBook::decide(Tick tick, double time, double dt, const
     world::HostTables& host = world_.host();
     call.arguments.bodies = &host.bodies, call.arguments.shafts = &host.shafts, call.arguments.quantities = &host.quantities;
     call.arguments.shapes = &host.shapes;
+    const world::WorldLookup lookup(world_, structure_);
+    call.context.lookup = &lookup;
     call.arguments.viewpoints = &desk, call.arguments.levels = &desk, call.arguments.requests = &desk;
     deciding_ = true;
     for (const Phase phase : {Phase::View, Phase::Decide})

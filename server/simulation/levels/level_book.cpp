@@ -128,6 +128,7 @@ Result<void> LevelBook::watch(Governor& governor, std::vector<std::uint32_t>& wa
 Result<void> LevelBook::rebuild()
 {
     if (deciding_) return {};
+    ++structure_;
     std::vector<Governor> before;
     before.swap(governors_);
     std::vector<std::uint32_t> watcher(world_.components().size(), kNoIndex);

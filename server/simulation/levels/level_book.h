@@ -111,6 +111,7 @@ private:
     std::vector<Change> changes_;                      ///< by directory index
     std::vector<std::uint32_t> watcher_, reassigned_;  ///< governor of each component, by directory index; components
     bool deciding_ = false;                            ///< trials exchange components and put them back meanwhile
+    std::uint64_t structure_ = 0;                      ///< counts the calls of rebuild()
     std::vector<double> radius_of_shaft_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> owner_of_part_;  ///< a component, and one that names it in a role; sorted
 };

@@ -5,6 +5,7 @@
 
 #include "simulation/systems/group_system.h"
 #include "simulation/threads/worker_pool.h"
+#include "world/world_lookup.h"
 
 namespace plab::simulation
 {
@@ -39,26 +40,6 @@ struct Reported
     std::vector<std::uint8_t> contradictory;  ///< constraint.contradiction and coupling.*, by component
 };
 
-/// What a command may look up in its world.
-class WorldLookup final : public Lookup
-{
-public:
-    explicit WorldLookup(const world::World& world) : world_(world) {}
-    std::string_view id_of(Ref ref) const override { return ref.valid() ? std::string_view(world_.id_of(ref)) : std::string_view(); }
-    Ref find(std::string_view id) const override
-    {
-        const std::uint32_t i = world_.find(std::string(id));
-        return i == kNoIndex || world_.component(i).table == kNoIndex ? Ref{} : world_.component(i).ref(i);
-    }
-    Value value_of(Ref ref, std::string_view field) const override
-    {
-        return ref.valid() ? world_.get(world_.host().component_of(ref), std::string(field)) : Value();
-    }
-
-private:
-    const world::World& world_;
-};
-
 struct StepState final : EventSink
 {
     StepState(world::World& of, int threads) : world(of), lookup(of), workers(threads) {}
@@ -91,7 +72,7 @@ struct StepState final : EventSink
     }
 
     world::World& world;
-    WorldLookup lookup;
+    world::WorldLookup lookup;
     WorkerPool workers;  ///< lent to calls on the step thread; calls on other threads must not use it
     Schedule schedule;
     Groups groups;

@@ -166,6 +166,7 @@ struct Request
     std::optional<Tick> at;                 ///< takes effect before this step; one that has passed is refused as late
     std::optional<std::uint64_t> revision;  ///< refused if other structural requests were carried out in between
     TrialChoice trial;
+    std::string made_by;  ///< id of the component that makes the request; empty: a client
 };
 
 bool affects_the_run(const Request& request);

@@ -67,6 +67,7 @@ void columns(model::ComponentSpec& c, V visit)
 {
     visit("id", c.id), visit("name", c.name), visit("type", c.type), visit("parent", c.parent), visit("alias_of", c.alias_of);
     visit("explicit_commands", c.explicit_commands), visit("generated", c.generated);
+    visit("made_by", c.made_by);
     visit("file", c.where.file), visit("line", c.where.line), visit("column", c.where.column);
 }
 

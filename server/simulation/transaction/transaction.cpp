@@ -21,6 +21,21 @@ std::vector<std::string> subtree_of(const model::SceneSpec& scene, const std::st
     return out;
 }
 
+namespace
+{
+
+void note_maker(model::SceneSpec& fragment, const std::string& maker)
+{
+    for (std::size_t k = 0; k < fragment.components.size(); ++k)
+    {
+        model::ComponentSpec spec = fragment.components[k];
+        spec.made_by = maker;
+        fragment.components.replace(k, std::move(spec));
+    }
+}
+
+}  // namespace
+
 Transaction::Transaction(Run& run, RunContext& context, RunOperations& operations, const Request& request)
     : run_(&run), context_(&context), whole_(&operations), request_(&request)
 {
@@ -137,7 +152,9 @@ Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
     {
         auto fragment = model::compile(*op.blueprint, world.types(), &world.scene(), context_->limits);
         if (!fragment) return fragment.errors();
-        return apply_one(AddOperation{fragment.take()});
+        model::SceneSpec made = fragment.take();
+        if (!request_->made_by.empty()) note_maker(made, request_->made_by);
+        return apply_one(AddOperation{std::move(made)});
     }
     const auto& whole = op.prepared->whole;
     if (!whole) return whole.errors();
