@@ -1,0 +1,230 @@
+// The scene's shapes, exact and instanced: all spheres are one draw call, all boxes another, and each mesh one.
+import * as THREE from 'three';
+import { mixAngle, mixBody } from './poses.js';
+
+const kStaticColor = [0.62, 0.63, 0.66], kMarkColor = [0.95, 0.75, 0.2];
+const kPalette = [[0.87, 0.33, 0.28], [0.24, 0.52, 0.78], [0.93, 0.69, 0.22], [0.36, 0.68, 0.42], [0.58, 0.42, 0.74],
+  [0.91, 0.51, 0.24], [0.27, 0.68, 0.71], [0.84, 0.44, 0.62], [0.61, 0.66, 0.25], [0.47, 0.56, 0.69]];
+
+// As plab-view chooses: FNV-1a of the id.
+export function colorOfId(id) {
+  let hash = 2166136261;
+  for (const byte of new TextEncoder().encode(id)) hash = Math.imul(hash ^ byte, 16777619) >>> 0;
+  return kPalette[((hash ^ (hash >>> 16)) >>> 0) % kPalette.length];
+}
+
+function colorOf(object) {
+  return object.color ?? (object.kind !== 'shaft' && object.motion === 'static' ? kStaticColor : colorOfId(object.id));
+}
+
+// A shaft without shapes is a solid disk of its inertia, within visible bounds, with a mark that shows how it turns.
+function axleParts(object) {
+  const r = object.inertia > 0 ? Math.pow((4 * object.inertia) / (1000 * Math.PI), 0.2) : 0.05;
+  const radius = Math.min(0.5, Math.max(0.05, r)), half = Math.min(0.1, Math.max(0.02, radius / 4));
+  const none = [1, 0, 0, 0];
+  return [
+    { form: 'cylinder', position: [0, 0, 0], rotation: none, scale: [radius, radius, half] },
+    { form: 'box', position: [0.82 * radius, 0, 0], rotation: none, scale: [0.22 * radius, 0.08 * radius, 1.12 * half], color: kMarkColor },
+  ];
+}
+
+function partsOfShape(shape) {
+  const base = { position: shape.position, rotation: shape.orientation };
+  const [x, y, z] = shape.size;
+  switch (shape.form) {
+    case 'sphere': return [{ ...base, form: 'sphere', scale: [x, x, x] }];
+    case 'box': return [{ ...base, form: 'box', scale: [x, y, z] }];
+    case 'cylinder': return [{ ...base, form: 'cylinder', scale: [x, x, z] }];
+    case 'plane': return [{ ...base, form: 'plane', scale: [1, 1, 1] }];
+    case 'mesh':
+    case 'compound': return [{ ...base, form: `mesh:${shape.id}`, scale: [1, 1, 1] }];
+    // Exact at every length: two balls and a cylinder.
+    case 'capsule': return [{ ...base, form: 'cylinder', scale: [x, x, z] },
+      ...[-z, z].map((end) => ({ position: along(shape.position, shape.orientation, end), rotation: shape.orientation, form: 'sphere', scale: [x, x, x] }))];
+    default: return [];
+  }
+}
+
+// p + q (0, 0, z) q*
+function along(p, [w, x, y, s], z) {
+  return [p[0] + 2 * (x * s + w * y) * z, p[1] + 2 * (y * s - w * x) * z, p[2] + (1 - 2 * (x * x + y * y)) * z];
+}
+
+function geometryOf(form, count, shapes) {
+  // Many small balls need fewer corners each than a few large ones.
+  const fine = count <= 300 ? 40 : count <= 2000 ? 20 : 12;
+  if (form === 'sphere') return new THREE.SphereGeometry(1, fine, Math.round(fine * 0.6));
+  if (form === 'box') return new THREE.BoxGeometry(2, 2, 2);
+  if (form === 'cylinder') return new THREE.CylinderGeometry(1, 1, 2, fine).rotateX(Math.PI / 2);
+  if (form === 'plane') return new THREE.PlaneGeometry(400, 400);
+  const shape = shapes.get(form.slice(5));
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.Float32BufferAttribute(shape.vertices, 3));
+  geometry.setIndex(shape.triangles);
+  // Each triangle has its own normal: edges of gears stay sharp.
+  const flat = geometry.toNonIndexed();
+  flat.computeVertexNormals();
+  return flat;
+}
+
+// All instances of one form.
+class Bucket {
+  constructor(form, parts, shapes, material) {
+    this.parts = parts; // { prop, position, rotation, scale, color }
+    this.geometry = geometryOf(form, parts.length, shapes);
+    this.mesh = new THREE.InstancedMesh(this.geometry, material, parts.length);
+    this.mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
+    this.mesh.frustumCulled = false;
+    this.mesh.castShadow = form !== 'plane';
+    this.mesh.receiveShadow = true;
+    this.mesh.userData.bucket = this;
+    const color = new THREE.Color();
+    parts.forEach((part, i) => this.mesh.setColorAt(i, color.setRGB(...part.color, THREE.SRGBColorSpace)));
+    this.prop = Int32Array.from(parts, (part) => part.prop);
+    this.local = new Float32Array(10 * parts.length);
+    parts.forEach((part, i) => this.local.set([...part.position, ...part.rotation, ...part.scale], 10 * i));
+  }
+
+  // Instance matrices from the poses of all props (seven numbers each). What is not there has size zero.
+  update(poses) {
+    const { local, prop } = this, out = this.mesh.instanceMatrix.array;
+    for (let i = 0, l = 0, m = 0; i < prop.length; ++i, l += 10, m += 16) {
+      const at = 7 * prop[i];
+      const w = poses[at + 3], x = poses[at + 4], y = poses[at + 5], z = poses[at + 6];
+      const bw = local[l + 3], bx = local[l + 4], by = local[l + 5], bz = local[l + 6];
+      const qw = w * bw - x * bx - y * by - z * bz, qx = w * bx + x * bw + y * bz - z * by;
+      const qy = w * by - x * bz + y * bw + z * bx, qz = w * bz + x * by - y * bx + z * bw;
+      const px = local[l], py = local[l + 1], pz = local[l + 2];
+      const tx = 2 * (y * pz - z * py), ty = 2 * (z * px - x * pz), tz = 2 * (x * py - y * px);
+      const gone = w === 0 && x === 0 && y === 0 && z === 0;
+      const sx = gone ? 0 : local[l + 7], sy = gone ? 0 : local[l + 8], sz = gone ? 0 : local[l + 9];
+      out[m] = (1 - 2 * (qy * qy + qz * qz)) * sx; out[m + 1] = 2 * (qx * qy + qw * qz) * sx; out[m + 2] = 2 * (qx * qz - qw * qy) * sx; out[m + 3] = 0;
+      out[m + 4] = 2 * (qx * qy - qw * qz) * sy; out[m + 5] = (1 - 2 * (qx * qx + qz * qz)) * sy; out[m + 6] = 2 * (qy * qz + qw * qx) * sy; out[m + 7] = 0;
+      out[m + 8] = 2 * (qx * qz + qw * qy) * sz; out[m + 9] = 2 * (qy * qz - qw * qx) * sz; out[m + 10] = (1 - 2 * (qx * qx + qy * qy)) * sz; out[m + 11] = 0;
+      out[m + 12] = poses[at] + px + w * tx + y * tz - z * ty;
+      out[m + 13] = poses[at + 1] + py + w * ty + z * tx - x * tz;
+      out[m + 14] = poses[at + 2] + pz + w * tz + x * ty - y * tx;
+      out[m + 15] = 1;
+    }
+    this.mesh.instanceMatrix.needsUpdate = true;
+    this.mesh.boundingSphere = null;
+  }
+
+  dispose() {
+    this.mesh.dispose();
+    this.geometry.dispose();
+  }
+}
+
+export class Props {
+  constructor(group) {
+    this.group = group;
+    this.material = new THREE.MeshStandardMaterial({ roughness: 0.55, metalness: 0.05 });
+    this.buckets = [];
+    this.objects = [];
+    this.poses = new Float32Array(0);
+    this.places = null;
+  }
+
+  // Everything anew: after a change of the structure.
+  rebuild(model) {
+    for (const bucket of this.buckets) {
+      this.group.remove(bucket.mesh);
+      bucket.dispose();
+    }
+    this.objects = [...model.objects.values()];
+    this.index = new Map(this.objects.map((object, i) => [object.id, i]));
+    this.poses = new Float32Array(7 * this.objects.length);
+    const byForm = new Map();
+    this.objects.forEach((object, prop) => {
+      const color = colorOf(object);
+      let parts = object.shapes.flatMap((id) => (model.shapes.has(id) ? partsOfShape(model.shapes.get(id)) : []));
+      if (object.kind === 'shaft' && object.shapes.length === 0) parts = axleParts(object);
+      for (const part of parts) {
+        if (!byForm.has(part.form)) byForm.set(part.form, []);
+        byForm.get(part.form).push({ color, ...part, prop });
+      }
+      this.setPose(prop, object.position, object.orientation);
+    });
+    this.buckets = [...byForm].map(([form, parts]) => new Bucket(form, parts, model.shapes, this.material));
+    for (const bucket of this.buckets) this.group.add(bucket.mesh);
+    this.layout = null;
+    this.updateMatrices();
+  }
+
+  setPose(prop, p, q) { this.poses.set([...p, ...q], 7 * prop); }
+
+  updateMatrices() { for (const bucket of this.buckets) bucket.update(this.poses); }
+
+  // Moves everything to a moment between two frames.
+  place(moment) {
+    if (this.layout !== moment.b.layout || this.run !== moment.b.run) this.bind(moment.b);
+    for (let i = 0; i < this.movers.length; i += 2) mixBody(moment, this.movers[i + 1], this.poses, 7 * this.movers[i]);
+    for (const { prop, place, axle } of this.turners) {
+      const half = mixAngle(moment, place) / 2, c = Math.cos(half), s = Math.sin(half), [w, x, y, z] = axle;
+      const at = 7 * prop + 3;
+      this.poses[at] = w * c - z * s;
+      this.poses[at + 1] = x * c + y * s;
+      this.poses[at + 2] = y * c - x * s;
+      this.poses[at + 3] = z * c + w * s;
+    }
+    this.updateMatrices();
+  }
+
+  // Which object is at which place of the frames.
+  bind(frame) {
+    this.layout = frame.layout;
+    this.run = frame.run;
+    const movers = [];
+    this.turners = [];
+    this.objects.forEach((object, prop) => {
+      const place = object.kind === 'shaft' ? this.layout.shafts.get(object.handle) : this.layout.bodies.get(object.handle);
+      if (place === undefined) return;
+      if (object.kind === 'shaft') this.turners.push({ prop, place, axle: object.orientation });
+      else movers.push(prop, place);
+    });
+    this.movers = Int32Array.from(movers);
+  }
+
+  positionOf(id) {
+    const prop = this.index?.get(id);
+    return prop === undefined ? null : this.poses.subarray(7 * prop, 7 * prop + 3);
+  }
+
+  poseOf(id) {
+    const prop = this.index?.get(id);
+    return prop === undefined ? null : this.poses.subarray(7 * prop, 7 * prop + 7);
+  }
+
+  // Parts of an object: { geometry, matrix }.
+  partsOf(id) {
+    const prop = this.index?.get(id), out = [];
+    for (const bucket of this.buckets)
+      for (let i = 0; i < bucket.prop.length; ++i)
+        if (bucket.prop[i] === prop) out.push({ geometry: bucket.geometry, array: bucket.mesh.instanceMatrix.array, at: 16 * i });
+    return out;
+  }
+
+  // The object under a ray, and where; null: none.
+  pick(raycaster) {
+    const hits = raycaster.intersectObjects(this.buckets.map((bucket) => bucket.mesh), false);
+    for (const hit of hits) {
+      const bucket = hit.object.userData.bucket;
+      return { id: this.objects[bucket.prop[hit.instanceId]].id, point: hit.point };
+    }
+    return null;
+  }
+
+  // Ball around everything but planes: { center, radius }.
+  bounds() {
+    const box = new THREE.Box3(), matrix = new THREE.Matrix4(), part = new THREE.Box3();
+    for (const bucket of this.buckets) {
+      if (!bucket.mesh.castShadow) continue;
+      bucket.geometry.computeBoundingBox();
+      for (let i = 0; i < bucket.prop.length; ++i)
+        box.union(part.copy(bucket.geometry.boundingBox).applyMatrix4(matrix.fromArray(bucket.mesh.instanceMatrix.array, 16 * i)));
+    }
+    const sphere = new THREE.Sphere(new THREE.Vector3(0, 0, 0), 2);
+    return box.isEmpty() ? sphere : box.getBoundingSphere(sphere);
+  }
+}
