@@ -209,8 +209,6 @@ Result<Said> parse_watch(Members& members)
     return Said{std::move(out)};
 }
 
-bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 Result<Said> parse_hand(const std::string& type, Members& members)
 {
     if (type == "release") return Said{Release{}};

@@ -17,9 +17,9 @@ function proof(report) {
   const size = (v) => Math.hypot(...v);
   const { with_old: old, with_new: now } = report;
   const difference = old.momentum.map((value, i) => now.momentum[i] - value);
-  const row = (name, a, b, c, unit) => h('tr', {}, h('th', { scope: 'row' }, name, h('small', {}, ` ${unit}`)), h('td', {}, number(a, 6)), h('td', {}, number(b, 6)), h('td', {}, number(c, 3)));
+  const row = (name, a, b, c, unit) => h('tr', {}, h('th', { scope: 'row' }, name, h('small', {}, ` ${unit}`)), h('td', {}, number(a, 5)), h('td', {}, number(b, 5)), h('td', {}, number(c, 3)));
   return h('table', {}, h('caption', {}, `First step after it; energy before it ${number(report.energy_before, 6)} J`),
-    h('thead', {}, h('tr', {}, h('td'), h('th', { scope: 'col' }, 'with the old'), h('th', { scope: 'col' }, 'with the new'), h('th', { scope: 'col' }, 'jump'))),
+    h('thead', {}, h('tr', {}, h('td'), h('th', { scope: 'col' }, 'old'), h('th', { scope: 'col' }, 'new'), h('th', { scope: 'col' }, 'jump'))),
     h('tbody', {},
       row('energy', old.energy, now.energy, now.energy - old.energy, 'J'),
       row('momentum', size(old.momentum), size(now.momentum), size(difference), 'N s'),

@@ -170,11 +170,10 @@ function showState() {
 setInterval(() => {
   // plabd says that it is there at least once a second.
   if (model.state.kind === 'there' && model.heardAt && performance.now() - model.heardAt > 3000) model.setState('silent', 'The server has said nothing for 3 s. It may be stopped or gone; waiting for it.');
-  const moment = poses.newest;
   byId('clock').textContent = seconds(view.shownTime ?? model.server?.time ?? 0);
   byId('facts').textContent = [
     isPaused() ? 'paused' : `× ${number(model.server?.rate_reached ?? 0, 3)}`, model.metrics && `step ${duration(model.metrics.step_ns)}`,
-    model.metrics && `${model.metrics.contacts} contacts`, `${Math.round(view.picturesPerSecond)} pictures/s`, moment && `step ${moment.step}`,
+    model.metrics && `${model.metrics.contacts} contacts`, `${Math.round(view.picturesPerSecond)} pictures/s`,
   ].filter(Boolean).join(' · ');
 }, 250);
 

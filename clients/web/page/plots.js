@@ -3,6 +3,8 @@ import uPlot from 'uplot';
 import { byId, h, number } from './dom.js';
 
 const kColors = ['#2f7ed8', '#e4572e', '#2a9d5c', '#9355c7', '#d49a00', '#0fa3b1'];
+// Equal lines are told apart by their width and dashes.
+const kDashes = [[], [3, 5], [8, 4], [2, 3], [12, 4, 2, 4]];
 const kMost = 3000;   // points of a line
 const kHeight = 150;  // px
 const kMostPlots = 8;
@@ -113,7 +115,7 @@ export class Plots {
       width, height: kHeight, legend: { show: plot.labels.length > 1, live: true }, cursor: { drag: { x: false, y: false } },
       scales: { x: { time: false } },
       axes: [{ ...axis, size: 28 }, { ...axis, size: 58, values: (_, ticks) => ticks.map((t) => number(t, 4)) }],
-      series: [{ label: 's', value: (_, v) => (v === null ? '' : v.toFixed(2)) }, ...plot.labels.map((label, i) => ({ label, stroke: kColors[i % kColors.length], width: 1.5, points: { show: false }, value: (_, v) => number(v) }))],
+      series: [{ label: 's', value: (_, v) => (v === null ? '' : v.toFixed(2)) }, ...plot.labels.map((label, i) => ({ label, stroke: kColors[i % kColors.length], width: i === 0 && plot.labels.length > 1 ? 3.5 : 1.5, dash: kDashes[i % kDashes.length], points: { show: false }, value: (_, v) => number(v) }))],
     };
   }
 }

@@ -52,7 +52,7 @@ function along(p, [w, x, y, s], z) {
 
 function geometryOf(form, count, shapes) {
   // Many small balls need fewer corners each than a few large ones.
-  const fine = count <= 300 ? 40 : count <= 2000 ? 20 : 12;
+  const fine = count <= 300 ? 40 : count <= 2000 ? 20 : 8;
   if (form === 'sphere') return new THREE.SphereGeometry(1, fine, Math.round(fine * 0.6));
   if (form === 'box') return new THREE.BoxGeometry(2, 2, 2);
   if (form === 'cylinder') return new THREE.CylinderGeometry(1, 1, 2, fine).rotateX(Math.PI / 2);
@@ -119,7 +119,7 @@ class Bucket {
 export class Props {
   constructor(group) {
     this.group = group;
-    this.material = new THREE.MeshStandardMaterial({ roughness: 0.55, metalness: 0.05 });
+    this.material = new THREE.MeshLambertMaterial();
     this.buckets = [];
     this.objects = [];
     this.poses = new Float32Array(0);
