@@ -132,11 +132,18 @@ byId('follow').onclick = toggleFollow;
 byId('fit').onclick = () => view.fitAll();
 byId('grab').onclick = () => setMode('grab');
 byId('push').onclick = () => setMode('push');
-byId('show-joints').onchange = (event) => { view.marks.show.joints = event.target.checked; };
-byId('show-contacts').onchange = (event) => { view.marks.show.contacts = event.target.checked; };
+byId('show-joints').onchange = (event) => {
+  view.marks.show.joints = event.target.checked;
+  view.isChanged = true;
+};
+byId('show-contacts').onchange = (event) => {
+  view.marks.show.contacts = event.target.checked;
+  view.isChanged = true;
+};
 byId('shadows').onchange = (event) => {
   view.shadows = event.target.value;
   view.tooSlow = false;
+  view.isChanged = true;
 };
 byId('camera').onchange = (event) => {
   const camera = model.scene?.cameras.find((c) => c.name === event.target.value);

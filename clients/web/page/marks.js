@@ -103,6 +103,9 @@ export class Marks {
     if (this.impulses.length > kMostArrows) this.impulses.splice(0, this.impulses.length - kMostArrows);
   }
 
+  // Something of it changes by itself.
+  get isAlive() { return this.impulses.length > 0; }
+
   // `reach`: m that an arrow of the strongest impulse is long; `dot`: radius of a contact.
   update(now, reach, dot) {
     this.updateSelection();
@@ -115,7 +118,8 @@ export class Marks {
     const grow = new THREE.Matrix4();
     this.parts?.forEach((part, i) => {
       const mesh = this.outline.children[i];
-      mesh.matrix.fromArray(part.array, part.at).multiply(grow.makeScale(1.06, 1.06, 1.06));
+      part.write(mesh.matrix.elements);
+      mesh.matrix.multiply(grow.makeScale(1.06, 1.06, 1.06));
     });
   }
 

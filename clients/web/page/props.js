@@ -67,52 +67,90 @@ function geometryOf(form, count, shapes) {
   return flat;
 }
 
-// All instances of one form.
+const kFewPixels = 7; // radius below which a ball needs few corners
+const kMany = 1000;   // balls from which on that counts
+
+// All instances of one form. Those that the camera cannot see are left out of each picture, and small balls are coarse.
 class Bucket {
   constructor(form, parts, shapes, material) {
     this.parts = parts; // { prop, position, rotation, scale, color }
     this.geometry = geometryOf(form, parts.length, shapes);
-    this.mesh = new THREE.InstancedMesh(this.geometry, material, parts.length);
-    this.mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
-    this.mesh.frustumCulled = false;
-    this.mesh.castShadow = form !== 'plane';
-    this.mesh.receiveShadow = true;
-    this.mesh.userData.bucket = this;
-    const color = new THREE.Color();
-    parts.forEach((part, i) => this.mesh.setColorAt(i, color.setRGB(...part.color, THREE.SRGBColorSpace)));
+    this.isPlane = form === 'plane';
+    this.geometry.computeBoundingSphere();
     this.prop = Int32Array.from(parts, (part) => part.prop);
     this.local = new Float32Array(10 * parts.length);
     parts.forEach((part, i) => this.local.set([...part.position, ...part.rotation, ...part.scale], 10 * i));
+    const size = this.geometry.boundingSphere.center.length() + this.geometry.boundingSphere.radius;
+    this.radius = Float32Array.from(parts, (part) => size * Math.max(...part.scale));
+    this.color = Float32Array.from(parts.flatMap((part) => new THREE.Color().setRGB(...part.color, THREE.SRGBColorSpace).toArray()));
+    this.levels = [this.geometry];
+    if (form === 'sphere' && parts.length > kMany) this.levels.push(new THREE.SphereGeometry(1, 4, 2));
+    this.meshes = this.levels.map((geometry) => this.makeMesh(geometry, material));
   }
 
-  // Instance matrices from the poses of all props (seven numbers each). What is not there has size zero.
-  update(poses) {
-    const { local, prop } = this, out = this.mesh.instanceMatrix.array;
-    for (let i = 0, l = 0, m = 0; i < prop.length; ++i, l += 10, m += 16) {
-      const at = 7 * prop[i];
-      const w = poses[at + 3], x = poses[at + 4], y = poses[at + 5], z = poses[at + 6];
-      const bw = local[l + 3], bx = local[l + 4], by = local[l + 5], bz = local[l + 6];
-      const qw = w * bw - x * bx - y * by - z * bz, qx = w * bx + x * bw + y * bz - z * by;
-      const qy = w * by - x * bz + y * bw + z * bx, qz = w * bz + x * by - y * bx + z * bw;
-      const px = local[l], py = local[l + 1], pz = local[l + 2];
-      const tx = 2 * (y * pz - z * py), ty = 2 * (z * px - x * pz), tz = 2 * (x * py - y * px);
-      const gone = w === 0 && x === 0 && y === 0 && z === 0;
-      const sx = gone ? 0 : local[l + 7], sy = gone ? 0 : local[l + 8], sz = gone ? 0 : local[l + 9];
-      out[m] = (1 - 2 * (qy * qy + qz * qz)) * sx; out[m + 1] = 2 * (qx * qy + qw * qz) * sx; out[m + 2] = 2 * (qx * qz - qw * qy) * sx; out[m + 3] = 0;
-      out[m + 4] = 2 * (qx * qy - qw * qz) * sy; out[m + 5] = (1 - 2 * (qx * qx + qz * qz)) * sy; out[m + 6] = 2 * (qy * qz + qw * qx) * sy; out[m + 7] = 0;
-      out[m + 8] = 2 * (qx * qz + qw * qy) * sz; out[m + 9] = 2 * (qy * qz - qw * qx) * sz; out[m + 10] = (1 - 2 * (qx * qx + qy * qy)) * sz; out[m + 11] = 0;
-      out[m + 12] = poses[at] + px + w * tx + y * tz - z * ty;
-      out[m + 13] = poses[at + 1] + py + w * ty + z * tx - x * tz;
-      out[m + 14] = poses[at + 2] + pz + w * tz + x * ty - y * tx;
-      out[m + 15] = 1;
+  makeMesh(geometry, material) {
+    const mesh = new THREE.InstancedMesh(geometry, material, this.parts.length);
+    mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
+    mesh.instanceColor = new THREE.InstancedBufferAttribute(new Float32Array(3 * this.parts.length), 3);
+    mesh.instanceColor.setUsage(THREE.DynamicDrawUsage);
+    mesh.frustumCulled = false;
+    mesh.castShadow = !this.isPlane;
+    mesh.receiveShadow = true;
+    mesh.userData = { bucket: this, shown: new Int32Array(this.parts.length) };
+    return mesh;
+  }
+
+  // The matrix of part i by the poses of all props (seven numbers each), into out[m ..]. What is not there has size zero.
+  write(i, poses, out, m) {
+    const { local } = this, l = 10 * i, at = 7 * this.prop[i];
+    const w = poses[at + 3], x = poses[at + 4], y = poses[at + 5], z = poses[at + 6];
+    const bw = local[l + 3], bx = local[l + 4], by = local[l + 5], bz = local[l + 6];
+    const qw = w * bw - x * bx - y * by - z * bz, qx = w * bx + x * bw + y * bz - z * by;
+    const qy = w * by - x * bz + y * bw + z * bx, qz = w * bz + x * by - y * bx + z * bw;
+    const px = local[l], py = local[l + 1], pz = local[l + 2];
+    const tx = 2 * (y * pz - z * py), ty = 2 * (z * px - x * pz), tz = 2 * (x * py - y * px);
+    const gone = w === 0 && x === 0 && y === 0 && z === 0;
+    const sx = gone ? 0 : local[l + 7], sy = gone ? 0 : local[l + 8], sz = gone ? 0 : local[l + 9];
+    out[m] = (1 - 2 * (qy * qy + qz * qz)) * sx; out[m + 1] = 2 * (qx * qy + qw * qz) * sx; out[m + 2] = 2 * (qx * qz - qw * qy) * sx; out[m + 3] = 0;
+    out[m + 4] = 2 * (qx * qy - qw * qz) * sy; out[m + 5] = (1 - 2 * (qx * qx + qz * qz)) * sy; out[m + 6] = 2 * (qy * qz + qw * qx) * sy; out[m + 7] = 0;
+    out[m + 8] = 2 * (qx * qz + qw * qy) * sz; out[m + 9] = 2 * (qy * qz - qw * qx) * sz; out[m + 10] = (1 - 2 * (qx * qx + qy * qy)) * sz; out[m + 11] = 0;
+    out[m + 12] = poses[at] + px + w * tx + y * tz - z * ty;
+    out[m + 13] = poses[at + 1] + py + w * ty + z * tx - x * tz;
+    out[m + 14] = poses[at + 2] + pz + w * tz + x * ty - y * tx;
+    out[m + 15] = 1;
+  }
+
+  // `eye`: { planes: of what is seen, 4 numbers each; at: [x, y, z]; pixels: that a metre has at a metre }.
+  update(poses, eye, wantsAll) {
+    const counts = this.meshes.map(() => 0), { planes } = eye;
+    for (let i = 0; i < this.prop.length; ++i) {
+      const fine = this.meshes[0], out = fine.instanceMatrix.array, m = 16 * counts[0], r = this.radius[i];
+      this.write(i, poses, out, m);
+      const x = out[m + 12], y = out[m + 13], z = out[m + 14];
+      let isSeen = true;
+      if (!wantsAll) for (let k = 0; isSeen && k < planes.length; k += 4) isSeen = planes[k] * x + planes[k + 1] * y + planes[k + 2] * z + planes[k + 3] > -r;
+      if (!isSeen) continue;
+      const level = this.meshes.length > 1 && r * eye.pixels < kFewPixels * Math.hypot(x - eye.at[0], y - eye.at[1], z - eye.at[2]) ? 1 : 0;
+      const mesh = this.meshes[level], n = counts[level]++;
+      if (level > 0) mesh.instanceMatrix.array.set(out.subarray(m, m + 16), 16 * n);
+      mesh.instanceColor.array.set(this.color.subarray(3 * i, 3 * i + 3), 3 * n);
+      mesh.userData.shown[n] = i;
     }
-    this.mesh.instanceMatrix.needsUpdate = true;
-    this.mesh.boundingSphere = null;
+    this.meshes.forEach((mesh, level) => {
+      mesh.count = counts[level];
+      mesh.visible = mesh.count > 0;
+      for (const [attribute, width] of [[mesh.instanceMatrix, 16], [mesh.instanceColor, 3]]) {
+        attribute.clearUpdateRanges();
+        attribute.addUpdateRange(0, width * mesh.count);
+        attribute.needsUpdate = true;
+      }
+      mesh.boundingSphere = null;
+    });
   }
 
   dispose() {
-    this.mesh.dispose();
-    this.geometry.dispose();
+    for (const mesh of this.meshes) mesh.dispose();
+    for (const geometry of this.levels) geometry.dispose();
   }
 }
 
@@ -129,7 +167,7 @@ export class Props {
   // Everything anew: after a change of the structure.
   rebuild(model) {
     for (const bucket of this.buckets) {
-      this.group.remove(bucket.mesh);
+      this.group.remove(...bucket.meshes);
       bucket.dispose();
     }
     this.objects = [...model.objects.values()];
@@ -147,14 +185,14 @@ export class Props {
       this.setPose(prop, object.position, object.orientation);
     });
     this.buckets = [...byForm].map(([form, parts]) => new Bucket(form, parts, model.shapes, this.material));
-    for (const bucket of this.buckets) this.group.add(bucket.mesh);
+    for (const bucket of this.buckets) this.group.add(...bucket.meshes);
     this.layout = null;
-    this.updateMatrices();
   }
 
   setPose(prop, p, q) { this.poses.set([...p, ...q], 7 * prop); }
 
-  updateMatrices() { for (const bucket of this.buckets) bucket.update(this.poses); }
+  // For a picture from `eye` (see Bucket); with shadows, what is not seen may throw one.
+  show(eye, wantsAll) { for (const bucket of this.buckets) bucket.update(this.poses, eye, wantsAll); }
 
   // Moves everything to a moment between two frames.
   place(moment) {
@@ -168,7 +206,6 @@ export class Props {
       this.poses[at + 2] = y * c - x * s;
       this.poses[at + 3] = z * c + w * s;
     }
-    this.updateMatrices();
   }
 
   // Which object is at which place of the frames.
@@ -196,33 +233,33 @@ export class Props {
     return prop === undefined ? null : this.poses.subarray(7 * prop, 7 * prop + 7);
   }
 
-  // Parts of an object: { geometry, matrix }.
+  // Parts of an object: { geometry, write(array) }.
   partsOf(id) {
     const prop = this.index?.get(id), out = [];
     for (const bucket of this.buckets)
       for (let i = 0; i < bucket.prop.length; ++i)
-        if (bucket.prop[i] === prop) out.push({ geometry: bucket.geometry, array: bucket.mesh.instanceMatrix.array, at: 16 * i });
+        if (bucket.prop[i] === prop) out.push({ geometry: bucket.geometry, write: (array) => bucket.write(i, this.poses, array, 0) });
     return out;
   }
 
   // The object under a ray, and where; null: none.
   pick(raycaster) {
-    const hits = raycaster.intersectObjects(this.buckets.map((bucket) => bucket.mesh), false);
-    for (const hit of hits) {
-      const bucket = hit.object.userData.bucket;
-      return { id: this.objects[bucket.prop[hit.instanceId]].id, point: hit.point };
-    }
-    return null;
+    const hit = raycaster.intersectObjects(this.buckets.flatMap((bucket) => bucket.meshes), false)[0];
+    if (!hit) return null;
+    const { bucket, shown } = hit.object.userData;
+    return { id: this.objects[bucket.prop[shown[hit.instanceId]]].id, point: hit.point };
   }
 
   // Ball around everything but planes: { center, radius }.
   bounds() {
     const box = new THREE.Box3(), matrix = new THREE.Matrix4(), part = new THREE.Box3();
     for (const bucket of this.buckets) {
-      if (!bucket.mesh.castShadow) continue;
+      if (bucket.isPlane) continue;
       bucket.geometry.computeBoundingBox();
-      for (let i = 0; i < bucket.prop.length; ++i)
-        box.union(part.copy(bucket.geometry.boundingBox).applyMatrix4(matrix.fromArray(bucket.mesh.instanceMatrix.array, 16 * i)));
+      for (let i = 0; i < bucket.prop.length; ++i) {
+        bucket.write(i, this.poses, matrix.elements, 0);
+        box.union(part.copy(bucket.geometry.boundingBox).applyMatrix4(matrix));
+      }
     }
     const sphere = new THREE.Sphere(new THREE.Vector3(0, 0, 0), 2);
     return box.isEmpty() ? sphere : box.getBoundingSphere(sphere);

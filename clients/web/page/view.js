@@ -36,7 +36,6 @@ export class View {
     this.mode = 'look'; // or 'grab', 'push': what a drag on a body does
     this.follow = false;
     this.pending = 0;   // messages of poses that are not acknowledged yet
-    this.cost = 16;     // ms of a picture, smoothed
     this.pictures = 0;
     this.times = [];
     this.listen();
@@ -71,8 +70,15 @@ export class View {
       this.poses.moments.splice(0, this.poses.moments.length - 1);
     });
     this.model.on('structure', () => { this.isStale = true; });
-    this.model.on('selected', (id) => this.marks.select(id));
-    this.model.on('collisions', (entries) => this.marks.takeCollisions(entries));
+    this.model.on('selected', (id) => {
+      this.marks.select(id);
+      this.isChanged = true;
+    });
+    this.model.on('metrics', () => { this.isChanged ||= this.model.outputs.size > 0; });
+    this.model.on('collisions', (entries) => {
+      this.marks.takeCollisions(entries);
+      this.isChanged = true;
+    });
     this.canvas.addEventListener('pointerdown', (event) => this.press(event), true);
     this.canvas.addEventListener('pointermove', (event) => this.drag(event));
     this.canvas.addEventListener('pointerup', (event) => this.lift(event));
@@ -88,11 +94,13 @@ export class View {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.fitLens();
+    this.isChanged = true;
   }
 
   setBackground(background, lines) {
     this.scene.background = new THREE.Color(background);
     this.lineColor = lines;
+    this.isChanged = true;
     this.fitGround();
   }
 
@@ -122,6 +130,7 @@ export class View {
     }
     this.fitGround();
     this.fitSun();
+    this.isChanged = true;
   }
 
   // ---- Camera ----
@@ -193,17 +202,33 @@ export class View {
   draw(now) {
     // Acknowledged here: a page that is hidden or slow gets no more than it draws.
     for (; this.pending > 0; --this.pending) this.socket.acknowledge();
-    const begin = performance.now();
     if (this.isStale) this.rebuild();
     const moment = this.poses.between(now);
     if (moment && this.props.buckets.length > 0) this.place(moment);
     this.followSelection();
+    if (!this.camera.position.equals(this.drawnFrom ?? this.controls.target) || !this.controls.target.equals(this.drawnTo)) this.isChanged = true;
+    if (this.isChanged || this.marks.isAlive) this.paint(now);
+    this.measure(now);
+  }
+
+  // A scene that stands still, seen by a camera that does, is not drawn again.
+  paint(now) {
+    this.isChanged = false;
+    this.drawnFrom = this.camera.position.clone();
+    this.drawnTo = this.controls.target.clone();
     const away = this.camera.position.distanceTo(this.controls.target);
+    this.sun.castShadow = this.shadows === 'on' || (this.shadows === 'auto' && !this.tooSlow);
+    this.camera.updateMatrixWorld();
+    this.props.show(this.eye(), this.sun.castShadow);
     this.marks.update(now, 0.22 * away, 0.008 * away);
-    const wants = this.shadows === 'on' || (this.shadows === 'auto' && !this.tooSlow);
-    if (this.sun.castShadow !== wants) this.sun.castShadow = wants;
     this.renderer.render(this.scene, this.camera);
-    this.measure(performance.now(), begin);
+    ++this.pictures;
+  }
+
+  eye() {
+    const seen = new THREE.Frustum().setFromProjectionMatrix(new THREE.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse));
+    const pixels = this.renderer.domElement.height / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
+    return { planes: seen.planes.flatMap((plane) => [...plane.normal.toArray(), plane.constant]), at: this.camera.position.toArray(), pixels };
   }
 
   place(moment) {
@@ -211,6 +236,7 @@ export class View {
     if (same) return;
     this.props.place(moment);
     this.placed = moment;
+    this.isChanged = true;
     this.shownTime = moment.a.time + moment.share * (moment.b.time - moment.a.time);
   }
 
@@ -230,9 +256,7 @@ export class View {
     this.controls.update();
   }
 
-  measure(end, begin) {
-    this.cost += 0.1 * (end - begin - this.cost);
-    ++this.pictures;
+  measure(end) {
     this.times.push(end);
     while (this.times[0] < end - 3000) this.times.shift();
     // Where pictures take long, shadows go, then pixels; they stay away: a picture that flickers is worse.
