@@ -1,5 +1,5 @@
 // What is known of the selected component: its numbers, its parameters, and the algorithms it can be exchanged for.
-import { byId, duration, h, number, shortText, shortType } from './dom.js';
+import { byId, duration, h, number, present, shortText, shortType } from './dom.js';
 import { swapCard } from './card.js';
 
 export class Details {
@@ -31,7 +31,7 @@ export class Details {
     const isObject = thing.handle !== undefined, type = this.model.types.get(thing.type);
     this.numbers = h('dl.numbers');
     this.parameters = h('div');
-    this.box.replaceChildren(
+    this.box.replaceChildren(...present([
       h('h2', {}, thing.name || thing.id),
       h('p.sub', {}, `${thing.id} · ${thing.type}`),
       type?.doc && h('p.doc', {}, sentence(type.doc)),
@@ -42,7 +42,7 @@ export class Details {
       isObject ? null : this.ladder(thing),
       h('h3', {}, 'Parameters'),
       this.parameters,
-    );
+    ]));
     this.updateNumbers();
     this.updateMotion();
     this.fillParameters();

@@ -61,6 +61,13 @@ export class Model {
   }
 
   takeScene(message) {
+    // What was before is no past of another server.
+    if (this.server && message.server && this.server.started_ns !== message.server.started_ns) {
+      this.events = [];
+      this.energy = [];
+      this.metrics = null;
+    }
+    this.isOther = !this.scene || this.scene.file !== message.scene?.file || this.scene.title !== message.scene?.title;
     const list = (items, key) => new Map(items.map((item) => [item[key], item]));
     this.scene = message.scene;
     this.objects = list(message.objects, 'id');
@@ -100,7 +107,9 @@ export class Model {
     this.heardAt = performance.now();
     if (this.state.kind !== 'there') this.setState('there', '');
     if (before && (before.run !== server.run || before.started_ns !== server.started_ns)) {
-      this.energy.length = 0;
+      // After a reset nothing is left of what was; after a rewind, what was before that time.
+      for (const event of this.events) event.isUndone ||= event.time > server.time;
+      this.energy = this.energy.filter((row) => row[0] <= server.time);
       this.tell('run', server.run);
     }
     this.tell('server', server);

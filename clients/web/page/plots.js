@@ -23,6 +23,7 @@ export class Plots {
     });
     this.addLedger();
     model.on('run', () => this.clear());
+    model.on('begin', () => this.bind());
     model.on('events', () => { this.isStale = true; });
     model.on('structure', () => this.list.replaceChildren(...quantities.names().slice(0, 3000).map((name) => h('option', { value: name }))));
     model.on('metrics', () => this.sampleMetrics());
@@ -69,6 +70,17 @@ export class Plots {
     this.tellWatch();
   }
 
+  // The scene is another one: what it has not is closed.
+  bind() {
+    for (const [name, plot] of this.plots) {
+      if (!plot.quantity) continue;
+      plot.quantity = this.quantities.find(name);
+      if (plot.quantity) plot.data.length = 0;
+      else this.remove(name);
+    }
+    this.isStale = true;
+  }
+
   tellWatch() { this.watch([...this.plots.values()].map((plot) => plot.quantity?.component).filter(Boolean)); }
 
   clear() {
@@ -112,7 +124,7 @@ export class Plots {
     const lines = () => getComputedStyle(document.body).getPropertyValue('--line').trim();
     const axis = { stroke: ink, grid: { stroke: lines, width: 1 }, ticks: { stroke: lines }, font: '11px sans-serif' };
     return {
-      width, height: kHeight, legend: { show: plot.labels.length > 1, live: true }, cursor: { drag: { x: false, y: false } },
+      width, height: kHeight, legend: { show: plot.labels.length > 1, live: false }, cursor: { drag: { x: false, y: false } },
       scales: { x: { time: false } },
       axes: [{ ...axis, size: 28 }, { ...axis, size: 58, values: (_, ticks) => ticks.map((t) => number(t, 4)) }],
       series: [{ label: 's', value: (_, v) => (v === null ? '' : v.toFixed(2)) }, ...plot.labels.map((label, i) => ({ label, stroke: kColors[i % kColors.length], width: i === 0 && plot.labels.length > 1 ? 3.5 : 1.5, dash: kDashes[i % kDashes.length], points: { show: false }, value: (_, v) => number(v) }))],

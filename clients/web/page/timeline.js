@@ -28,7 +28,7 @@ export class Timeline {
     });
     model.on('server', () => this.update());
     model.on('events', () => this.fillList());
-    model.on('begin', () => this.fillList());
+    for (const topic of ['begin', 'run']) model.on(topic, () => this.fillList());
     new ResizeObserver(() => this.draw()).observe(this.canvas);
     byId('severity').addEventListener('change', () => this.fillList());
   }
@@ -63,7 +63,7 @@ export class Timeline {
     const paint = this.canvas.getContext('2d'), [from, to] = this.range;
     paint.clearRect(0, 0, width, height);
     for (const event of this.model.events) {
-      if (event.time < from) continue;
+      if (event.time < from || event.isUndone) continue;
       const kind = kindOf(event);
       paint.fillStyle = kColorOf[kind];
       const tall = kind === 'other' ? 0.35 : kind === 'collision' ? 0.6 : 1;
@@ -75,7 +75,7 @@ export class Timeline {
     this.draw();
     const least = byId('severity').value, rank = { info: 0, warning: 1, failure: 2 };
     const newest = this.model.events.filter((event) => (rank[event.severity] ?? 2) >= rank[least]).slice(-150).reverse();
-    this.list.replaceChildren(...newest.map((event) => h(`li.${kindOf(event)}`, {}, h('time', {}, event.time.toFixed(3)), h('b', {}, event.kind), h('span', {}, event.text))));
+    this.list.replaceChildren(...newest.map((event) => h(`li.${kindOf(event)}${event.isUndone ? '.undone' : ''}`, {}, h('time', {}, event.time.toFixed(3)), h('b', {}, event.kind), h('span', {}, event.text))));
     if (newest.length === 0) this.list.replaceChildren(h('li.hint', {}, 'Nothing has happened yet.'));
   }
 }

@@ -63,7 +63,7 @@ export class View {
   listen() {
     this.model.on('begin', () => {
       this.marks.clear();
-      this.wantsCamera = !this.hasCamera;
+      this.wantsCamera = this.model.isOther;
     });
     this.model.on('run', () => {
       this.marks.clear();
@@ -125,7 +125,6 @@ export class View {
       const first = cameras.find((camera) => camera.name === 'front') ?? cameras[0];
       if (first) this.useCamera(first);
       else this.fitAll();
-      this.hasCamera = true;
       this.wantsCamera = false;
     }
     this.fitGround();
