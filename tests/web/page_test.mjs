@@ -190,18 +190,24 @@ test('a killed server is noticed, and its successor shown', async () => {
 });
 
 test('ten thousand bodies move', async () => {
-  await page.evaluate(() => plab.view.fitAll());
-  await sleep(6000);
+  await page.evaluate(() => {
+    plab.view.judgedAt = null; // what is too slow may be given up from here on
+    plab.view.fitAll();
+  });
+  await sleep(8000);
   const measure = () => page.evaluate(() => ({ pictures: plab.view.pictures, poses: plab.poses.received, bytes: plab.socket.bytes, at: performance.now(), time: plab.poses.newest.time }));
   const a = await measure();
   await sleep(5000);
   const b = await measure(), seconds = (b.at - a.at) / 1000;
   const place = await page.evaluate(() => {
     const begin = performance.now();
-    for (let i = 0; i < 50; ++i) plab.view.props.place(plab.poses.between(performance.now()));
+    for (let i = 0; i < 50; ++i) {
+      plab.view.props.place(plab.poses.between(performance.now()));
+      plab.view.props.show(plab.view.eye(), false);
+    }
     return (performance.now() - begin) / 50;
   });
-  console.log(`10,000 bodies, drawn by software: ${((b.pictures - a.pictures) / seconds).toFixed(1)} pictures/s, ${((b.poses - a.poses) / seconds).toFixed(1)} messages of poses/s, ${((b.bytes - a.bytes) / seconds / 1e6).toFixed(2)} MB/s; placing all of them takes ${place.toFixed(2)} ms`);
+  console.log(`10,000 bodies, drawn by software: ${((b.pictures - a.pictures) / seconds).toFixed(1)} pictures/s, ${((b.poses - a.poses) / seconds).toFixed(1)} messages of poses/s, ${((b.bytes - a.bytes) / seconds / 1e6).toFixed(2)} MB/s; the page's own part of a picture takes ${place.toFixed(2)} ms`);
   assert.ok(b.pictures > a.pictures + 3 && b.time > a.time);
   assert.ok(place < 50, 'twenty pictures a second leave 50 ms for each');
   // Of the tree only the rows that are seen exist.

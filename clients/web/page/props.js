@@ -1,5 +1,6 @@
 // The scene's shapes, exact and instanced: all spheres are one draw call, all boxes another, and each mesh one.
 import * as THREE from 'three';
+import { Dots } from './dots.js';
 import { mixAngle, mixBody } from './poses.js';
 
 const kStaticColor = [0.62, 0.63, 0.66], kMarkColor = [0.95, 0.75, 0.2];
@@ -67,10 +68,10 @@ function geometryOf(form, count, shapes) {
   return flat;
 }
 
-const kFewPixels = 7; // radius below which a ball needs few corners
-const kMany = 1000;   // balls from which on that counts
+const kFewPixels = { sphere: 24, box: 3 }; // radius below which a disc is drawn instead
+const kMany = 300;                        // balls or boxes from which on that counts
 
-// All instances of one form. Those that the camera cannot see are left out of each picture, and small balls are coarse.
+// All instances of one form. Those that the camera cannot see are left out of each picture, and small ones are discs.
 class Bucket {
   constructor(form, parts, shapes, material) {
     this.parts = parts; // { prop, position, rotation, scale, color }
@@ -83,9 +84,10 @@ class Bucket {
     const size = this.geometry.boundingSphere.center.length() + this.geometry.boundingSphere.radius;
     this.radius = Float32Array.from(parts, (part) => size * Math.max(...part.scale));
     this.color = Float32Array.from(parts.flatMap((part) => new THREE.Color().setRGB(...part.color, THREE.SRGBColorSpace).toArray()));
-    this.levels = [this.geometry];
-    if (form === 'sphere' && parts.length > kMany) this.levels.push(new THREE.SphereGeometry(1, 4, 2));
-    this.meshes = this.levels.map((geometry) => this.makeMesh(geometry, material));
+    this.mesh = this.makeMesh(this.geometry, material);
+    this.fewPixels = kFewPixels[form];
+    this.dots = this.fewPixels && parts.length > kMany ? new Dots(parts.length, this) : null;
+    this.drawn = this.dots ? [this.mesh, this.dots.points] : [this.mesh];
   }
 
   makeMesh(geometry, material) {
@@ -120,37 +122,42 @@ class Bucket {
     out[m + 15] = 1;
   }
 
+  // With shadows all are meshes, which throw them.
   // `eye`: { planes: of what is seen, 4 numbers each; at: [x, y, z]; pixels: that a metre has at a metre }.
   update(poses, eye, wantsAll) {
-    const counts = this.meshes.map(() => 0), { planes } = eye;
+    const { mesh, dots, color } = this, { planes, at, pixels } = eye, out = mesh.instanceMatrix.array, { shown } = mesh.userData;
+    let n = 0;
+    dots?.begin();
     for (let i = 0; i < this.prop.length; ++i) {
-      const fine = this.meshes[0], out = fine.instanceMatrix.array, m = 16 * counts[0], r = this.radius[i];
+      const m = 16 * n, r = this.radius[i], c = 3 * i;
       this.write(i, poses, out, m);
       const x = out[m + 12], y = out[m + 13], z = out[m + 14];
       let isSeen = true;
       if (!wantsAll) for (let k = 0; isSeen && k < planes.length; k += 4) isSeen = planes[k] * x + planes[k + 1] * y + planes[k + 2] * z + planes[k + 3] > -r;
       if (!isSeen) continue;
-      const level = this.meshes.length > 1 && r * eye.pixels < kFewPixels * Math.hypot(x - eye.at[0], y - eye.at[1], z - eye.at[2]) ? 1 : 0;
-      const mesh = this.meshes[level], n = counts[level]++;
-      if (level > 0) mesh.instanceMatrix.array.set(out.subarray(m, m + 16), 16 * n);
-      mesh.instanceColor.array.set(this.color.subarray(3 * i, 3 * i + 3), 3 * n);
-      mesh.userData.shown[n] = i;
-    }
-    this.meshes.forEach((mesh, level) => {
-      mesh.count = counts[level];
-      mesh.visible = mesh.count > 0;
-      for (const [attribute, width] of [[mesh.instanceMatrix, 16], [mesh.instanceColor, 3]]) {
-        attribute.clearUpdateRanges();
-        attribute.addUpdateRange(0, width * mesh.count);
-        attribute.needsUpdate = true;
+      if (dots && !wantsAll && r * pixels < this.fewPixels * Math.hypot(x - at[0], y - at[1], z - at[2])) {
+        // A box is about as large as a ball of 0.6 of its diagonal.
+        if (out[m] !== 0 || out[m + 1] !== 0 || out[m + 2] !== 0) dots.add(i, x, y, z, this.fewPixels === kFewPixels.box ? 0.6 * r : r, color[c], color[c + 1], color[c + 2]);
+        continue;
       }
-      mesh.boundingSphere = null;
-    });
+      mesh.instanceColor.array.set(color.subarray(c, c + 3), 3 * n);
+      shown[n++] = i;
+    }
+    dots?.end(pixels);
+    mesh.count = n;
+    mesh.visible = n > 0;
+    for (const [attribute, width] of [[mesh.instanceMatrix, 16], [mesh.instanceColor, 3]]) {
+      attribute.clearUpdateRanges();
+      attribute.addUpdateRange(0, width * n);
+      attribute.needsUpdate = true;
+    }
+    mesh.boundingSphere = null;
   }
 
   dispose() {
-    for (const mesh of this.meshes) mesh.dispose();
-    for (const geometry of this.levels) geometry.dispose();
+    this.mesh.dispose();
+    this.geometry.dispose();
+    this.dots?.dispose();
   }
 }
 
@@ -167,7 +174,7 @@ export class Props {
   // Everything anew: after a change of the structure.
   rebuild(model) {
     for (const bucket of this.buckets) {
-      this.group.remove(...bucket.meshes);
+      this.group.remove(...bucket.drawn);
       bucket.dispose();
     }
     this.objects = [...model.objects.values()];
@@ -185,7 +192,7 @@ export class Props {
       this.setPose(prop, object.position, object.orientation);
     });
     this.buckets = [...byForm].map(([form, parts]) => new Bucket(form, parts, model.shapes, this.material));
-    for (const bucket of this.buckets) this.group.add(...bucket.meshes);
+    for (const bucket of this.buckets) this.group.add(...bucket.drawn);
     this.layout = null;
   }
 
@@ -244,10 +251,17 @@ export class Props {
 
   // The object under a ray, and where; null: none.
   pick(raycaster) {
-    const hit = raycaster.intersectObjects(this.buckets.flatMap((bucket) => bucket.meshes), false)[0];
-    if (!hit) return null;
-    const { bucket, shown } = hit.object.userData;
-    return { id: this.objects[bucket.prop[shown[hit.instanceId]]].id, point: hit.point };
+    let found = null;
+    const offer = (bucket, part, distance, point) => {
+      if (!found || distance < found.distance) found = { id: this.objects[bucket.prop[part]].id, distance, point };
+    };
+    const hit = raycaster.intersectObjects(this.buckets.map((bucket) => bucket.mesh).filter((mesh) => mesh.count > 0), false)[0];
+    if (hit) offer(hit.object.userData.bucket, hit.object.userData.shown[hit.instanceId], hit.distance, hit.point);
+    for (const bucket of this.buckets) {
+      const dot = bucket.dots?.pick(raycaster.ray);
+      if (dot) offer(bucket, dot.part, dot.distance, dot.point);
+    }
+    return found;
   }
 
   // Ball around everything but planes: { center, radius }.
