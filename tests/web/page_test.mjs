@@ -67,8 +67,10 @@ test('pause, step, rate and reset', async () => {
 
 test('two clicks exchange the gears, and a card says what that did', async () => {
   await until('the motor turns', async () => (await serverOf(page)).time > 1);
-  await (await page.waitForSelector('::-p-xpath(//*[@role="treeitem" and .//span[text()="gears"]])')).click();
-  await (await page.waitForSelector('[data-type="Constraint/AngularVelocity/Assign"]:enabled')).click();
+  const row = await page.evaluate(() => [...document.querySelectorAll('[role=treeitem]')].find((e) => e.querySelector('.name')?.textContent === 'gears').getBoundingClientRect().toJSON());
+  await page.mouse.click(row.x + 40, row.y + row.height / 2);
+  await page.waitForSelector('[data-type="Constraint/AngularVelocity/Assign"]:enabled');
+  await page.click('[data-type="Constraint/AngularVelocity/Assign"]');
   const card = await (await page.waitForSelector('.card')).evaluate((element) => element.innerText);
   assert.match(card, /Graph → Assign/);
   assert.match(card, /energy/);
@@ -133,6 +135,14 @@ test('the line of time goes back', async () => {
     input.dispatchEvent(new Event('change'));
   });
   await until('it is a second into the run', () => page.evaluate(() => plab.poses.newest.time < 1.6 && plab.model.server.time < 1.9));
+});
+
+test('a moment is kept, and returned to', async () => {
+  await page.click('#keep');
+  const kept = await until('the server has it', async () => (await serverOf(page)).snapshots.find((one) => one.name === 'moment-1'));
+  await until('time goes on', async () => (await serverOf(page)).time > kept.time + 1);
+  await page.select('#snapshots', 'moment-1');
+  await until('it is back there', () => page.evaluate((time) => plab.model.server.time < time + 0.8, kept.time));
 });
 
 test('two pages see the same', async () => {

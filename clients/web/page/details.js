@@ -1,5 +1,5 @@
 // What is known of the selected component: its numbers, its parameters, and the algorithms it can be exchanged for.
-import { byId, duration, h, number, present, shortText, shortType } from './dom.js';
+import { byId, duration, h, isPressed, number, present, shortText, shortType } from './dom.js';
 import { swapCard } from './card.js';
 
 export class Details {
@@ -15,8 +15,8 @@ export class Details {
     });
     model.on('structure', () => this.fill());
     model.on('detail', (id) => id === model.selected && this.fillParameters());
-    model.on('metrics', () => this.updateNumbers());
-    model.on('poses', () => this.updateMotion());
+    model.on('metrics', () => isPressed() || this.updateNumbers());
+    model.on('poses', () => isPressed() || this.updateMotion());
     this.fill();
   }
 

@@ -18,6 +18,12 @@ export function h(what, attributes = {}, ...children) {
 // Without null, undefined and false, of which the browser would write the names.
 export const present = (children) => children.filter((child) => child !== null && child !== undefined && child !== false);
 
+// Whether a button of the mouse is down: what is pressed must not be replaced before it is released, or the click is lost.
+let pressed = false;
+addEventListener('pointerdown', () => { pressed = true; }, true);
+for (const name of ['pointerup', 'pointercancel', 'blur']) addEventListener(name, () => setTimeout(() => { pressed = false; }), true);
+export const isPressed = () => pressed;
+
 export const byId = (id) => document.getElementById(id);
 
 // Four digits, without a long tail: "0.0012", "1.234e-7".

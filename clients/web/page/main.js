@@ -87,7 +87,11 @@ const plots = new Plots(model, quantities, (components) => {
   sendWatch();
 });
 const tree = new Tree(model);
-const timeline = new Timeline(model, (time) => ask(`Went back to ${seconds(time)}`, { verb: 'rewind', argument: String(time) }));
+const timeline = new Timeline(model, {
+  rewind: (time) => ask(`Went back to ${seconds(time)}`, { verb: 'rewind', argument: String(time) }),
+  keep: (name) => ask(`Kept as ${name}`, { verb: 'snapshot', target: name }),
+  restore: (name) => ask(`Returned to ${name}`, { verb: 'restore', target: name }),
+});
 const details = new Details(model, {
   ask, plot: (name) => {
     if (plots.add(name)) showTab('plots');

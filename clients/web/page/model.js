@@ -132,6 +132,7 @@ export class Model {
 
   takeHistory(message) {
     this.events = message.events.map(eventOf);
+    for (const event of this.events) event.isUndone = event.run !== undefined && event.run !== this.server?.run;
     this.energy = message.metrics;
     this.tell('events');
   }
@@ -157,7 +158,7 @@ const length = (v) => Math.hypot(...v);
 function eventOf(event) {
   const who = [event.a, event.b].filter(Boolean).join(' and ');
   return {
-    time: event.time, kind: event.kind, severity: event.severity, component: event.component, a: event.a, b: event.b,
+    run: event.run, time: event.time, kind: event.kind, severity: event.severity, component: event.component, a: event.a, b: event.b,
     text: [event.component, who, event.message].filter(Boolean).join(': '),
   };
 }

@@ -11,8 +11,8 @@ function kindOf(event) {
 }
 
 export class Timeline {
-  // rewind(time): asks for it
-  constructor(model, rewind) {
+  // actions: { rewind(time), keep(name), restore(name) }
+  constructor(model, actions) {
     this.model = model;
     this.canvas = byId('ticks');
     this.input = byId('time');
@@ -24,7 +24,17 @@ export class Timeline {
     });
     this.input.addEventListener('change', () => {
       this.isDragged = false;
-      rewind(Number(this.input.value));
+      actions.rewind(Number(this.input.value));
+    });
+    byId('keep').addEventListener('click', () => {
+      const taken = new Set((model.server?.snapshots ?? []).map((kept) => kept.name));
+      let n = 1;
+      while (taken.has(`moment-${n}`)) ++n;
+      actions.keep(`moment-${n}`);
+    });
+    byId('snapshots').addEventListener('change', (event) => {
+      if (event.target.value) actions.restore(event.target.value);
+      event.target.value = '';
     });
     model.on('server', () => this.update());
     model.on('events', () => this.fillList());
@@ -46,8 +56,17 @@ export class Timeline {
     this.input.step = this.model.server?.dt ?? 'any';
     this.input.disabled = !canRewind;
     if (!this.isDragged) this.input.value = to;
+    this.fillKept(this.model.server?.snapshots ?? []);
     this.describe(this.isDragged ? Number(this.input.value) : to);
     this.draw();
+  }
+
+  fillKept(snapshots) {
+    const key = JSON.stringify(snapshots.map((kept) => [kept.name, kept.run, kept.step]));
+    if (key === this.kept) return;
+    this.kept = key;
+    byId('kept').hidden = snapshots.length === 0;
+    byId('snapshots').replaceChildren(h('option', { value: '' }, '…'), ...snapshots.map((kept) => h('option', { value: kept.name }, `${kept.name}, ${seconds(kept.time)}`)));
   }
 
   describe(time) {

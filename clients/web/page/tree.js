@@ -1,5 +1,5 @@
 // The tree of objects and interactions. Only the rows that are seen exist, so ten thousand cost as much as twenty.
-import { byId, duration, h, number, shortType } from './dom.js';
+import { byId, duration, h, isPressed, number, shortType } from './dom.js';
 
 const kHeight = 26; // px of a row
 
@@ -17,7 +17,7 @@ export class Tree {
     this.box.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => this.draw()).observe(this.box);
     for (const topic of ['structure', 'selected']) model.on(topic, () => this.fill());
-    model.on('metrics', () => this.draw());
+    model.on('metrics', () => isPressed() || this.draw());
     this.fill();
   }
 
