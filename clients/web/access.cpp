@@ -21,7 +21,7 @@ std::string lower_case(std::string text)
 
 std::string make_token()
 {
-    std::random_device random;  // getrandom() or the processor's generator, no seeded sequence
+    std::random_device random;  // of the system or the processor: no sequence from a seed
     std::string out;
     for (std::size_t i = 0; i < kTokenBytes; ++i)
     {

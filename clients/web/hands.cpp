@@ -74,7 +74,7 @@ void Hands::release(PageId page)
     const auto at = hands_.find(page);
     if (at == hands_.end()) return;
     at->second.is_released = true;
-    at->second.writer = nullptr;  // before the component: samples for one that is gone would be refused
+    at->second.writer = nullptr;       // before the component: samples for one that is gone would be refused
     if (!at->second.is_added) return;  // removed when the scene has it
     remove(at->second);
     hands_.erase(at);

@@ -27,7 +27,8 @@ export class Lab {
   }
 
   start(program, ...args) {
-    const child = spawn(join(this.bin, program), args, { env: { ...process.env, PLAB_DOMAIN: this.domain }, stdio: ['ignore', 'pipe', 'pipe'], cwd: this.folder });
+    // It ends with this process, however that ends.
+    const child = spawn('setpriv', ['--pdeathsig', 'KILL', join(this.bin, program), ...args], { env: { ...process.env, PLAB_DOMAIN: this.domain }, stdio: ['ignore', 'pipe', 'pipe'], cwd: this.folder });
     child.text = '';
     for (const stream of [child.stdout, child.stderr]) stream.on('data', (data) => { child.text += data; });
     child.ended = new Promise((resolve) => child.on('exit', (code) => {
@@ -60,7 +61,7 @@ export class Lab {
 
   async launch(chromium) {
     this.browser = await puppeteer.launch({
-      executablePath: chromium, headless: true, userDataDir: join(this.folder, 'profile'),
+      executablePath: chromium, headless: true, pipe: true, userDataDir: join(this.folder, 'profile'),
       // The sandbox needs rights that root in a container has not; there is no graphics processor.
       args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage',
         '--disable-backgrounding-occluded-windows', '--disable-renderer-backgrounding'],

@@ -50,7 +50,7 @@ const socket = new Socket({
     model.tell('poses', moment);
   },
   state: (state) => {
-    if (state === 'lost') model.setState('lost', 'The connection to plab-web is lost. Trying to connect again.');
+    if (state === 'lost') model.setState('lost', 'The connection to plab-web is lost. Trying to connect again; if plab-web was started anew, open the address that it printed then.');
     else sendWatch();
   },
 });
