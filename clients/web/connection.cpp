@@ -39,12 +39,14 @@ struct Batch
 
 }  // namespace
 
-Result<std::unique_ptr<Connection>> Connection::open(const link::Session& session, Pages& pages, const link::Stop& stop)
+Result<std::unique_ptr<Connection>> Connection::open(const link::Session& session, const link::SessionOptions& options, Pages& pages,
+                                                     const link::Stop& stop)
 {
     constexpr link::Seconds kLongest(5);
     auto caller = link::Caller::make(session, kLongest, stop);
     if (!caller) return caller.errors();
     std::unique_ptr<Connection> out(new Connection(session, pages, caller.take()));
+    out->options_ = options, out->options_.server = session.server();
     auto catalogue = link::Catalogue::open(session, kParts);
     if (!catalogue) return catalogue.errors();
     out->catalogue_ = catalogue.take();
@@ -77,6 +79,7 @@ bool Connection::step()
     take_metrics();
     take_events();
     requests_.update();
+    preview_.update();
     begin_pages();
     send_details();
     return has_news_;
@@ -146,6 +149,10 @@ void Connection::handle(const Arrived& arrived)
     }
     else if (const auto* grab = std::get_if<Grab>(&*said))
         hands_.grab(page, *grab, [this, page, id = grab->id](const Result<link::Reply>& reply) { answer(page, id, reply); });
+    else if (const auto* preview = std::get_if<PreviewAsk>(&*said))
+        preview_.start(options_, *preview,
+                       [this, page, id = preview->id](const Result<Json>& made)
+                       { push_to(page, made ? preview_message(id, *made) : refusal_message(id, made.error().text())); });
     else if (const auto* moved = std::get_if<MoveHand>(&*said))
         hands_.move(page, moved->position);
     else

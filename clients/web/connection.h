@@ -9,6 +9,7 @@
 #include "web/hands.h"
 #include "web/history.h"
 #include "web/pose_encoder.h"
+#include "web/preview.h"
 
 namespace plab::web
 {
@@ -17,7 +18,8 @@ class Connection
 {
 public:
     /// Waits for the whole catalogue. The session must outlive it.
-    static Result<std::unique_ptr<Connection>> open(const link::Session& session, Pages& pages, const link::Stop& stop);
+    static Result<std::unique_ptr<Connection>> open(const link::Session& session, const link::SessionOptions& options, Pages& pages,
+                                                    const link::Stop& stop);
 
     /// Waits for what the server sends, a few milliseconds, and passes it on; true if pages got something.
     bool step();
@@ -52,6 +54,8 @@ private:
     Pages& pages_;
     Requests requests_;
     Hands hands_;
+    link::SessionOptions options_;  ///< with the server's name
+    Preview preview_;
     std::optional<link::Catalogue> catalogue_;
     link::CatalogueContents sent_;  ///< what the pages know
     std::uint64_t version_ = 0;

@@ -54,7 +54,7 @@ void Feed::follow()
         why_not_ = "There is no server to show: " + found.error().text() + ". Waiting for it.";
         wait_for_server();
     }
-    auto connection = Connection::open(*session, pages_, stop_);
+    auto connection = Connection::open(*session, options_, pages_, stop_);
     if (!connection)
     {
         why_not_ = "The server does not answer: " + connection.error().text() + ". Trying again.";

@@ -221,6 +221,19 @@ Result<Said> parse_hand(const std::string& type, Members& members)
     return type == "grab" ? Said{grab} : Said{MoveHand{position}};
 }
 
+constexpr double kLongestPreview = 60;  // s, simulated
+
+Result<Said> parse_preview(Members& members)
+{
+    PreviewAsk out{members.whole("id"), members.text("component"), members.text("with"), members.number("seconds", 1)};
+    // They become words of a command line: an option is no id.
+    if (out.component.empty() || out.component.starts_with('-')) members.wrong("component", "the id of a component");
+    if (out.type.empty() || out.type.starts_with('-')) members.wrong("with", "the name of a type");
+    if (!(out.seconds > 0) || out.seconds > kLongestPreview) members.wrong("seconds", "more than 0 and at most 60");
+    if (!members.error().empty()) return reason(members.error());
+    return Said{std::move(out)};
+}
+
 }  // namespace
 
 Json scene_message(const link::CatalogueContents& now)
@@ -282,6 +295,11 @@ Json reply_message(std::uint64_t id, const link::Reply& reply)
     return out;
 }
 
+Json preview_message(std::uint64_t id, const Json& preview)
+{
+    return {{"type", "reply"}, {"id", id}, {"outcome", "done"}, {"preview", preview}};
+}
+
 Json refusal_message(std::uint64_t id, const std::string& reason)
 {
     return {{"type", "reply"}, {"id", id}, {"outcome", "unanswered"}, {"reasons", {reason}}};
@@ -297,7 +315,8 @@ Result<Said> parse_said(const std::string& text)
     if (type == "request") return parse_ask(json, members);
     if (type == "watch") return parse_watch(members);
     if (type == "grab" || type == "move" || type == "release") return parse_hand(type, members);
-    return reason("'type' must be request, watch, grab, move or release");
+    if (type == "preview") return parse_preview(members);
+    return reason("'type' must be request, watch, grab, move, release or preview");
 }
 
 }  // namespace plab::web

@@ -27,6 +27,8 @@ Json metrics_message(const link::Metrics& metrics, const std::set<std::string>& 
 /// Everything about one component, with its parameters.
 Json detail_message(const link::CatalogueContents& now, const std::string& component);
 Json reply_message(std::uint64_t id, const link::Reply& reply);
+/// `preview`: as plabctl prints it.
+Json preview_message(std::uint64_t id, const Json& preview);
 /// An answer that is not the server's.
 Json refusal_message(std::uint64_t id, const std::string& reason);
 
@@ -54,7 +56,14 @@ struct MoveHand
 struct Release
 {
 };
-using Said = std::variant<Ask, Watch, Grab, MoveHand, Release>;
+/// What would an exchange do?
+struct PreviewAsk
+{
+    std::uint64_t id = 0;
+    std::string component, type;
+    double seconds = 1;  ///< simulated
+};
+using Said = std::variant<Ask, Watch, Grab, MoveHand, Release, PreviewAsk>;
 
 inline constexpr std::size_t kMostText = 256u << 10;  ///< bytes of a message from a page
 inline constexpr std::size_t kMostWatched = 16;       ///< components of a page

@@ -163,7 +163,7 @@ inline const std::vector<Layer>& layers()
          {}},
         {"clients/web",
          {"server/program", "idl", "idl/json", "clients/link", "clients/completion"},
-         {"libwebsockets.h", "CLI/", "nlohmann/", "fcntl.h", "unistd.h"},
+         {"libwebsockets.h", "CLI/", "nlohmann/", "fcntl.h", "signal.h", "spawn.h", "sys/", "unistd.h"},
          false},
         {"clients/*",
          {"server/program", "idl", "clients/link", "clients/completion"},

@@ -65,6 +65,19 @@ test('pause, step, rate and reset', async () => {
   await until('a new run begins', async () => (await serverOf(page)).run === run + 1);
 });
 
+test('a preview says what an exchange would do, and does nothing', async () => {
+  await until('the motor turns', async () => (await serverOf(page)).time > 0.5);
+  const { revision } = await serverOf(page);
+  await page.evaluate(() => plab.model.select('gears'));
+  await page.waitForSelector('[data-preview="Constraint/AngularVelocity/Assign"]:enabled');
+  await page.click('[data-preview="Constraint/AngularVelocity/Assign"]');
+  const card = await (await page.waitForSelector('.card')).evaluate((element) => element.innerText);
+  assert.match(card, /If it were Assign/);
+  assert.match(card, /the energy higher by [-.\de]+ J/);
+  assert.equal((await serverOf(page)).revision, revision);
+  await page.evaluate(() => plab.model.select(null));
+});
+
 test('two clicks exchange the gears, and a card says what that did', async () => {
   await until('the motor turns', async () => (await serverOf(page)).time > 1);
   const row = await page.evaluate(() => [...document.querySelectorAll('[role=treeitem]')].find((e) => e.querySelector('.name')?.textContent === 'gears').getBoundingClientRect().toJSON());

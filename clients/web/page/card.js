@@ -13,6 +13,22 @@ export function swapCard(reply, id, wanted) {
     h('h3', {}, report ? `${shortType(report.from)} → ${shortType(report.to)}` : 'Exchanged'), ...children);
 }
 
+// What an exchange would do: the scene simulated with it and without it, beside the server.
+export function previewCard(reply, wanted) {
+  if (!reply.preview) return h('section.card.refused', { role: 'alert', tabIndex: -1 }, h('h3', {}, `No preview of ${shortType(wanted)}`), ...reply.reasons.map((reason) => h('p', {}, reason)));
+  const { preview } = reply, { without, with: other } = preview, last = preview.differences.at(-1);
+  const row = (name, a, b) => h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, a), h('td', {}, b));
+  const ends = last && [`After ${number(last.time - preview.time, 3)} s `,
+    last.farthest ? `${last.farthest} would be ${number(last.distance, 3)} m from where it is without the exchange, ` : 'no body would be elsewhere, ',
+    last.most_turned ? `${last.most_turned} turned by ${number(last.turn, 3)} rad against it, ` : '', `and the energy higher by ${number(last.energy_with - last.energy_without, 3)} J.`].join('');
+  return h('section.card', { role: 'status', tabIndex: -1, 'aria-label': 'What the exchange would do' },
+    h('h3', {}, `If it were ${shortType(preview.to)}`), h('p', {}, ends ?? 'Nothing would differ.'),
+    h('table', {}, h('caption', {}, `${preview.steps} steps from ${number(preview.time)} s on; nothing has changed in the scene`),
+      h('thead', {}, h('tr', {}, h('td'), h('th', { scope: 'col' }, 'as it is'), h('th', { scope: 'col' }, 'with it'))),
+      h('tbody', {}, row('cost of a step', duration(without.cost_ns_per_step), duration(other.cost_ns_per_step)),
+        row('largest error', number(without.largest_error), number(other.largest_error)))));
+}
+
 function proof(report) {
   const size = (v) => Math.hypot(...v);
   const { with_old: old, with_new: now } = report;

@@ -1,6 +1,6 @@
 // What is known of the selected component: its numbers, its parameters, and the algorithms it can be exchanged for.
 import { byId, duration, h, isPressed, number, present, shortText, shortType } from './dom.js';
-import { swapCard } from './card.js';
+import { previewCard, swapCard } from './card.js';
 
 export class Details {
   // actions: { ask(text, ...operations) -> reply, plot(name), look(id), follow() }
@@ -119,6 +119,7 @@ export class Details {
       return h(`div.algorithm${isNow ? '.now' : ''}`, {},
         h('button', { disabled: isNow, 'data-type': type.name, onclick: () => this.swap(interaction, type.name), 'aria-label': isNow ? `${type.name}, in use` : `Exchange for ${type.name}` }, isNow ? `${shortType(type.name)} ✓` : shortType(type.name)),
         h('span', {}, sentence(type.doc)),
+        !isNow && h('button.preview', { 'data-preview': type.name, 'aria-label': `Preview ${type.name}`, title: 'Simulate the next second with it and without it, without touching the scene', onclick: () => this.preview(interaction, type.name) }, 'What if?'),
         h('small', {}, [type.cost && `Cost: ${type.cost}.`, type.accuracy && `Accuracy: ${type.accuracy}.`, type.limits && `Limits: ${type.limits}.`].filter(Boolean).join(' ')));
     });
     return h('section', { 'aria-label': 'Algorithms' }, h('h3', {}, 'Exchange it for'), ...rows);
@@ -128,6 +129,16 @@ export class Details {
     for (const button of this.box.querySelectorAll('.algorithm button')) button.disabled = true;
     const reply = await this.actions.ask(null, { verb: 'swap', target: interaction.id, argument: type });
     this.card = swapCard(reply, interaction.id, type);
+    this.fill();
+    this.card.scrollIntoView({ block: 'nearest' });
+    this.card.focus();
+  }
+
+  async preview(interaction, type) {
+    for (const button of this.box.querySelectorAll('.algorithm button')) button.disabled = true;
+    const reply = await this.actions.preview(interaction.id, type);
+    if (this.model.selected !== interaction.id) return;
+    this.card = previewCard(reply, type);
     this.fill();
     this.card.scrollIntoView({ block: 'nearest' });
     this.card.focus();

@@ -93,7 +93,8 @@ const timeline = new Timeline(model, {
   restore: (name) => ask(`Returned to ${name}`, { verb: 'restore', target: name }),
 });
 const details = new Details(model, {
-  ask, plot: (name) => {
+  ask, preview: (component, type) => socket.ask({ type: 'preview', component, with: type, seconds: 1 }),
+  plot: (name) => {
     if (plots.add(name)) showTab('plots');
   },
   look: (id) => view.lookAt(id), follow: () => toggleFollow(), isFollowing: () => view.follow,
