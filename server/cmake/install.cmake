@@ -1,5 +1,5 @@
 # What `cmake --install BUILD --prefix PREFIX` puts where, in components: "server" (plabd, its clients, plugins and scenes), "viewer"
-# (what needs OSMesa besides), "study" (plab-study), "doc" (these documents) and "sdk" (what plugins and clients are built with
+# (what needs OSMesa besides), "web" (plab-web and its page), "study" (plab-study), "doc" (these documents) and "sdk" (what plugins and clients are built with
 # elsewhere). plabd finds its plugins in ../lib/plab as seen from its own folder, and the CMake package and pkg-config's files look from
 # theirs, so PREFIX may be moved. The folders are the same under every PREFIX for that reason, /usr among them. Included last: it needs
 # all targets.
@@ -29,6 +29,9 @@ install(TARGETS plabd plab-bus plabctl plab-log RUNTIME DESTINATION bin COMPONEN
 install(TARGETS plab_bus plab_record LIBRARY DESTINATION lib/plab COMPONENT server)
 install(DIRECTORY scenes DESTINATION share/plab COMPONENT server PATTERN "*.md" EXCLUDE PATTERN exact EXCLUDE)
 install(TARGETS plab-view RUNTIME DESTINATION bin COMPONENT viewer)
+install(TARGETS plab-web RUNTIME DESTINATION bin COMPONENT web)
+# Not there without npm: plab-web then says so.
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/plab/web DESTINATION share/plab COMPONENT web)
 install(TARGETS plab-study RUNTIME DESTINATION bin COMPONENT study)
 install(DIRECTORY server/docs/ DESTINATION share/doc/plab COMPONENT doc FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
 
@@ -103,6 +106,7 @@ foreach(program plabd plab-bus plabctl plab-log)
   plab_install_help(${program} server)
 endforeach()
 plab_install_help(plab-view viewer)
+plab_install_help(plab-web web)
 plab_install_help(plab-study study)
 plab_install_help(plab-manifest sdk)
 if(TARGET plab-conformance)
@@ -110,7 +114,7 @@ if(TARGET plab-conformance)
 endif()
 
 # Debian wants one in each package.
-foreach(component_package "server plab" "viewer plab-view" "sdk plab-dev")
+foreach(component_package "server plab" "viewer plab-view" "web plab-web" "sdk plab-dev")
   string(REPLACE " " ";" pair ${component_package})
   list(GET pair 0 component)
   list(GET pair 1 package)

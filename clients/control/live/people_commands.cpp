@@ -15,6 +15,7 @@
 #include "link/names.h"
 #include "link/numbers.h"
 #include "link/person.h"
+#include "link/text.h"
 
 namespace plab::cli
 {
@@ -81,21 +82,6 @@ Result<Vec3> place_of(Context& c, const std::string& id)
     return found->second.position;
 }
 
-std::string escaped(const std::string& text)
-{
-    std::string out;
-    for (const char ch : text)
-        if (ch == '&')
-            out += "&amp;";
-        else if (ch == '\'')
-            out += "&apos;";
-        else if (ch == '<')
-            out += "&lt;";
-        else
-            out += ch;
-    return out;
-}
-
 /// Moves the hand, and returns the largest force on it.
 Result<double> move_hand(Context& c, const GrabOptions& o, const std::string& hand, const Vec3& from, const Vec3& to)
 {
@@ -140,8 +126,9 @@ Exit run_grab(Context& c, const GrabOptions& o)
     const std::string grab = "grab_" + std::to_string(std::chrono::system_clock::now().time_since_epoch().count() % 1'000'000'000),
                       hand = grab + "_hand";
     const std::string xml = "<plab version='1'><component id='" + hand + "' type='State/User' position='" + text_of_place(*from) +
-                            "'/><component id='" + grab + "' type='Constraint/Grab' user='" + hand + "' body='" + escaped(o.id) +
-                            "' hold='" + escaped(o.id) + "' max_force='" + exact_number(o.force) + "'/></plab>";
+                            "'/><component id='" + grab + "' type='Constraint/Grab' user='" + hand + "' body='" +
+                            link::attribute_text(o.id) + "' hold='" + link::attribute_text(o.id) + "' max_force='" + exact_number(o.force) +
+                            "'/></plab>";
     if (const Exit e = send(c, {{"add", "", "grab", xml}}); e != Exit::Done) return e;
     const auto most = move_hand(c, o, hand, *from, to);
     // The hand goes also after Ctrl-C.

@@ -119,6 +119,10 @@ Entries ball_algorithms()
         for (const char* resolution : {"None", "LocalRoot"}) out.push_back({by_events(name, resolution), kBalls, ""});
     for (const char* manager : {"SequentialImpulse", "SoftStep", "Direct"})
         for (const char* resolution : {"None", "Speculative"}) out.push_back({by_rows(manager, resolution), kBalls, ""});
+    for (const std::string substeps : {"2", "4"})
+        for (const char* resolution : {"None", "Speculative"})
+            out.push_back({by_rows("SoftStep", resolution, "substeps=\"" + substeps + "\" damping_ratio=\"3\"", substeps + " damping 3"),
+                           kBalls, ""});
     out.push_back({by_rows("Direct", "LocalRoot"), kBalls, ""});
     return out;
 }

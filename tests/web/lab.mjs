@@ -1,0 +1,142 @@
+// Servers, plab-web and a browser for the tests of the page. Everything that is started here ends with end().
+import { spawn } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import puppeteer from 'puppeteer-core';
+
+export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+export async function until(what, condition, ms = 15000) {
+  const end = Date.now() + ms;
+  for (;;) {
+    const value = await condition();
+    if (value) return value;
+    if (Date.now() > end) throw new Error(`within ${ms} ms it did not happen that ${what}`);
+    await sleep(50);
+  }
+}
+
+export class Lab {
+  constructor(bin) {
+    this.bin = bin;
+    this.domain = String(20 + (process.pid % 200));
+    this.folder = mkdtempSync(join(tmpdir(), 'plab-web-test-'));
+    this.children = new Set();
+    this.troubles = [];
+  }
+
+  start(program, ...args) {
+    // It ends with this process, however that ends.
+    const child = spawn('setpriv', ['--pdeathsig', 'KILL', join(this.bin, program), ...args], { env: { ...process.env, PLAB_DOMAIN: this.domain }, stdio: ['ignore', 'pipe', 'pipe'], cwd: this.folder });
+    child.text = '';
+    for (const stream of [child.stdout, child.stderr]) stream.on('data', (data) => { child.text += data; });
+    child.ended = new Promise((resolve) => child.on('exit', (code) => {
+      this.children.delete(child);
+      resolve(code);
+    }));
+    this.children.add(child);
+    return child;
+  }
+
+  async server(scene, ...args) {
+    const child = this.start('plabd', scene, '--name', 'lab', ...args);
+    await until('plabd is ready', () => child.text.includes('ready after'));
+    return child;
+  }
+
+  async web(...args) {
+    this.webProcess = this.start('plab-web', ...args);
+    await until('plab-web prints its address', () => /http:\/\/\S+/.test(this.webProcess.text));
+    this.url = this.webProcess.text.match(/http:\/\/\S+/)[0];
+    return this.url;
+  }
+
+  // What plabctl prints as JSON: the server's own word.
+  async control(...args) {
+    const child = this.start('plabctl', '--json', ...args);
+    await child.ended;
+    return JSON.parse(child.text);
+  }
+
+  async launch(chromium) {
+    this.browser = await puppeteer.launch({
+      executablePath: chromium, headless: true, pipe: true, userDataDir: join(this.folder, 'profile'),
+      // The sandbox needs rights that root in a container has not; there is no graphics processor.
+      args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage',
+        '--disable-backgrounding-occluded-windows', '--disable-renderer-backgrounding'],
+      protocolTimeout: 60000,
+    });
+  }
+
+  // An empty page in a window of its own: a browser draws only the page in front of each window.
+  async window() { return (await this.browser.createBrowserContext()).newPage(); }
+
+  // A page that shows a scene of so many objects.
+  async page(objects, width = 1280, height = 800, colours = 'light') {
+    const page = await this.window();
+    await page.setViewport({ width, height });
+    await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: colours }]);
+    page.on('pageerror', (error) => this.troubles.push(error.message));
+    page.on('console', (message) => {
+      if (message.type() === 'error' && !message.text().includes('WebSocket connection')) this.troubles.push(message.text());
+    });
+    await page.goto(this.url);
+    await this.shows(page, objects);
+    return page;
+  }
+
+  async shows(page, objects, ms = 30000) {
+    await page.waitForFunction((n) => globalThis.plab?.model.objects.size === n && plab.model.state.kind === 'there' && plab.poses.newest !== null && plab.view.placed, { timeout: ms, polling: 50 }, objects);
+  }
+
+  async end() {
+    await this.browser?.close();
+    for (const child of this.children) child.kill('SIGTERM');
+    await Promise.race([Promise.all([...this.children].map((child) => child.ended)), sleep(5000)]);
+    for (const child of this.children) child.kill('SIGKILL');
+    rmSync(this.folder, { recursive: true, force: true, maxRetries: 5 });
+  }
+}
+
+// Where an object is in the picture, in pixels of the page.
+export const placeOf = (page, id) => page.evaluate((wanted) => {
+  const { view } = plab, box = view.canvas.getBoundingClientRect();
+  const at = view.camera.position.clone().set(...view.props.positionOf(wanted)).project(view.camera);
+  return { x: box.left + ((at.x + 1) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
+}, id);
+
+// Colour of the picture at places of the page: read in the task that draws, for a browser keeps no drawn picture.
+export const coloursAt = (page, places) => page.evaluate((wanted) => {
+  const { view } = plab, box = view.canvas.getBoundingClientRect(), copy = document.createElement('canvas');
+  view.renderer.render(view.scene, view.camera);
+  copy.width = view.canvas.width;
+  copy.height = view.canvas.height;
+  const paint = copy.getContext('2d');
+  paint.drawImage(view.canvas, 0, 0);
+  return wanted.map(({ x, y }) => [...paint.getImageData(((x - box.left) / box.width) * copy.width, ((y - box.top) / box.height) * copy.height, 1, 1).data.slice(0, 3)]);
+}, places);
+
+// A sum over all pixels: differs when the picture does.
+export const pictureSum = (page) => page.evaluate(() => {
+  const { view } = plab, copy = document.createElement('canvas');
+  view.renderer.render(view.scene, view.camera);
+  copy.width = view.canvas.width;
+  copy.height = view.canvas.height;
+  const paint = copy.getContext('2d');
+  paint.drawImage(view.canvas, 0, 0);
+  let sum = 0;
+  paint.getImageData(0, 0, copy.width, copy.height).data.forEach((value, i) => { sum = (sum * 31 + value * (i % 7919)) % 2147483647; });
+  return sum;
+});
+
+// A scene of many bodies that drift and turn.
+export function manyBodies(count) {
+  const side = Math.ceil(Math.sqrt(count)), lines = [`<plab version="1"><scene title="${count} bodies" dt="1/60" solver="Solver/SemiImplicitEuler"/>`,
+    '<component id="ball" type="Shape/Sphere" radius="0.25"/><component id="box" type="Shape/Box" half_extents="0.25 0.2 0.15"/>'];
+  for (let i = 0; i < count; ++i)
+    lines.push(`<component id="o${i}" type="State/RigidBody" mass="1" shape="${i % 2 ? 'box' : 'ball'}" color="${(i % 10) / 10} 0.5 ${1 - (i % 10) / 10}" position="${i % side} ${Math.floor(i / side)} 1" linear_velocity="0 0 ${0.02 * ((i * 7) % 11 - 5)}" angular_velocity="${(i % 5) - 2} 1 2"/>`);
+  return `${lines.join('\n')}\n</plab>\n`;
+}
+
+export const readText = (file) => readFileSync(file, 'utf8');
