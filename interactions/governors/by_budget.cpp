@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <queue>
 #include <tuple>
 
@@ -158,86 +157,6 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
     for (std::size_t k = 0; k < plan.size(); ++k)
         if (plan[k] >= 0) (void)look.choose(k, plan[k], why + "; importance " + brief(importance[k]));
     governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(count) - governors.watch.count[row].back());
-}
-
-void ErrorRows::describe(Schema& schema)
-{
-    watch.describe(schema);
-    schema
-        .param(bound, "bound", unit::one,
-               "error that is allowed within `interval`: m for bodies, rad for what acts on shafts only, relative to the most exact level")
-        .positive();
-    schema.param(interval, "interval", unit::second, "time within which the error is counted").or_else(0.25).positive();
-    schema.param(looks, "looks", unit::one, "components that are measured at most in one look").or_else(8).positive();
-    schema.state(next, "next", unit::one, "when a component is measured again, s");
-    schema.output(worst, "worst", unit::one, "the largest error that was measured in the last look, of the levels that were kept");
-    schema.output(measured, "measured", unit::one, "number of measurements");
-    schema.output(unknown, "unknown", unit::one, "number of measurements that gave no error");
-}
-
-namespace
-{
-
-/// s, when the component is due; components that were never measured are due at once.
-double next_of(const Entries& next, std::string_view id)
-{
-    const auto found = std::lower_bound(next.begin(), next.end(), id, [](const Entry& e, std::string_view name) { return e.name < name; });
-    return found != next.end() && found->name == id ? std::get<double>(found->value) : 0;
-}
-
-void set_next(Entries& next, std::string_view id, double time)
-{
-    const auto found = std::lower_bound(next.begin(), next.end(), id, [](const Entry& e, std::string_view name) { return e.name < name; });
-    if (found != next.end() && found->name == id)
-        found->value = time;
-    else
-        next.insert(found, {std::string(id), time});
-}
-
-}  // namespace
-
-void keep_error(const StepContext& context, Row row, ErrorRows& governors, LevelControl& control)
-{
-    if (!due(context, governors.watch.every[row])) return;
-    Look look(context, row, governors.watch, control);
-    Entries& next = governors.next[row];
-    const double bound = governors.bound[row], interval = governors.interval[row], every = governors.watch.every[row];
-    governors.worst[row] = 0;
-    std::vector<std::size_t> order(look.watched().size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(
-        order.begin(), order.end(),
-        [&](std::size_t a, std::size_t b)
-        { return next_of(next, control.id_of(look.watched()[a].component)) < next_of(next, control.id_of(look.watched()[b].component)); });
-    std::int64_t left = governors.looks[row];
-    for (const std::size_t k : order)
-    {
-        const GovernedComponent& g = look.watched()[k];
-        const std::string_view id = control.id_of(g.component);
-        if (left-- <= 0 || next_of(next, id) > context.time * (1 + 1e-9)) break;
-        const auto error_at = [&](std::int32_t level)
-        {
-            const double e = control.error(row, k, level, interval);
-            ++governors.measured[row];
-            governors.unknown[row] += std::isnan(e) ? 1 : 0;
-            return e;
-        };
-        // What cannot be told is taken for too much: then the level becomes finer.
-        std::int32_t level = std::max(0, g.level);
-        double error = error_at(level);
-        while (level < look.finest() && !(error <= bound)) error = error_at(++level);
-        if (level == g.level && level > 0 && look.rested(k))
-        {
-            const double cheaper = error_at(level - 1);
-            if (cheaper * (1 + governors.watch.hysteresis[row]) <= bound) --level, error = cheaper;
-        }
-        (void)look.choose(k, level, "error " + brief(error) + " of " + brief(bound) + " in " + brief(interval) + " s");
-        governors.worst[row] = std::max(governors.worst[row], error);
-        // Far below the bound it is looked at less often.
-        constexpr double kLongest = 16;
-        const double calm = error > 0 ? std::clamp(std::sqrt(bound / error), 1.0, kLongest) : kLongest;
-        set_next(next, id, context.time + every * calm);
-    }
 }
 
 }  // namespace plab::governors

@@ -221,8 +221,7 @@ TEST_CASE("a budget of time: what was measured is an input, and with the same in
                                             kLadder + "\" budget=\"1e-9\" every=\"0.05\" dwell=\"0\"/>");
     Scene live(scene), again(scene);
     REQUIRE_MESSAGE(live.loaded(), live.error());
-    // Only a program that serves components measures for them.
-    live.simulation().read_requests_with([](const auto&, const auto&, const auto&) -> Result<Request> { return reason("reads nothing"); });
+    live.simulation().let_measure(true);
     int measurements = 0;
     for (int k = 0; k < 120; ++k)
     {
@@ -240,4 +239,48 @@ TEST_CASE("a budget of time: what was measured is an input, and with the same in
     CHECK(measurements >= 8);
     CHECK(std::get<std::int64_t>(live.get("lod", "given_up")) == 3);  // nothing fits into a nanosecond
     CHECK(algorithm(live, "near.solver") == "Solver/SemiImplicitEuler");
+}
+
+namespace
+{
+
+/// A mass on a spring, whose error depends on the solver, under a governor by error.
+std::string spring_under_error(const std::string& more)
+{
+    return "<component id=\"ball\" type=\"Shape/Sphere\" radius=\"0.1\"/><component id=\"post\" type=\"State/Static\"/>"
+           "<component id=\"bob\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" position=\"1.5 0 0\" linear_velocity=\"0 2 0\" "
+           "solver=\"Solver/SemiImplicitEuler\"/>"
+           "<component id=\"spring\" type=\"Constraint/SpringDamper\" a=\"post\" b=\"bob\" length=\"1\" stiffness=\"40\"/>" +
+           (more.empty() ? std::string()
+                         : std::string("<component id=\"lod\" type=\"Governor/Error\" watches=\"bob.solver\" levels=\"") + kLadder +
+                               "\" interval=\"0.25\" every=\"0.05\" dwell=\"0\" " + more + "/>");
+}
+
+std::int64_t whole(const Scene& s, const std::string& id, const std::string& field) { return std::get<std::int64_t>(s.get(id, field)); }
+
+}  // namespace
+
+TEST_CASE("the cheapest level with an error below the bound: measured by trials that leave no trace, and true afterwards")
+{
+    Scene loose(spring_under_error("bound=\"0.5\"")), tight(spring_under_error("bound=\"1e-5\"")),
+        tighter(spring_under_error("bound=\"1e-13\""));
+    REQUIRE_MESSAGE(loose.loaded(), loose.error());
+    Scene plain(spring_under_error(""));
+    loose.run(1), plain.run(1);
+    CHECK(loose.vec("bob", "position") == plain.vec("bob", "position"));
+    CHECK(whole(loose, "lod", "measured") > 0);
+    CHECK(algorithm(loose, "bob.solver") == "Solver/SemiImplicitEuler");
+    tighter.step();
+    CHECK(algorithm(tighter, "bob.solver") == "Solver/DormandPrince54");
+    Scene exact(spring_under_error(""));
+    REQUIRE(exact.ask(SwapOperation{"bob.solver", "Solver/DormandPrince54", {}}).done);
+    tight.run(0.25), exact.run(0.25);
+    CHECK(algorithm(tight, "bob.solver") == "Solver/RungeKutta4");
+    CHECK(test::distance(tight.vec("bob", "position"), exact.vec("bob", "position")) < 1e-5);
+    const LevelInfo told = level(tight.simulation().levels().levels(), tight, "bob.solver");
+    CHECK(told.error_unit == "m");
+    CHECK(told.error > 0);
+    CHECK(told.error < 1e-5);
+    CHECK(told.next_look > tight.simulation().time());
+    CHECK(told.reason.find("of 1e-05 m in 0.25 s, confidence") != std::string::npos);
 }

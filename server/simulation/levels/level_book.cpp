@@ -131,7 +131,7 @@ Result<void> LevelBook::rebuild()
     std::vector<Governor> before;
     before.swap(governors_);
     std::vector<std::uint32_t> watcher(world_.components().size(), kNoIndex);
-    changes_.resize(world_.components().size());
+    changes_.resize(world_.components().size()), told_.resize(world_.components().size());
     for (const std::uint32_t i : stepper_.components())
     {
         const world::Component& c = world_.component(i);
@@ -153,7 +153,7 @@ Result<void> LevelBook::rebuild()
     }
     watcher_.resize(watcher.size(), kNoIndex);
     for (const std::uint32_t i : world_.in_id_order())
-        if (watcher_[i] != watcher[i]) reassigned_.push_back(i);
+        if (watcher_[i] != watcher[i]) changed_.push_back(i);
     watcher_ = std::move(watcher);
     const world::HostTables& host = world_.host();
     radius_of_shaft_.assign(governors_.empty() ? 0 : host.shafts.size(), 0.0);
@@ -224,6 +224,9 @@ LevelInfo LevelBook::info(const Governor& g, const Watched& w) const
     out.text = out.level < 0 ? world_.type_of(w.component)->info.name : g.ladder.levels[static_cast<std::size_t>(out.level)].text;
     const Change& change = changes_[w.component];
     if (change.id == world_.id_of(w.component)) out.reason = change.reason, out.since = change.since;
+    out.every = real_of(world_, g.component, "every");
+    const Told& told = told_[w.component];
+    if (told.by == g.component) out.error = told.error, out.error_unit = told.unit, out.next_look = told.next_look;
     return out;
 }
 
