@@ -73,7 +73,8 @@ Plan plan_savings(const Look& look, const std::vector<double>& importance, const
 }
 
 /// Buys the most importance for each second, one level for each component, as far as there is room (s). What a level costs is taken to be
-/// as much as it may well be, so that a level that is not known yet is tried by a few components first.
+/// as much as it may well be. A level of which hardly anything is known is tried by a few components first, because it may cost many times
+/// what is guessed.
 Plan plan_spending(const Look& look, const std::vector<double>& importance, const CostModel& model, double room)
 {
     Plan plan = present_levels(look);
@@ -88,13 +89,26 @@ Plan plan_spending(const Look& look, const std::vector<double>& importance, cons
     }
     std::sort(offers.begin(), offers.end(),
               [](const Offer& a, const Offer& b) { return a.worth != b.worth ? a.worth > b.worth : a.component < b.component; });
+    constexpr double kDoubtful = 0.5, kFew = 0.02;  // of the cost; of the components
+    std::size_t few = std::max<std::size_t>(1, static_cast<std::size_t>(kFew * static_cast<double>(plan.size())));
     double spent = 0;
     for (const Offer& o : offers)
     {
-        const bool first = spent == 0;
-        if (spent + o.seconds > (first ? 2 * room : room)) continue;
+        if (spent + o.seconds > room) continue;
+        const auto next = static_cast<std::size_t>(plan[o.component] + 1);
+        const bool doubtful = model.deviation(next) > kDoubtful * model.cost(next);
+        if (doubtful && few == 0) continue;
+        few -= doubtful ? 1 : 0;
         spent += o.seconds, ++plan[o.component];
     }
+    return plan;
+}
+
+/// Before anything is known of costs: the first steps must not take longer than the scene can help.
+Plan plan_beginning(const Look& look)
+{
+    Plan plan = present_levels(look);
+    for (std::int32_t& level : plan) level = std::min(level, 0);
     return plan;
 }
 
@@ -107,6 +121,27 @@ Reals fractions_of(const Look& look)
         if (g.level >= 0) ++out[static_cast<std::size_t>(g.level)], ++all;
     for (double& f : out) f = all > 0 ? f / all : 0;
     return out;
+}
+
+/// Without a measurement (a program that measures nothing) only the first look does something.
+void begin_cheaply(Look& look, Row row, BudgetRows& governors)
+{
+    const Plan plan = plan_beginning(look);
+    for (std::size_t k = 0; k < plan.size(); ++k)
+        if (plan[k] >= 0) (void)look.choose(k, plan[k], "nothing is known yet of what levels cost");
+    governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(look.watched().size()) - governors.watch.count[row].back());
+}
+
+void publish_what_is_given_up(const Look& look, const std::vector<double>& importance, Row row, BudgetRows& governors)
+{
+    governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(look.watched().size()) - governors.watch.count[row].back());
+    double all = 0, lost = 0;
+    for (std::size_t k = 0; k < importance.size(); ++k)
+    {
+        all += importance[k];
+        if (look.watched()[k].level < look.finest()) lost += importance[k];
+    }
+    governors.lost[row] = all > 0 ? lost / all : 0;
 }
 
 }  // namespace
@@ -130,17 +165,20 @@ void BudgetRows::describe(Schema& schema)
                  "cost of a step with all components at each level, as learnt, and then the covariance (s^2) of these costs");
     schema.output(spent, "spent", unit::one, "cost of a step relative to the budget");
     schema.output(given_up, "given_up", unit::one, "number of components that are not at the most exact level");
+    schema.output(lost, "lost", unit::one, "their share of the importance of all components, when it looked last");
 }
 
 void keep_budget(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control)
 {
-    if (!due(context, governors.watch.every[row]) || governors.step_cost[row] <= 0) return;
+    if (!due(context, governors.watch.every[row])) return;
     const double budget = governors.budget[row] > 0 ? governors.budget[row] : governors.share[row] * context.dt;
     const double cost = governors.step_cost[row];
     governors.spent[row] = cost / budget;
     Look look(context, row, governors.watch, control);
-    const std::size_t count = look.watched().size();
-    if (count == 0) return;
+    if (look.watched().empty()) return;
+    const bool is_first = governors.costs[row].empty();
+    if (is_first && cost <= 0) return begin_cheaply(look, row, governors);
+    if (cost <= 0) return;
     CostModel model(governors.costs[row], static_cast<std::size_t>(look.finest() + 1));
     model.update(fractions_of(look), cost);
     std::vector<double> importance;
@@ -156,7 +194,7 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
         (over ? "a step takes " : "there is room: a step takes ") + brief(1e3 * cost) + " ms of " + brief(1e3 * budget) + " ms";
     for (std::size_t k = 0; k < plan.size(); ++k)
         if (plan[k] >= 0) (void)look.choose(k, plan[k], why + "; importance " + brief(importance[k]));
-    governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(count) - governors.watch.count[row].back());
+    publish_what_is_given_up(look, importance, row, governors);
 }
 
 }  // namespace plab::governors

@@ -16,6 +16,7 @@ struct BudgetRows
     Column<Reals> costs;       ///< what is known of the cost of each level (cost_model.h)
     Column<double> spent;
     Column<std::int64_t> given_up;
+    Column<double> lost;
 
     void describe(Schema& schema);
 };

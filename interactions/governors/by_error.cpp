@@ -57,10 +57,7 @@ public:
         return e;
     }
     /// What cannot be told is taken for too much.
-    bool fits(double error, double reserve = 0) const
-    {
-        return error * governors_.safety[row_] * (1 + reserve) <= governors_.bound[row_];
-    }
+    bool fits(double error, double reserve = 0) const { return error * governors_.safety[row_] * (1 + reserve) <= governors_.bound[row_]; }
 
 private:
     Row row_;
@@ -98,7 +95,8 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
     for (; level < look.finest() && !of.fits(error); finer = true) error = of.at(++level);
     if (known && !finer && level > 0 && look.rested(k))
         if (const double cheaper = of.at(level - 1); of.fits(cheaper, governors.watch.hysteresis[row])) --level, error = cheaper;
-    if (level < g.level && !look.rested(k)) level = g.level, error = of.at(level);
+    const bool waits = level < g.level && !look.rested(k);
+    if (waits) level = g.level, error = of.at(level);
     if (look.may_choose(k, level))
         (void)look.choose(k, level,
                           "error " + brief(error) + " of " + brief(bound) + " " + governors.unit[row] + " in " +
@@ -108,7 +106,7 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
     constexpr double kLongest = 16;
     const double likely = error * governors.safety[row];
     const double calm = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, kLongest) : std::isnan(likely) ? 1 : kLongest;
-    const double then = context.time + every * calm;
+    const double then = context.time + every * (waits ? 1 : calm);
     entry = place_of(next, id);
     if (entry != next.end() && entry->name == id)
         entry->value = then;
@@ -158,7 +156,8 @@ void ErrorRows::describe(Schema& schema)
     schema.state(judged, "judged", unit::one, "measurements of a level that was measured before");
     schema.state(held, "held", unit::one, "those of them that found the error still below the bound");
     schema.output(confidence, "confidence", unit::one, "with which a level's error is below the bound when it is measured again");
-    schema.output(worst, "worst", unit::one, "the largest error of the last look in which something was measured, of the levels that were kept");
+    schema.output(worst, "worst", unit::one,
+                  "the largest error of the last look in which something was measured, of the levels that were kept");
     schema.output(measured, "measured", unit::one, "number of errors that were measured");
     schema.output(unknown, "unknown", unit::one, "number of those that could not be told");
 }
@@ -170,8 +169,7 @@ void keep_error(const StepContext& context, Row row, ErrorRows& governors, Level
     governors.confidence[row] = confidence_of(governors.held[row], governors.judged[row]);
     const bool by_sight = governors.unit[row] == "pixels";
     Due waiting;
-    const auto scale_of = [&](std::size_t k)
-    {
+    const auto scale_of = [&](std::size_t k) {
         return by_sight ? pixels_per_metre(look.watched()[k], control.viewpoints(), governors.look_ahead[row], governors.margin[row]) : 1.0;
     };
     for (std::size_t k = 0; k < look.watched().size(); ++k)

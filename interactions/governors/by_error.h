@@ -14,10 +14,10 @@ struct ErrorRows
     Column<std::string> unit;  ///< of the bound: m, rad, W, pixels
     Column<double> interval, target;
     Column<std::int64_t> looks;
-    Column<double> look_ahead, margin;     ///< s, rad: of pixels, as those of Governor/Visibility
-    Column<Entries> next;                  ///< s: when a component is measured again, by id
-    Column<double> safety;                 ///< factor
-    Column<std::int64_t> judged, held;     ///< promises: see keep_error()
+    Column<double> look_ahead, margin;  ///< s, rad: of pixels, as those of Governor/Visibility
+    Column<Entries> next;               ///< s: when a component is measured again, by id
+    Column<double> safety;              ///< factor
+    Column<std::int64_t> judged, held;  ///< promises: see keep_error()
     Column<double> confidence, worst;
     Column<std::int64_t> measured, unknown;
 
@@ -28,9 +28,9 @@ struct ErrorRows
 /// multiplied by `safety`, is below the bound.
 ///
 /// Keeping a level is a promise: its error will still be below the bound when it is measured again. The next measurement judges it. With
-/// the share c of promises that shall hold (`target`), a promise that held multiplies the safety factor by exp(-(1 - c) g), one that did not
-/// by exp(c g): the factor is at rest where the share is c.
-/// Source: Robbins and Monro, A stochastic approximation method, Ann. Math. Stat. 22 (1951): the estimate of a quantile.
+/// the share c of promises that shall hold (`target`), a promise that held multiplies the safety factor by exp(-(1 - c) g), one that did
+/// not by exp(c g): the factor is at rest where the share is c. Source: Robbins and Monro, A stochastic approximation method, Ann. Math.
+/// Stat. 22 (1951): the estimate of a quantile.
 void keep_error(const StepContext& context, Row row, ErrorRows& governors, LevelControl& control);
 
 }  // namespace plab::governors

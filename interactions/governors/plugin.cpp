@@ -27,7 +27,8 @@ PLAB_PLUGIN("governors", registrar)
         .family("Governor")
         .command<keep_error>(Phase::Decide, kChoose, "chooses levels")
         .cost("two to four trial steps of the island of each component that is measured")
-        .limits("the error is that of the coming step, continued over the interval: an impact that comes later is not foreseen; what the "
-                "most exact level does wrong is not seen")
+        .limits(
+            "the error is that of the coming step, continued over the interval: an impact that comes later is not foreseen; what the "
+            "most exact level does wrong is not seen")
         .source("safety factor: Robbins and Monro, A stochastic approximation method, Ann. Math. Stat. 22, 1951");
 }

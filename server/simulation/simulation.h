@@ -60,8 +60,8 @@ public:
     bool apply_due();
     /// The replies since the last call, in order.
     std::vector<Reply> take_replies();
-    /// The requests that the simulation made itself before the last step, with their replies: measurements for governors, and what components
-    /// decided (Reply::made).
+    /// The requests that the simulation made itself before the last step, with their replies: measurements for governors, and what
+    /// components decided (Reply::made).
     const std::vector<Reply>& own_requests() const { return own_requests_; }
     /// What requests, scripts (when they set parameters) and failures changed about components since the last call.
     Changes take_changes();

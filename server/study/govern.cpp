@@ -118,11 +118,17 @@ public:
             for (Contender& c : contenders_)
             {
                 if (plan_.progress)
-                    plan_.progress(plan_.title + ": " + c.point.name + ", " + std::to_string(static_cast<int>(end - plan_.between)) + " s of " +
-                                   std::to_string(static_cast<int>(plan_.until)) + " s");
+                    plan_.progress(plan_.title + ": " + c.point.name + ", " + std::to_string(static_cast<int>(end - plan_.between)) +
+                                   " s of " + std::to_string(static_cast<int>(plan_.until)) + " s");
                 if (auto done = advance(c, end); !done) return done.errors();
             }
         for (Contender& c : contenders_) finish(c);
+        return std::move(out_);
+    }
+
+    Result<GovernResult> list()
+    {
+        if (auto ready = begin(); !ready) return ready.errors();
         return std::move(out_);
     }
 
@@ -229,7 +235,8 @@ private:
         double cpu = 0;
         for (const double s : c.steps) cpu += s;
         c.point.cpu = cpu / std::max(1e-9, c.run->time());
-        c.point.step_median = at_share(c.steps, 0.5), c.point.step_99 = at_share(c.steps, 0.99), c.point.step_longest = at_share(c.steps, 1);
+        c.point.step_median = at_share(c.steps, 0.5), c.point.step_99 = at_share(c.steps, 0.99),
+        c.point.step_longest = at_share(c.steps, 1);
         take_mean(c.point.error);
         for (double& s : c.point.shares) s /= std::max(1.0, c.looks);
         out_.points.push_back(std::move(c.point));
@@ -247,6 +254,8 @@ private:
 }  // namespace
 
 Result<GovernResult> compare_governor(model::TypeSource& types, const GovernPlan& plan) { return Comparison(types, plan).run(); }
+
+Result<GovernResult> governed_levels(model::TypeSource& types, const GovernPlan& plan) { return Comparison(types, plan).list(); }
 
 std::optional<double> gain(const GovernResult& result)
 {

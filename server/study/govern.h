@@ -30,7 +30,8 @@ struct GovernPlan
     std::function<void(const std::string&)> progress;
 };
 
-/// Error of all objects that a viewer sees at the end of a window: their largest displacement |dp| + r |angle|, in the plane of its picture.
+/// Error of all objects that a viewer sees at the end of a window: their largest displacement |dp| + r |angle|, in the plane of its
+/// picture.
 struct GovernError
 {
     double pixels = 0, worst_pixels = 0;  ///< root mean square; largest
@@ -42,7 +43,7 @@ struct GovernPoint
 {
     std::string name;  ///< "governed", or the level that all have
     bool governed = false;
-    double cpu = 0;                                          ///< s of CPU time for each simulated second: the whole scene, with all decisions
+    double cpu = 0;  ///< s of CPU time for each simulated second: the whole scene, with all decisions
     double step_median = 0, step_99 = 0, step_longest = 0;  ///< s of CPU time
     GovernError error;
     std::vector<double> shares;  ///< mean fraction of the components at each level
@@ -61,9 +62,12 @@ struct GovernResult
 /// Errors: the scene has no such governor or no viewer; it was interrupted.
 Result<GovernResult> compare_governor(model::TypeSource& types, const GovernPlan& plan);
 
-/// How many times the CPU time of the governed run one would need with a single level for its error: on the line that joins the levels which
-/// no other level beats, in logarithms of both. More than 1: the governed point is below and left of it. Nothing: the governed run is more
-/// exact than every level, or less exact than the cheapest one.
+/// The governor of the plan and its levels, without figures. Errors as above.
+Result<GovernResult> governed_levels(model::TypeSource& types, const GovernPlan& plan);
+
+/// How many times the CPU time of the governed run one would need with a single level for its error: on the line that joins the levels
+/// which no other level beats, in logarithms of both. More than 1: the governed point is below and left of it. Nothing: the governed run is
+/// more exact than every level, or less exact than the cheapest one.
 std::optional<double> gain(const GovernResult& result);
 
 std::vector<std::string> govern_findings(const GovernResult& result);

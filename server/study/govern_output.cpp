@@ -29,10 +29,12 @@ std::string compared(const GovernPoint& governed, const GovernPoint& fixed)
     const std::string name = fixed.name + " for all: ";
     if (cost >= 1 && error >= 1)
         return name + "the governor is " + short_number(cost) + " times as fast and " + short_number(error) + " times as exact.";
-    if (cost >= 1) return name + "the governor is " + short_number(cost) + " times as fast, and " + short_number(1 / error) + " times less exact.";
+    if (cost >= 1)
+        return name + "the governor is " + short_number(cost) + " times as fast, and " + short_number(1 / error) + " times less exact.";
     if (error >= 1)
         return name + "the governor takes " + short_number(1 / cost) + " times as long, and is " + short_number(error) + " times as exact.";
-    return name + "it is faster, by " + short_number(1 / cost) + ", and more exact, by " + short_number(1 / error) + ": the governor loses.";
+    return name + "it is faster, by " + short_number(1 / cost) + ", and more exact, by " + short_number(1 / error) +
+           ": the governor loses.";
 }
 
 std::string hint_of(const GovernPoint& p, const std::vector<std::string>& levels)
@@ -54,9 +56,11 @@ std::vector<std::string> govern_findings(const GovernResult& r)
     for (std::size_t k = 1; k < r.points.size(); ++k) out.push_back(compared(governed, r.points[k]));
     if (const auto times = gain(r))
         out.push_back(*times > 1 ? "The governed point is below and left of the line that joins the single levels: with one level for all, "
-                                   "its error would cost " + short_number(*times) + " times its CPU time."
+                                   "its error would cost " +
+                                       short_number(*times) + " times its CPU time."
                                  : "The governed point is not below and left of the line that joins the single levels: with one level for "
-                                   "all, its error would cost " + short_number(*times) + " times its CPU time.");
+                                   "all, its error would cost " +
+                                       short_number(*times) + " times its CPU time.");
     if (r.budget > 0)
         out.push_back("Of 100 steps, 99 took at most " + ms(governed.step_99) + " of a budget of " + ms(r.budget) + " (" +
                       short_number(governed.step_99 / r.budget) + ").");
@@ -107,8 +111,7 @@ std::string csv_of(const GovernResult& r)
     {
         rows.text(p.name).exact(p.cpu).exact(p.step_median).exact(p.step_99).exact(p.step_longest);
         rows.exact(p.error.pixels).exact(p.error.worst_pixels).exact(p.error.metres);
-        for (std::size_t k = 0; k < r.levels.size(); ++k)
-            (void)(p.governed && k < p.shares.size() ? rows.exact(p.shares[k]) : rows.none());
+        for (std::size_t k = 0; k < r.levels.size(); ++k) (void)(p.governed && k < p.shares.size() ? rows.exact(p.shares[k]) : rows.none());
         rows.end();
     }
     return rows.take();
@@ -116,16 +119,19 @@ std::string csv_of(const GovernResult& r)
 
 std::string html_of(const GovernResult& r)
 {
-    Page page("Levels of detail: " + r.title, std::to_string(r.objects) + " moving bodies, " + std::to_string(r.components) + " components under " +
-                                                  r.governor + " (" + r.type + "), " + short_number(r.until) + " simulated seconds of " +
-                                                  r.scene_file + ".");
+    Page page("Levels of detail: " + r.title, std::to_string(r.objects) + " moving bodies, " + std::to_string(r.components) +
+                                                  " components under " + r.governor + " (" + r.type + "), " + short_number(r.until) +
+                                                  " simulated seconds of " + r.scene_file + ".");
     page.list(govern_findings(r));
-    page.figure(govern_picture(r), "Error against the run time of the whole scene; the dashed line joins the choices of one level for all.");
-    page.paragraph("The error: every " + short_number(r.between) + " s a second simulation continues for " + short_number(r.window) +
-                   " s from the state of the run, with the most exact level for all and steps " + std::to_string(r.refine) +
-                   " times shorter. At the end of this time the displacement of each body that a viewer sees (|dp| + r |angle|) counts in pixels "
-                   "of its picture.");
-    std::vector<PageCell> head = text_cells({"choice", "ms/s", "step, ms", "99 %, ms", "longest, ms", "pixels", "largest", "m, all bodies"});
+    page.figure(govern_picture(r),
+                "Error against the run time of the whole scene; the dashed line joins the choices of one level for all.");
+    page.paragraph(
+        "The error: every " + short_number(r.between) + " s a second simulation continues for " + short_number(r.window) +
+        " s from the state of the run, with the most exact level for all and steps " + std::to_string(r.refine) +
+        " times shorter. At the end of this time the displacement of each body that a viewer sees (|dp| + r |angle|) counts in pixels "
+        "of its picture.");
+    std::vector<PageCell> head =
+        text_cells({"choice", "ms/s", "step, ms", "99 %, ms", "longest, ms", "pixels", "largest", "m, all bodies"});
     for (const std::string& level : r.levels) head.push_back({level, "", "mean share of the components"});
     std::vector<std::vector<PageCell>> rows;
     for (const GovernPoint& p : r.points)
@@ -153,8 +159,8 @@ Result<void> write_govern(const GovernResult& r, const std::string& folder)
     if (error) return reason("cannot make the folder " + folder + ": " + error.message());
     const Drawing picture = govern_picture(r);
     if (auto written = picture.write_png(folder + "/govern.png"); !written) return written;
-    for (const auto& [name, text] : {std::pair("govern.svg", picture.svg(true)), std::pair("govern.csv", csv_of(r)),
-                                     std::pair("report.html", html_of(r))})
+    for (const auto& [name, text] :
+         {std::pair("govern.svg", picture.svg(true)), std::pair("govern.csv", csv_of(r)), std::pair("report.html", html_of(r))})
         if (auto written = program::write_file(folder + "/" + name, text); !written) return written;
     return {};
 }

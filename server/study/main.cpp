@@ -141,6 +141,14 @@ int run_govern(const study::StudyOptions& options, model::TypeSource& types, mod
     plan.title = scene.settings.title.empty() ? options.scene : scene.settings.title;
     plan.scene = std::move(scene), plan.command = options.command, plan.governor = options.governor;
     plan.until = options.until, plan.stop = &work;
+    if (options.list)
+    {
+        const auto listed = study::governed_levels(types, plan);
+        if (!listed) return fail(listed.errors());
+        for (const std::string& level : listed->levels) std::printf("%s\n", level.c_str());
+        std::printf("%zu components under %s (%s)\n", listed->components, listed->governor.c_str(), listed->type.c_str());
+        return 0;
+    }
     program::Progress line(progress_to(options), std::chrono::milliseconds(0));
     plan.progress = shown_by(line);
     auto result = study::compare_governor(types, plan);

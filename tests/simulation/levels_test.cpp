@@ -1,6 +1,7 @@
 // Governors: which level a component gets, why, and that a replay decides the same.
 #include <algorithm>
 
+#include "simulation/snapshot/compare.h"
 #include "support/scene.h"
 #include "support/text.h"
 
@@ -283,4 +284,30 @@ TEST_CASE("the cheapest level with an error below the bound: measured by trials 
     CHECK(told.error < 1e-5);
     CHECK(told.next_look > tight.simulation().time());
     CHECK(told.reason.find("of 1e-05 m in 0.25 s, confidence") != std::string::npos);
+}
+
+/// A trial copies what it shares with a snapshot, so a governor must not keep what belongs to the world.
+TEST_CASE("a run that measures errors continues from a snapshot as if there had been no interruption, whoever takes snapshots meanwhile")
+{
+    const std::string scene = row_of_bodies(std::string("<component id=\"lod\" type=\"Governor/Error\" watches=\"*.solver\" levels=\"") +
+                                                kLadder + "\" bound=\"1e-3\" every=\"0.05\" dwell=\"0.1\"/>",
+                                            "<component id=\"weight\" type=\"Field/Gravity\" between=\"*\"/>");
+    Scene run(scene);
+    REQUIRE_MESSAGE(run.loaded(), run.error());
+    for (int from = 0; from < 240; from += 60)
+    {
+        const Snapshot begin = run.simulation().capture();
+        std::vector<Snapshot> course;
+        for (int k = 0; k < 60; ++k) run.step(), course.push_back(run.simulation().capture());
+        Scene twin(scene);
+        REQUIRE(twin.simulation().restore(begin).ok());
+        for (int k = 0; k < 60; ++k)
+        {
+            (void)twin.simulation().capture();
+            twin.step();
+            const auto difference = compare(course[static_cast<std::size_t>(k)], twin.simulation().capture());
+            REQUIRE_MESSAGE(!difference, "from step ", from, ", after ", k, ": ", difference->text());
+        }
+    }
+    CHECK(whole(run, "lod", "measured") > 10);
 }

@@ -13,10 +13,7 @@ namespace plab::simulation
 class LevelBook::Desk final : public LevelControl, public ViewpointSink, public RequestSink
 {
 public:
-    Desk(LevelBook& book, const MeasureError& error) : book_(book), error_(error)
-    {
-        book_.viewpoints_.clear(), book_.looked_.clear();
-    }
+    Desk(LevelBook& book, const MeasureError& error) : book_(book), error_(error) { book_.viewpoints_.clear(), book_.looked_.clear(); }
 
     /// The calls that follow come from this component.
     void serve(std::uint32_t component);
@@ -31,7 +28,7 @@ public:
     std::int32_t levels(Row row) const override;
     std::span<const GovernedComponent> watched(Row row) override;
     std::span<const Viewpoint> viewpoints() const override { return book_.viewpoints_; }
-    std::string_view id_of(std::uint32_t component) const override { return book_.world_.id_of(component); }
+    std::string_view id_of(std::uint32_t component) const override;
     LevelError error(Row row, std::size_t index, std::int32_t level, double interval) override;
     void tell(Row row, std::size_t index, double error, std::string_view unit, double next_look) override;
     void choose(Row row, std::size_t index, std::int32_t level, std::string reason) override;
@@ -79,6 +76,11 @@ std::span<const GovernedComponent> LevelBook::Desk::watched(Row /*row*/)
     if (governor_ && book_.looked_.empty())
         for (const Watched& w : governor_->watched) book_.looked_.push_back(book_.look(*governor_, w));
     return book_.looked_;
+}
+
+std::string_view LevelBook::Desk::id_of(std::uint32_t component) const
+{
+    return component < book_.ids_.size() ? std::string_view(book_.ids_[component]) : std::string_view();
 }
 
 LevelError LevelBook::Desk::error(Row /*row*/, std::size_t index, std::int32_t level, double interval)

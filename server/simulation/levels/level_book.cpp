@@ -155,6 +155,8 @@ Result<void> LevelBook::rebuild()
     for (const std::uint32_t i : world_.in_id_order())
         if (watcher_[i] != watcher[i]) changed_.push_back(i);
     watcher_ = std::move(watcher);
+    ids_.resize(governors_.empty() ? 0 : watcher_.size());
+    for (std::uint32_t i = 0; i < ids_.size(); ++i) ids_[i] = world_.id_of(i);
     const world::HostTables& host = world_.host();
     radius_of_shaft_.assign(governors_.empty() ? 0 : host.shafts.size(), 0.0);
     for (std::size_t s = 0; s < radius_of_shaft_.size(); ++s)
@@ -182,8 +184,8 @@ GovernedComponent LevelBook::look(const Governor& governor, const Watched& watch
         const Vec3 p = place(r);
         const double size = radius(r);
         for (int k = 0; k < 3; ++k) least[k] = std::min(least[k], p[k] - size), most[k] = std::max(most[k], p[k] + size);
-        const double speed = r.facet == Facet::Body ? length(bodies.velocity[r.index]) + size * length(bodies.angular_velocity[r.index])
-                                                    : size * std::fabs(shafts.speed[r.index]);
+        // A turn does not take it out of the ball around it.
+        const double speed = r.facet == Facet::Body ? length(bodies.velocity[r.index]) : 0.0;
         out.speed = std::max(out.speed, speed);
     }
     if (watched.objects.empty()) return out;

@@ -40,9 +40,9 @@ struct LevelInfo
 {
     std::uint32_t component = kNoIndex, governor = kNoIndex;
     std::int32_t level = -1, levels = 0;
-    std::string text;    ///< of the level
-    std::string reason;  ///< of the last change; empty: it has not been changed in this run
-    double since = 0;    ///< s, of that change
+    std::string text;                                             ///< of the level
+    std::string reason;                                           ///< of the last change; empty: it has not been changed in this run
+    double since = 0;                                             ///< s, of that change
     double error = std::numeric_limits<double>::quiet_NaN();      ///< as its governor measured it last; NaN: it measures none
     double next_look = std::numeric_limits<double>::quiet_NaN();  ///< s: when its governor measures it again; NaN: at its next look
     double every = 0;                                             ///< s, from one look of its governor to the next
@@ -122,11 +122,13 @@ private:
 
     world::World& world_;
     Stepper& stepper_;
-    std::vector<Governor> governors_;                  ///< in id order
-    std::vector<Change> changes_;                      ///< by directory index
-    std::vector<Told> told_;                           ///< by directory index
-    std::vector<std::uint32_t> watcher_, changed_;     ///< governor of each component, by directory index; components
-    bool deciding_ = false;                            ///< trials exchange components and put them back meanwhile
+    std::vector<Governor> governors_;  ///< in id order
+    std::vector<Change> changes_;      ///< by directory index
+    std::vector<Told> told_;           ///< by directory index
+    /// By directory index: what the world returns is not valid any more after a trial, which may copy the directory that a snapshot shares.
+    std::vector<std::string> ids_;
+    std::vector<std::uint32_t> watcher_, changed_;  ///< governor of each component, by directory index; components
+    bool deciding_ = false;                         ///< trials exchange components and put them back meanwhile
     std::vector<double> radius_of_shaft_;
     // Of a Desk, kept from step to step, so that a look at a scene in which nothing changes needs no memory.
     std::vector<Viewpoint> viewpoints_;
