@@ -75,30 +75,27 @@ Plan plan_savings(const Look& look, const std::vector<double>& importance, const
 /// Buys the most importance for each second, one level for each component, as far as there is room (s). What a level costs is taken to be
 /// as much as it may well be. A level of which hardly anything is known is tried by a few components first, because it may cost many times
 /// what is guessed.
-Plan plan_spending(const Look& look, const std::vector<double>& importance, const CostModel& model, double room)
+Plan plan_spending(const Look& look, const std::vector<double>& importance, const CostModel& model, double cost, double room)
 {
+    constexpr double kDoubtful = 0.5, kWorst = 20;  // of what a level is taken to cost; of what a step costs now
     Plan plan = present_levels(look);
     std::vector<Offer> offers;
     for (std::size_t k = 0; k < plan.size(); ++k)
     {
         if (plan[k] < 0 || plan[k] >= look.finest() || !look.rested(k)) continue;
         const auto l = static_cast<std::size_t>(plan[k]);
-        const double dear = model.cost(l + 1) + model.deviation(l + 1);
+        const double likely = model.cost(l + 1) + model.deviation(l + 1);
+        const bool doubtful = model.deviation(l + 1) > kDoubtful * model.cost(l + 1);
+        const double dear = doubtful ? std::max(likely, kWorst * cost) : likely;
         const double spent = std::max(1e-12, dear - model.cost(l)) / static_cast<double>(plan.size());
         offers.push_back({importance[k] / spent, k, spent});
     }
     std::sort(offers.begin(), offers.end(),
               [](const Offer& a, const Offer& b) { return a.worth != b.worth ? a.worth > b.worth : a.component < b.component; });
-    constexpr double kDoubtful = 0.5, kFew = 0.02;  // of the cost; of the components
-    std::size_t few = std::max<std::size_t>(1, static_cast<std::size_t>(kFew * static_cast<double>(plan.size())));
     double spent = 0;
     for (const Offer& o : offers)
     {
         if (spent + o.seconds > room) continue;
-        const auto next = static_cast<std::size_t>(plan[o.component] + 1);
-        const bool doubtful = model.deviation(next) > kDoubtful * model.cost(next);
-        if (doubtful && few == 0) continue;
-        few -= doubtful ? 1 : 0;
         spent += o.seconds, ++plan[o.component];
     }
     return plan;
@@ -189,7 +186,7 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
     if (over)
         plan = plan_savings(look, importance, model, cost - goal);
     else if (cost < budget * (1 - governors.headroom[row]))
-        plan = plan_spending(look, importance, model, goal - cost);
+        plan = plan_spending(look, importance, model, cost, goal - cost);
     const std::string why =
         (over ? "a step takes " : "there is room: a step takes ") + brief(1e3 * cost) + " ms of " + brief(1e3 * budget) + " ms";
     for (std::size_t k = 0; k < plan.size(); ++k)

@@ -77,7 +77,7 @@ Drawing govern_picture(const GovernResult& r)
     const std::string title = "Governed, and one level for all";
     Drawing d(860, 520, title + ": " + r.title);
     Panel p;
-    p.left = 84, p.top = 48, p.width = 720, p.height = 410;
+    p.left = 84, p.top = 48, p.width = 600, p.height = 410;
     p.x = Scale::around(Scale::Kind::Log, costs), p.y = Scale::around(Scale::Kind::Log, errors);
     d.words({84, 26}, title, {16, {}, Anchor::Start, true, false});
     d.words({84 + text_width(title, 16) * 1.1 + 14, 26}, r.title, {13, kMuted, Anchor::Start, false, false});
@@ -93,7 +93,7 @@ Drawing govern_picture(const GovernResult& r)
         const Spot at = p.at(costs[k], errors[k]);
         const bool governed = r.points[k].governed;
         d.marker(at, governed ? 3 : 0, governed ? 8 : 5.5, Ink::series(governed ? 1 : 0), true, hint_of(r.points[k], r.levels));
-        labels.add(d, at, governed ? r.type : r.points[k].name, 12, {}, governed);
+        labels.add(d, at, governed ? r.type : r.points[k].name.substr(0, r.points[k].name.find(' ')), 12, {}, governed);
     }
     return d;
 }
