@@ -101,14 +101,6 @@ Plan plan_spending(const Look& look, const std::vector<double>& importance, cons
     return plan;
 }
 
-/// Before anything is known of costs: the first steps must not take longer than the scene can help.
-Plan plan_beginning(const Look& look)
-{
-    Plan plan = present_levels(look);
-    for (std::int32_t& level : plan) level = std::min(level, 0);
-    return plan;
-}
-
 /// Of the components that are on the ladder.
 Reals fractions_of(const Look& look)
 {
@@ -120,12 +112,11 @@ Reals fractions_of(const Look& look)
     return out;
 }
 
-/// Without a measurement (a program that measures nothing) only the first look does something.
+/// Before anything is known of costs, the first steps must not take longer than the scene can help.
 void begin_cheaply(Look& look, Row row, BudgetRows& governors)
 {
-    const Plan plan = plan_beginning(look);
-    for (std::size_t k = 0; k < plan.size(); ++k)
-        if (plan[k] >= 0) (void)look.choose(k, plan[k], "nothing is known yet of what levels cost");
+    for (std::size_t k = 0; k < look.watched().size(); ++k)
+        if (look.watched()[k].level > 0 && look.may_choose(k, 0)) (void)look.choose(k, 0, "nothing is known yet of what levels cost");
     governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(look.watched().size()) - governors.watch.count[row].back());
 }
 
