@@ -46,6 +46,7 @@ struct Offer
     double worth = 0;  ///< importance per second of a step
     std::size_t component = 0;
     double seconds = 0;  ///< by which the step changes
+    double at_worst = 0;
 };
 
 /// Gives up the least importance for each second that is saved, one level after the other, until `needed` (s) is saved.
@@ -59,7 +60,7 @@ Plan plan_savings(const Look& look, const std::vector<double>& importance, const
         if (plan[k] <= 0) return;
         const auto l = static_cast<std::size_t>(plan[k]);
         const double saved = (model.cost(l) - model.cost(l - 1)) / static_cast<double>(plan.size());
-        if (saved > 0) offers.push({importance[k] / saved, k, saved});
+        if (saved > 0) offers.push({importance[k] / saved, k, saved, saved});
     };
     for (std::size_t k = 0; k < plan.size(); ++k) offer(k);
     for (double saved = 0; saved < needed && !offers.empty();)
@@ -86,17 +87,19 @@ Plan plan_spending(const Look& look, const std::vector<double>& importance, cons
         const auto l = static_cast<std::size_t>(plan[k]);
         const double likely = model.cost(l + 1) + model.deviation(l + 1);
         const bool doubtful = model.deviation(l + 1) > kDoubtful * model.cost(l + 1);
-        const double dear = doubtful ? std::max(likely, kWorst * cost) : likely;
-        const double spent = std::max(1e-12, dear - model.cost(l)) / static_cast<double>(plan.size());
-        offers.push_back({importance[k] / spent, k, spent});
+        const double share = 1 / static_cast<double>(plan.size()), spent = share * std::max(1e-12, likely - model.cost(l));
+        offers.push_back({importance[k] / spent, k, spent, doubtful ? std::max(spent, share * kWorst * cost) : spent});
     }
     std::sort(offers.begin(), offers.end(),
               [](const Offer& a, const Offer& b) { return a.worth != b.worth ? a.worth > b.worth : a.component < b.component; });
     double spent = 0;
+    bool tried = false;  // one component may always try what is not known
     for (const Offer& o : offers)
     {
-        if (spent + o.seconds > room) continue;
-        spent += o.seconds, ++plan[o.component];
+        const bool doubtful = o.at_worst > o.seconds;
+        const double seconds = doubtful && tried ? o.at_worst : o.seconds;
+        if (spent + seconds > room) continue;
+        spent += seconds, ++plan[o.component], tried = tried || doubtful;
     }
     return plan;
 }

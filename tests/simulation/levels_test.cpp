@@ -311,3 +311,36 @@ TEST_CASE("a run that measures errors continues from a snapshot as if there had 
     }
     CHECK(whole(run, "lod", "measured") > 10);
 }
+
+TEST_CASE("a budget is spent on what is seen largest, and saved on what is seen smallest; what is given up is told")
+{
+    Scene s(row_of_bodies(std::string("<component id=\"lod\" type=\"Governor/Budget\" watches=\"*.solver\" levels=\"") + kLadder +
+                          "\" budget=\"1e-3\" every=\"0.05\" dwell=\"0\"/>"));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    constexpr double kCost[] = {1e-4, 2e-4, 4e-4};  // s, of a step with all components at the level
+    const auto run = [&](int steps)
+    {
+        for (int k = 0; k < steps; ++k)
+        {
+            double cost = 0;
+            for (const LevelInfo& l : s.simulation().levels().levels()) cost += kCost[l.level] / 3;
+            if (k > 0) REQUIRE(s.ask(SetOperation{"lod", "step_cost", Value(cost)}).done);
+            s.step();
+        }
+    };
+    run(1);
+    CHECK(whole(s, "lod", "given_up") == 3);  // nothing is known of costs yet
+    CHECK(algorithm(s, "near.solver") == "Solver/SemiImplicitEuler");
+    run(240);
+    CHECK(whole(s, "lod", "given_up") == 0);
+    CHECK(algorithm(s, "far.solver") == "Solver/DormandPrince54");
+    REQUIRE(s.ask(SetOperation{"lod", "budget", Value(3e-4)}).done);
+    run(240);
+    CHECK(algorithm(s, "near.solver") == "Solver/DormandPrince54");
+    CHECK(algorithm(s, "middle.solver") == "Solver/RungeKutta4");
+    CHECK(algorithm(s, "far.solver") == "Solver/RungeKutta4");  // (4 + 2 + 2) / 3 of 1e-4 s
+    CHECK(whole(s, "lod", "given_up") == 2);
+    CHECK(s.real("lod", "spent") < 1);
+    CHECK(s.real("lod", "lost") > 0.1);
+    CHECK(s.real("lod", "lost") < 0.3);  // 0.04 + 0.012 of 0.25
+}
