@@ -43,7 +43,7 @@ struct GovernedComponent
     double since = 0;                    ///< s, when it got this level
     Vec3 center;                         ///< W, m: of a ball around all objects on which it acts
     double radius = 0;                   ///< m, of that ball; infinite: it acts on something without bounds
-    double speed = 0;                    ///< m/s, the largest speed of a point of these objects
+    double speed = 0;                    ///< m/s, the largest speed of their centres: a turn does not take an object out of the ball
     std::uint32_t objects = 0;           ///< their number; static ones do not count
 };
 
@@ -70,8 +70,8 @@ public:
     /// Measured by a trial step with this level and one with the next finer one, from the present state, which they do not change. What
     /// differs then is taken to add up over `interval` (s). The most exact level has no error.
     virtual LevelError error(Row row, std::size_t index, std::int32_t level, double interval) = 0;
-    /// Tells observers what is known of a component: the error of the level that it is going to have, in the governor's unit, and when it is
-    /// looked at again (s). Not state: a decision cannot depend on it.
+    /// Tells observers what is known of a component: the error of the level that it is going to have, in the governor's unit, and when it
+    /// is looked at again (s). Not state: a decision cannot depend on it.
     virtual void tell(Row row, std::size_t index, double error, std::string_view unit, double next_look) = 0;
     /// Asks for another level, from the coming step on. `reason`: in words, for people.
     virtual void choose(Row row, std::size_t index, std::int32_t level, std::string reason) = 0;
