@@ -104,6 +104,38 @@ Plan plan_spending(const Look& look, const std::vector<double>& importance, cons
     return plan;
 }
 
+/// While the budget is used up: takes from what has become unimportant, one level each, and gives that to what has become important.
+/// `room`: s.
+Plan plan_exchange(const Look& look, const std::vector<double>& importance, const CostModel& model, double room)
+{
+    constexpr double kMuch = 2;  // as important
+    Plan plan = present_levels(look);
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < plan.size(); ++k)
+        if (plan[k] >= 0 && look.rested(k)) order.push_back(k);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return importance[a] < importance[b]; });
+    const auto step = [&](std::int32_t level)
+    {
+        const auto l = static_cast<std::size_t>(level);
+        return std::max(0.0, model.cost(l + 1) - model.cost(l)) / static_cast<double>(plan.size());
+    };
+    std::size_t least = 0;
+    for (std::size_t n = order.size(); n-- > 0;)
+    {
+        const std::size_t up = order[n];
+        if (plan[up] >= look.finest()) continue;
+        const double needed = step(plan[up]);
+        const std::size_t first = least;
+        double free = room;
+        for (; free < needed && least < n && kMuch * importance[order[least]] < importance[up]; ++least)
+            if (plan[order[least]] > 0) free += step(plan[order[least]] - 1);
+        if (free < needed) break;
+        for (std::size_t k = first; k < least; ++k) plan[order[k]] = std::max(0, plan[order[k]] - 1);
+        ++plan[up], room = free - needed;
+    }
+    return plan;
+}
+
 /// Of the components that are on the ladder.
 Reals fractions_of(const Look& look)
 {
@@ -181,8 +213,10 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
         plan = plan_savings(look, importance, model, cost - goal);
     else if (cost < budget * (1 - governors.headroom[row]))
         plan = plan_spending(look, importance, model, cost, goal - cost);
-    const std::string why =
-        (over ? "a step takes " : "there is room: a step takes ") + brief(1e3 * cost) + " ms of " + brief(1e3 * budget) + " ms";
+    else
+        plan = plan_exchange(look, importance, model, std::max(0.0, goal - cost));
+    const std::string why = (over || cost >= budget * (1 - governors.headroom[row]) ? "a step takes " : "there is room: a step takes ") +
+                            brief(1e3 * cost) + " ms of " + brief(1e3 * budget) + " ms";
     for (std::size_t k = 0; k < plan.size(); ++k)
         if (plan[k] >= 0) (void)look.choose(k, plan[k], why + "; importance " + brief(importance[k]));
     publish_what_is_given_up(look, importance, row, governors);
