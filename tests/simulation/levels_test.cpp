@@ -343,7 +343,7 @@ TEST_CASE("a budget is spent on what is seen largest, and saved on what is seen 
     CHECK(s.real("lod", "spent") < 1);
     CHECK(s.real("lod", "lost") > 0.1);
     CHECK(s.real("lod", "lost") < 0.3);  // 0.04 + 0.012 of 0.25
-    move_eye(s, 38);  // in front of the far one, and the others are behind
+    move_eye(s, 38);                     // in front of the far one, and the others are behind
     run(240);
     CHECK(algorithm(s, "far.solver") == "Solver/DormandPrince54");
     CHECK(algorithm(s, "near.solver") != "Solver/DormandPrince54");
