@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <queue>
 #include <tuple>
 
@@ -47,6 +46,7 @@ struct Offer
     double worth = 0;  ///< importance per second of a step
     std::size_t component = 0;
     double seconds = 0;  ///< by which the step changes
+    double at_worst = 0;
 };
 
 /// Gives up the least importance for each second that is saved, one level after the other, until `needed` (s) is saved.
@@ -60,7 +60,7 @@ Plan plan_savings(const Look& look, const std::vector<double>& importance, const
         if (plan[k] <= 0) return;
         const auto l = static_cast<std::size_t>(plan[k]);
         const double saved = (model.cost(l) - model.cost(l - 1)) / static_cast<double>(plan.size());
-        if (saved > 0) offers.push({importance[k] / saved, k, saved});
+        if (saved > 0) offers.push({importance[k] / saved, k, saved, saved});
     };
     for (std::size_t k = 0; k < plan.size(); ++k) offer(k);
     for (double saved = 0; saved < needed && !offers.empty();)
@@ -74,27 +74,64 @@ Plan plan_savings(const Look& look, const std::vector<double>& importance, const
 }
 
 /// Buys the most importance for each second, one level for each component, as far as there is room (s). What a level costs is taken to be
-/// as much as it may well be, so that a level that is not known yet is tried by a few components first.
-Plan plan_spending(const Look& look, const std::vector<double>& importance, const CostModel& model, double room)
+/// as much as it may well be. A level of which hardly anything is known is tried by a few components first, because it may cost many times
+/// what is guessed.
+Plan plan_spending(const Look& look, const std::vector<double>& importance, const CostModel& model, double cost, double room)
 {
+    constexpr double kDoubtful = 0.5, kWorst = 20;  // of what a level is taken to cost; of what a step costs now
     Plan plan = present_levels(look);
     std::vector<Offer> offers;
     for (std::size_t k = 0; k < plan.size(); ++k)
     {
         if (plan[k] < 0 || plan[k] >= look.finest() || !look.rested(k)) continue;
         const auto l = static_cast<std::size_t>(plan[k]);
-        const double dear = model.cost(l + 1) + model.deviation(l + 1);
-        const double spent = std::max(1e-12, dear - model.cost(l)) / static_cast<double>(plan.size());
-        offers.push_back({importance[k] / spent, k, spent});
+        const double likely = model.cost(l + 1) + model.deviation(l + 1);
+        const bool doubtful = model.deviation(l + 1) > kDoubtful * model.cost(l + 1);
+        const double share = 1 / static_cast<double>(plan.size()), spent = share * std::max(1e-12, likely - model.cost(l));
+        offers.push_back({importance[k] / spent, k, spent, doubtful ? std::max(spent, share * kWorst * cost) : spent});
     }
     std::sort(offers.begin(), offers.end(),
               [](const Offer& a, const Offer& b) { return a.worth != b.worth ? a.worth > b.worth : a.component < b.component; });
     double spent = 0;
+    bool tried = false;  // one component may always try what is not known
     for (const Offer& o : offers)
     {
-        const bool first = spent == 0;
-        if (spent + o.seconds > (first ? 2 * room : room)) continue;
-        spent += o.seconds, ++plan[o.component];
+        const bool doubtful = o.at_worst > o.seconds;
+        const double seconds = doubtful && tried ? o.at_worst : o.seconds;
+        if (spent + seconds > room) continue;
+        spent += seconds, ++plan[o.component], tried = tried || doubtful;
+    }
+    return plan;
+}
+
+/// While the budget is used up: takes from what has become unimportant, one level each, and gives that to what has become important.
+/// `room`: s.
+Plan plan_exchange(const Look& look, const std::vector<double>& importance, const CostModel& model, double room)
+{
+    constexpr double kMuch = 2;  // as important
+    Plan plan = present_levels(look);
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < plan.size(); ++k)
+        if (plan[k] >= 0 && look.rested(k)) order.push_back(k);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return importance[a] < importance[b]; });
+    const auto step = [&](std::int32_t level)
+    {
+        const auto l = static_cast<std::size_t>(level);
+        return std::max(0.0, model.cost(l + 1) - model.cost(l)) / static_cast<double>(plan.size());
+    };
+    std::size_t least = 0;
+    for (std::size_t n = order.size(); n-- > 0;)
+    {
+        const std::size_t up = order[n];
+        if (plan[up] >= look.finest()) continue;
+        const double needed = step(plan[up]);
+        const std::size_t first = least;
+        double free = room;
+        for (; free < needed && least < n && kMuch * importance[order[least]] < importance[up]; ++least)
+            if (plan[order[least]] > 0) free += step(plan[order[least]] - 1);
+        if (free < needed) break;
+        for (std::size_t k = first; k < least; ++k) plan[order[k]] = std::max(0, plan[order[k]] - 1);
+        ++plan[up], room = free - needed;
     }
     return plan;
 }
@@ -108,6 +145,26 @@ Reals fractions_of(const Look& look)
         if (g.level >= 0) ++out[static_cast<std::size_t>(g.level)], ++all;
     for (double& f : out) f = all > 0 ? f / all : 0;
     return out;
+}
+
+/// Before anything is known of costs, the first steps must not take longer than the scene can help.
+void begin_cheaply(Look& look, Row row, BudgetRows& governors)
+{
+    for (std::size_t k = 0; k < look.watched().size(); ++k)
+        if (look.watched()[k].level > 0 && look.may_choose(k, 0)) (void)look.choose(k, 0, "nothing is known yet of what levels cost");
+    governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(look.watched().size()) - governors.watch.count[row].back());
+}
+
+void publish_what_is_given_up(const Look& look, const std::vector<double>& importance, Row row, BudgetRows& governors)
+{
+    governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(look.watched().size()) - governors.watch.count[row].back());
+    double all = 0, lost = 0;
+    for (std::size_t k = 0; k < importance.size(); ++k)
+    {
+        all += importance[k];
+        if (look.watched()[k].level < look.finest()) lost += importance[k];
+    }
+    governors.lost[row] = all > 0 ? lost / all : 0;
 }
 
 }  // namespace
@@ -131,17 +188,20 @@ void BudgetRows::describe(Schema& schema)
                  "cost of a step with all components at each level, as learnt, and then the covariance (s^2) of these costs");
     schema.output(spent, "spent", unit::one, "cost of a step relative to the budget");
     schema.output(given_up, "given_up", unit::one, "number of components that are not at the most exact level");
+    schema.output(lost, "lost", unit::one, "their share of the importance of all components, when it looked last");
 }
 
 void keep_budget(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control)
 {
-    if (!due(context, governors.watch.every[row]) || governors.step_cost[row] <= 0) return;
+    if (!due(context, governors.watch.every[row])) return;
     const double budget = governors.budget[row] > 0 ? governors.budget[row] : governors.share[row] * context.dt;
     const double cost = governors.step_cost[row];
     governors.spent[row] = cost / budget;
     Look look(context, row, governors.watch, control);
-    const std::size_t count = look.watched().size();
-    if (count == 0) return;
+    if (look.watched().empty()) return;
+    const bool is_first = governors.costs[row].empty();
+    if (is_first && cost <= 0) return begin_cheaply(look, row, governors);
+    if (cost <= 0) return;
     CostModel model(governors.costs[row], static_cast<std::size_t>(look.finest() + 1));
     model.update(fractions_of(look), cost);
     std::vector<double> importance;
@@ -152,92 +212,14 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
     if (over)
         plan = plan_savings(look, importance, model, cost - goal);
     else if (cost < budget * (1 - governors.headroom[row]))
-        plan = plan_spending(look, importance, model, goal - cost);
-    const std::string why =
-        (over ? "a step takes " : "there is room: a step takes ") + brief(1e3 * cost) + " ms of " + brief(1e3 * budget) + " ms";
+        plan = plan_spending(look, importance, model, cost, goal - cost);
+    else
+        plan = plan_exchange(look, importance, model, std::max(0.0, goal - cost));
+    const std::string why = (over || cost >= budget * (1 - governors.headroom[row]) ? "a step takes " : "there is room: a step takes ") +
+                            brief(1e3 * cost) + " ms of " + brief(1e3 * budget) + " ms";
     for (std::size_t k = 0; k < plan.size(); ++k)
         if (plan[k] >= 0) (void)look.choose(k, plan[k], why + "; importance " + brief(importance[k]));
-    governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(count) - governors.watch.count[row].back());
-}
-
-void ErrorRows::describe(Schema& schema)
-{
-    watch.describe(schema);
-    schema
-        .param(bound, "bound", unit::one,
-               "error that is allowed within `interval`: m for bodies, rad for what acts on shafts only, relative to the most exact level")
-        .positive();
-    schema.param(interval, "interval", unit::second, "time within which the error is counted").or_else(0.25).positive();
-    schema.param(looks, "looks", unit::one, "components that are measured at most in one look").or_else(8).positive();
-    schema.state(next, "next", unit::one, "when a component is measured again, s");
-    schema.output(worst, "worst", unit::one, "the largest error that was measured in the last look, of the levels that were kept");
-    schema.output(measured, "measured", unit::one, "number of measurements");
-    schema.output(unknown, "unknown", unit::one, "number of measurements that gave no error");
-}
-
-namespace
-{
-
-/// s, when the component is due; components that were never measured are due at once.
-double next_of(const Entries& next, std::string_view id)
-{
-    const auto found = std::lower_bound(next.begin(), next.end(), id, [](const Entry& e, std::string_view name) { return e.name < name; });
-    return found != next.end() && found->name == id ? std::get<double>(found->value) : 0;
-}
-
-void set_next(Entries& next, std::string_view id, double time)
-{
-    const auto found = std::lower_bound(next.begin(), next.end(), id, [](const Entry& e, std::string_view name) { return e.name < name; });
-    if (found != next.end() && found->name == id)
-        found->value = time;
-    else
-        next.insert(found, {std::string(id), time});
-}
-
-}  // namespace
-
-void keep_error(const StepContext& context, Row row, ErrorRows& governors, LevelControl& control)
-{
-    if (!due(context, governors.watch.every[row])) return;
-    Look look(context, row, governors.watch, control);
-    Entries& next = governors.next[row];
-    const double bound = governors.bound[row], interval = governors.interval[row], every = governors.watch.every[row];
-    governors.worst[row] = 0;
-    std::vector<std::size_t> order(look.watched().size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(
-        order.begin(), order.end(),
-        [&](std::size_t a, std::size_t b)
-        { return next_of(next, control.id_of(look.watched()[a].component)) < next_of(next, control.id_of(look.watched()[b].component)); });
-    std::int64_t left = governors.looks[row];
-    for (const std::size_t k : order)
-    {
-        const GovernedComponent& g = look.watched()[k];
-        const std::string_view id = control.id_of(g.component);
-        if (left-- <= 0 || next_of(next, id) > context.time * (1 + 1e-9)) break;
-        const auto error_at = [&](std::int32_t level)
-        {
-            const double e = control.error(row, k, level, interval);
-            ++governors.measured[row];
-            governors.unknown[row] += std::isnan(e) ? 1 : 0;
-            return e;
-        };
-        // What cannot be told is taken for too much: then the level becomes finer.
-        std::int32_t level = std::max(0, g.level);
-        double error = error_at(level);
-        while (level < look.finest() && !(error <= bound)) error = error_at(++level);
-        if (level == g.level && level > 0 && look.rested(k))
-        {
-            const double cheaper = error_at(level - 1);
-            if (cheaper * (1 + governors.watch.hysteresis[row]) <= bound) --level, error = cheaper;
-        }
-        (void)look.choose(k, level, "error " + brief(error) + " of " + brief(bound) + " in " + brief(interval) + " s");
-        governors.worst[row] = std::max(governors.worst[row], error);
-        // Far below the bound it is looked at less often.
-        constexpr double kLongest = 16;
-        const double calm = error > 0 ? std::clamp(std::sqrt(bound / error), 1.0, kLongest) : kLongest;
-        set_next(next, id, context.time + every * calm);
-    }
+    publish_what_is_given_up(look, importance, row, governors);
 }
 
 }  // namespace plab::governors

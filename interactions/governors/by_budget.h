@@ -1,4 +1,4 @@
-/// Governors that spend a budget where it counts: of processor time, or of error.
+/// A governor that spends a budget of processor time where it counts.
 #pragma once
 
 #include "watch.h"
@@ -16,6 +16,7 @@ struct BudgetRows
     Column<Reals> costs;       ///< what is known of the cost of each level (cost_model.h)
     Column<double> spent;
     Column<std::int64_t> given_up;
+    Column<double> lost;
 
     void describe(Schema& schema);
 };
@@ -24,21 +25,5 @@ struct BudgetRows
 /// to fit. Below it, they become finer where a second buys the most importance, as far as there is room. Importance is the angle under
 /// which a viewer sees the component.
 void keep_budget(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control);
-
-/// A governor by error: the cheapest level whose error stays below a bound.
-struct ErrorRows
-{
-    WatchRows watch;
-    Column<double> bound, interval;
-    Column<std::int64_t> looks;
-    Column<Entries> next;  ///< s: when a component is measured again, by id
-    Column<double> worst;
-    Column<std::int64_t> measured, unknown;
-
-    void describe(Schema& schema);
-};
-
-/// Measures by trial steps how far a component departs from its most exact level within the interval, and chooses its level by that.
-void keep_error(const StepContext& context, Row row, ErrorRows& governors, LevelControl& control);
 
 }  // namespace plab::governors

@@ -1,6 +1,7 @@
 #include "plab/plugin.h"
 
 #include "by_budget.h"
+#include "by_error.h"
 #include "by_viewers.h"
 
 PLAB_PLUGIN("governors", registrar)
@@ -22,4 +23,12 @@ PLAB_PLUGIN("governors", registrar)
         .family("Governor")
         .command<keep_budget>(Phase::Decide, kChoose, "chooses levels")
         .limits("the cost of a step is measured by the clock, so two runs differ; the measurements are recorded, and a replay does not");
+    registrar.component<ErrorRows>("Governor/Error", "the cheapest level whose error stays below a bound")
+        .family("Governor")
+        .command<keep_error>(Phase::Decide, kChoose, "chooses levels")
+        .cost("two to four trial steps of the island of each component that is measured")
+        .limits(
+            "the error is that of the coming step, continued over the interval: an impact that comes later is not foreseen; what the "
+            "most exact level does wrong is not seen")
+        .source("safety factor: Robbins and Monro, A stochastic approximation method, Ann. Math. Stat. 22, 1951");
 }

@@ -63,6 +63,7 @@ int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::DaemonOptio
     plab::simulation::Simulation simulation(library, options.threads);
     simulation.limit(plab::daemon::limits_of(options));
     simulation.read_requests_with(plab::control::component_request_reader(library, plab::daemon::limits_of(options)));
+    simulation.let_measure(true);
     simulation.history().configure(plab::daemon::history_of(options));
     if (auto restored = simulation.restore(snapshot->snapshot); !restored) return plab::daemon::fail(restored.errors());
     if (options.until >= 0 && options.until < simulation.time() - 0.5 * simulation.dt())
@@ -109,6 +110,7 @@ int carry_out(const plab::daemon::DaemonOptions& options)
     plab::simulation::Simulation simulation(library, options.threads);
     simulation.limit(plab::daemon::limits_of(options));
     simulation.read_requests_with(plab::control::component_request_reader(library, plab::daemon::limits_of(options)));
+    simulation.let_measure(true);
     simulation.history().configure(plab::daemon::history_of(options));
     if (auto loaded = simulation.load(*scene); !loaded) return plab::daemon::fail(loaded.errors());
     switch (options.task)

@@ -1,5 +1,7 @@
 #include "publish/entries.h"
 
+#include <cmath>
+
 #include "model/values.h"
 
 namespace plab::publish
@@ -50,6 +52,9 @@ void add_level(const simulation::Simulation& s, std::uint32_t component, std::ve
     };
     add("governor", s.world().id_of(level->governor));
     add("level", std::to_string(level->level)), add("levels", std::to_string(level->levels)), add("level_algorithm", level->text);
+    add("level_every", model::format_value(level->every), "s");
+    if (!std::isnan(level->error)) add("level_error", model::format_value(level->error), level->error_unit.c_str());
+    if (!std::isnan(level->next_look)) add("level_next_look", model::format_value(level->next_look), "s");
     if (level->reason.empty()) return;
     add("level_reason", level->reason), add("level_since", model::format_value(level->since), "s");
 }

@@ -10,37 +10,35 @@ namespace plab::simulation
 namespace
 {
 
-/// m, or rad of shafts: how far apart two courses are after `interval` (s) that part in each step of h (s) as they did in the first one.
-/// Both the distances and the differences of speed are taken to add up.
-double departure(const std::vector<ObjectMotion>& one, const std::vector<ObjectMotion>& other, double h, double interval)
+/// Two motions that part in each step of h (s) as they did in the first one. Both the distances and the differences of speed are taken to
+/// add up.
+class Departure
 {
-    const double steps = std::max(1.0, interval / h);
-    double bodies = 0, shafts = 0;
-    bool any_body = false;
-    const auto grown = [&](double distance, double speed) { return steps * distance + 0.5 * steps * (steps - 1) * h * speed; };
-    for (std::size_t i = 0, k = 0; i < one.size() && k < other.size();)
+public:
+    Departure(double h, double interval) : h_(h), steps_(std::max(1.0, interval / h)) {}
+
+    void add(const ObjectMotion& a, const ObjectMotion& b)
     {
-        const ObjectMotion &a = one[i], &b = other[k];
-        if (a.object != b.object)
-        {
-            a.object < b.object ? ++i : ++k;
-            continue;
-        }
-        ++i, ++k;
         if (a.object.facet == Facet::Shaft)
         {
-            shafts = std::max(shafts, grown(std::fabs(a.angle - b.angle), std::fabs(a.speed - b.speed)));
-            continue;
+            raise(error_.angle, grown(std::fabs(a.angle - b.angle), std::fabs(a.speed - b.speed)));
+            return;
         }
-        any_body = true;
         const double r = std::isfinite(a.radius) ? a.radius : 0;
         const Quat turn = conjugate(a.orientation) * b.orientation;
         const double angle = 2 * std::atan2(length(Vec3{turn.x, turn.y, turn.z}), std::fabs(turn.w));
-        bodies = std::max(bodies, grown(length(a.position - b.position) + r * angle,
-                                        length(a.velocity - b.velocity) + r * length(a.angular_velocity - b.angular_velocity)));
+        const double spin = length(a.angular_velocity - b.angular_velocity);
+        raise(error_.distance, grown(length(a.position - b.position) + r * angle, length(a.velocity - b.velocity) + r * spin));
+        raise(error_.angle, grown(angle, spin));
     }
-    return any_body ? bodies : shafts;
-}
+    const LevelError& result() const { return error_; }
+
+private:
+    double grown(double distance, double speed) const { return steps_ * distance + 0.5 * steps_ * (steps_ - 1) * h_ * speed; }
+    static void raise(double& largest, double value) { largest = std::isnan(largest) ? value : std::max(largest, value); }
+    double h_, steps_;
+    LevelError error_;
+};
 
 std::string file_of(const world::World& world, std::uint32_t component)
 {
@@ -63,28 +61,38 @@ std::vector<std::string> ids_in(const std::vector<Operation>& operations)
 
 }  // namespace
 
-/// What the first step would be with a level, or as it is (null).
-Result<std::vector<ObjectMotion>> Simulation::motion_with(std::uint32_t component, const Level& level)
+/// What the first step would be with a level.
+const Result<FirstStep>& Simulation::step_with(std::uint32_t component, const Level& level)
 {
+    if (!tried_.empty() && tried_.front().component != component) tried_.clear();
+    for (const Tried& t : tried_)
+        if (t.level == &level) return t.step;
     Request request;
     request.operations.push_back(SwapOperation{run_.world().id_of(component), level.type, level.values});
     request.trial.budget = TrialChoice::Budget::Unlimited;  // a limit by the clock would make decisions depend on it
-    return Transaction(run_, context_, *this, request).first_step();
+    return tried_.emplace_back(Tried{component, &level, Transaction(run_, context_, *this, request).first_step()}).step;
 }
 
-double Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finest, double interval)
+LevelError Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval)
 {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    const auto with_level = motion_with(component, level);
-    if (!with_level) return kUnknown;
-    const auto with_finest = motion_with(component, finest);
-    return with_finest ? departure(*with_level, *with_finest, dt(), interval) : kUnknown;
+    if (!step_with(component, level) || !step_with(component, finer)) return {};
+    const FirstStep &one = *step_with(component, level), &other = *step_with(component, finer);
+    const double h = run_.clock.time_at(tick() + 1) - time();
+    Departure departure(h, interval);
+    // One of the steps may have touched more objects.
+    for (std::size_t i = 0, k = 0; i < one.motion.size() && k < other.motion.size();)
+        if (one.motion[i].object == other.motion[k].object)
+            departure.add(one.motion[i++], other.motion[k++]);
+        else
+            one.motion[i].object < other.motion[k].object ? ++i : ++k;
+    LevelError out = departure.result();
+    if (one.motion.size() == other.motion.size()) out.power = std::fabs(one.energy - other.energy) / h;
+    return out;
 }
 
 void Simulation::measure_for_governors()
 {
-    // Only a program that serves components measures for them; elsewhere nothing of a run depends on the clock.
-    if (!deciding_ || !context_.read_request || !run_.levels().watches_anything() || recent_steps_.empty()) return;
+    if (!deciding_ || !measuring_ || !run_.levels().watches_anything() || recent_steps_.empty()) return;
     // Most steps shall keep within a budget, so what counts is the cost that nine of ten steps do not exceed.
     const auto nine_of_ten = [this](double StepCost::*clock)
     {
@@ -117,9 +125,10 @@ void Simulation::decide()
     private:
         std::vector<Event>& to_;
     } events(decided_.events);
-    const auto error = [this](std::uint32_t component, const Level* level, const Level* finest, double interval)
-    { return error_of_level(component, *level, *finest, interval); };
+    const auto error = [this](std::uint32_t component, const Level* level, const Level* finer, double interval)
+    { return error_of_level(component, *level, *finer, interval); };
     const std::vector<Decision> decisions = run_.levels().decide(tick(), time(), dt(), error, events);
+    tried_.clear();
     for (auto first = decisions.begin(); first != decisions.end();)
     {
         const auto differs = [&](const Decision& d) { return d.by != first->by || d.verb != "add"; };
@@ -128,6 +137,7 @@ void Simulation::decide()
         carry_out_decisions({first, end});
         first = end;
     }
+    note_levels();
 }
 
 /// Additions of one component are one transaction, because the cost of a transaction grows with the scene. If it is refused, each half is
@@ -204,7 +214,7 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
         return false;
     }
     run_.watch->begin_anew();
-    note_reassigned();
+    note_levels();
     for (std::size_t k = 0; k < reply.swaps.size() && decision.verb.empty(); ++k)
     {
         const SwapReport& swap = reply.swaps[k];
@@ -243,9 +253,9 @@ void Simulation::refuse_decision(std::uint32_t by, const std::string& what, cons
     decided_.events.push_back(std::move(e));
 }
 
-void Simulation::note_reassigned()
+void Simulation::note_levels()
 {
-    for (const std::uint32_t i : run_.levels().take_reassigned())
+    for (const std::uint32_t i : run_.levels().take_changed())
         if (i < run_.world().components().size() && run_.world().component(i).alive) run_.changes.touched.push_back(run_.world().id_of(i));
 }
 

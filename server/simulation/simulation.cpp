@@ -128,7 +128,7 @@ Reply Simulation::carry_out(const Request& request)
     Reply done = Transaction(run_, context_, *this, request).run();
     if (done.done && affects_the_run(request)) run_.watch->begin_anew();
     if (done.done) history_.note(run_, request);
-    note_reassigned();
+    note_levels();
     return done;
 }
 

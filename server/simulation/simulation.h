@@ -70,7 +70,12 @@ public:
     /// Whether governors and other components that decide are asked before each step; yes by default. A copy of a run that answers "what
     /// if" must leave them out.
     void let_decide(bool deciding) { deciding_ = deciding; }
+    /// Whether step() measures what steps cost and sets that as an input of governors by cost; no by default, so that nothing of a run
+    /// depends on the clock. A replay takes the measurements from the recording.
+    void let_measure(bool measuring) { measuring_ = measuring; }
     const LevelBook& levels() const { return run_.levels(); }
+    /// From where the viewers of the scene look at the present boundary.
+    std::vector<Viewpoint> viewpoints() { return run_.levels().viewpoints(tick(), time(), dt()); }
     /// Where the cameras of the scene send their pictures. Null: cameras do not draw.
     void draw_for(ImageSink* images) { images_ = images; }
 
@@ -121,9 +126,9 @@ private:
     void refuse_decision(std::uint32_t by, const std::string& what, const std::string& why);
     void read_changed_governors();
     /// Observers see the governor of a component with it.
-    void note_reassigned();
-    Result<std::vector<ObjectMotion>> motion_with(std::uint32_t component, const Level& level);
-    double error_of_level(std::uint32_t component, const Level& level, const Level& finest, double interval);
+    void note_levels();
+    const Result<FirstStep>& step_with(std::uint32_t component, const Level& level);
+    LevelError error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval);
 
     bool run_step();
     void take_back_step();
@@ -146,7 +151,7 @@ private:
     std::vector<ScriptChange> script_changes_;  ///< of the step being computed
     StepMemento step_start_;  ///< the state at the start of the step being computed; saved only if the step can be interrupted
     bool gave_up_ = false;
-    bool deciding_ = true;
+    bool deciding_ = true, measuring_ = false;
     /// At a boundary components decide once, even if the step after it is interrupted and made again.
     struct Decided
     {
@@ -154,6 +159,14 @@ private:
         std::vector<Event> events;  ///< to be told with those of the step
     };
     Decided decided_;
+    /// The first step of a component with a level. A governor may ask for the same one twice within a look.
+    struct Tried
+    {
+        std::uint32_t component;
+        const Level* level;
+        Result<FirstStep> step;
+    };
+    std::vector<Tried> tried_;
     std::string last_refusal_;
     std::vector<StepCost> recent_steps_;  ///< since the last measurement for governors
 };

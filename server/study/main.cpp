@@ -9,6 +9,7 @@
 #include "program/interruption.h"
 #include "program/progress.h"
 #include "study/allocations.h"
+#include "study/govern.h"
 #include "study/options.h"
 #include "study/suite.h"
 #include "study/write.h"
@@ -134,6 +135,30 @@ int run_suite(const study::StudyOptions& options, model::TypeSource& types)
     return 0;
 }
 
+int run_govern(const study::StudyOptions& options, model::TypeSource& types, model::SceneSpec scene)
+{
+    study::GovernPlan plan;
+    plan.title = scene.settings.title.empty() ? options.scene : scene.settings.title;
+    plan.scene = std::move(scene), plan.command = options.command, plan.governor = options.governor;
+    plan.until = options.until, plan.stop = &work;
+    if (options.list)
+    {
+        const auto listed = study::governed_levels(types, plan);
+        if (!listed) return fail(listed.errors());
+        for (const std::string& level : listed->levels) std::printf("%s\n", level.c_str());
+        std::printf("%zu components under %s (%s)\n", listed->components, listed->governor.c_str(), listed->type.c_str());
+        return 0;
+    }
+    program::Progress line(progress_to(options), std::chrono::milliseconds(0));
+    plan.progress = shown_by(line);
+    auto result = study::compare_governor(types, plan);
+    line.clear();
+    if (!result) return fail(result.errors());
+    if (auto written = study::write_govern(*result, options.out); !written) return fail(written.errors());
+    print_findings(study::govern_findings(*result), options.out);
+    return 0;
+}
+
 int carry_out(const study::StudyOptions& options)
 {
     plugins::PluginLibrary library;
@@ -143,6 +168,7 @@ int carry_out(const study::StudyOptions& options)
     if (!blueprint) return fail(blueprint.errors());
     auto scene = model::compile(*blueprint, library);
     if (!scene) return fail(scene.errors());
+    if (options.govern) return run_govern(options, library, scene.take());
     study::Plan plan = plan_of(options, scene.take());
     if (options.list) return list(plan, library);
     if (auto fine = study::check_swaps(library, plan); !fine) return fail(fine.errors(), 2);

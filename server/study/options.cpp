@@ -23,6 +23,7 @@ constexpr const char* kExamples = R"(Examples:
   plab-study SCENE --swap 2s:contact.response=None --vary dt=1/60,1/120 --until 5 -o out
   plab-study --suite -o out                                       the catalogue of this installation; --list shows its size
   plab-study --suite my/suite.json --repeat 1 -o out
+  plab-study scenes/city.xml --govern cranes --until 10 -o out    a governor against one level of detail for all
 
 DIR then holds report.html (open it in a browser), results.csv, results.json, reference.csv and the pictures.
 Exit codes: 0 done (a run that fails is a result), 1 nothing could be studied, 2 wrong usage, 130 Ctrl-C, 143 SIGTERM.)";
@@ -151,6 +152,11 @@ void add_study_options(CLI::App& app, StudyOptions& options, Texts& texts, std::
         ->expected(0, 1)
         ->type_name("[FILE]");
     app.add_option("--tolerance", texts.tolerance, "suite: an error up to here counts as solved; default: 1e-6");
+    app.add_option("--govern", options.governor,
+                   "compare a governor of the scene (its id; default: the first one) with one level of detail for all: error in a viewer's "
+                   "picture against CPU time")
+        ->expected(0, 1)
+        ->type_name("[ID]");
     app.add_flag("--list", options.list,
                  "print the combinations, or the studies of a suite and their approximate duration, and run nothing");
     app.add_flag("--list-exact", options.list_exact, "print the closed forms that exact:NAME knows");
@@ -171,7 +177,9 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
     add_study_options(app, options, texts, suite);
     if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return end;
     options.scene = program::file_or_installed(options.scene);
-    options.suite = app.count("--suite") > 0;
+    options.suite = app.count("--suite") > 0, options.govern = app.count("--govern") > 0;
+    if (options.govern && (options.suite || !texts.vary.empty() || !texts.algorithms.empty() || !texts.swaps.empty()))
+        return ParseEnd{2, "plab-study: --govern takes its levels from the governor: leave --suite, --vary, --algorithm and --swap out\n"};
     if (options.suite && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite has its own scenes: leave SCENE out\n"};
     if (options.suite) options.scene = suite.empty() ? usual_suite() : suite;
     if (options.suite && options.scene.empty())

@@ -1,6 +1,7 @@
 // Governors: which level a component gets, why, and that a replay decides the same.
 #include <algorithm>
 
+#include "simulation/snapshot/compare.h"
 #include "support/scene.h"
 #include "support/text.h"
 
@@ -221,8 +222,7 @@ TEST_CASE("a budget of time: what was measured is an input, and with the same in
                                             kLadder + "\" budget=\"1e-9\" every=\"0.05\" dwell=\"0\"/>");
     Scene live(scene), again(scene);
     REQUIRE_MESSAGE(live.loaded(), live.error());
-    // Only a program that serves components measures for them.
-    live.simulation().read_requests_with([](const auto&, const auto&, const auto&) -> Result<Request> { return reason("reads nothing"); });
+    live.simulation().let_measure(true);
     int measurements = 0;
     for (int k = 0; k < 120; ++k)
     {
@@ -240,4 +240,112 @@ TEST_CASE("a budget of time: what was measured is an input, and with the same in
     CHECK(measurements >= 8);
     CHECK(std::get<std::int64_t>(live.get("lod", "given_up")) == 3);  // nothing fits into a nanosecond
     CHECK(algorithm(live, "near.solver") == "Solver/SemiImplicitEuler");
+}
+
+namespace
+{
+
+/// A mass on a spring, whose error depends on the solver, under a governor by error.
+std::string spring_under_error(const std::string& more)
+{
+    return "<component id=\"ball\" type=\"Shape/Sphere\" radius=\"0.1\"/><component id=\"post\" type=\"State/Static\"/>"
+           "<component id=\"bob\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" position=\"1.5 0 0\" linear_velocity=\"0 2 0\" "
+           "solver=\"Solver/SemiImplicitEuler\"/>"
+           "<component id=\"spring\" type=\"Constraint/SpringDamper\" a=\"post\" b=\"bob\" length=\"1\" stiffness=\"40\"/>" +
+           (more.empty() ? std::string()
+                         : std::string("<component id=\"lod\" type=\"Governor/Error\" watches=\"bob.solver\" levels=\"") + kLadder +
+                               "\" interval=\"0.25\" every=\"0.05\" dwell=\"0\" " + more + "/>");
+}
+
+std::int64_t whole(const Scene& s, const std::string& id, const std::string& field) { return std::get<std::int64_t>(s.get(id, field)); }
+
+}  // namespace
+
+TEST_CASE("the cheapest level with an error below the bound: measured by trials that leave no trace, and true afterwards")
+{
+    Scene loose(spring_under_error("bound=\"0.5\"")), tight(spring_under_error("bound=\"1e-5\"")),
+        tighter(spring_under_error("bound=\"1e-13\""));
+    REQUIRE_MESSAGE(loose.loaded(), loose.error());
+    Scene plain(spring_under_error(""));
+    loose.run(1), plain.run(1);
+    CHECK(loose.vec("bob", "position") == plain.vec("bob", "position"));
+    CHECK(whole(loose, "lod", "measured") > 0);
+    CHECK(algorithm(loose, "bob.solver") == "Solver/SemiImplicitEuler");
+    tighter.step();
+    CHECK(algorithm(tighter, "bob.solver") == "Solver/DormandPrince54");
+    Scene exact(spring_under_error(""));
+    REQUIRE(exact.ask(SwapOperation{"bob.solver", "Solver/DormandPrince54", {}}).done);
+    tight.run(0.25), exact.run(0.25);
+    CHECK(algorithm(tight, "bob.solver") == "Solver/RungeKutta4");
+    CHECK(test::distance(tight.vec("bob", "position"), exact.vec("bob", "position")) < 1e-5);
+    const LevelInfo told = level(tight.simulation().levels().levels(), tight, "bob.solver");
+    CHECK(told.error_unit == "m");
+    CHECK(told.error > 0);
+    CHECK(told.error < 1e-5);
+    CHECK(told.next_look > tight.simulation().time());
+    CHECK(told.reason.find("of 1e-05 m in 0.25 s, confidence") != std::string::npos);
+}
+
+/// A trial copies what it shares with a snapshot, so a governor must not keep what belongs to the world.
+TEST_CASE("a run that measures errors continues from a snapshot as if there had been no interruption, whoever takes snapshots meanwhile")
+{
+    const std::string scene = row_of_bodies(std::string("<component id=\"lod\" type=\"Governor/Error\" watches=\"*.solver\" levels=\"") +
+                                                kLadder + "\" bound=\"1e-3\" every=\"0.05\" dwell=\"0.1\"/>",
+                                            "<component id=\"weight\" type=\"Field/Gravity\" between=\"*\"/>");
+    Scene run(scene);
+    REQUIRE_MESSAGE(run.loaded(), run.error());
+    for (int from = 0; from < 240; from += 60)
+    {
+        const Snapshot begin = run.simulation().capture();
+        std::vector<Snapshot> course;
+        for (int k = 0; k < 60; ++k) run.step(), course.push_back(run.simulation().capture());
+        Scene twin(scene);
+        REQUIRE(twin.simulation().restore(begin).ok());
+        for (int k = 0; k < 60; ++k)
+        {
+            (void)twin.simulation().capture();
+            twin.step();
+            const auto difference = compare(course[static_cast<std::size_t>(k)], twin.simulation().capture());
+            REQUIRE_MESSAGE(!difference, "from step ", from, ", after ", k, ": ", difference->text());
+        }
+    }
+    CHECK(whole(run, "lod", "measured") > 10);
+}
+
+TEST_CASE("a budget is spent on what is seen largest, and saved on what is seen smallest; what is given up is told")
+{
+    Scene s(row_of_bodies(std::string("<component id=\"lod\" type=\"Governor/Budget\" watches=\"*.solver\" levels=\"") + kLadder +
+                          "\" budget=\"1e-3\" every=\"0.05\" dwell=\"0\"/>"));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    constexpr double kCost[] = {1e-4, 2e-4, 4e-4};  // s, of a step with all components at the level
+    const auto run = [&](int steps)
+    {
+        for (int k = 0; k < steps; ++k)
+        {
+            double cost = 0;
+            for (const LevelInfo& l : s.simulation().levels().levels()) cost += kCost[l.level] / 3;
+            if (k > 0) REQUIRE(s.ask(SetOperation{"lod", "step_cost", Value(cost)}).done);
+            s.step();
+        }
+    };
+    run(1);
+    CHECK(whole(s, "lod", "given_up") == 3);  // nothing is known of costs yet
+    CHECK(algorithm(s, "near.solver") == "Solver/SemiImplicitEuler");
+    run(240);
+    CHECK(whole(s, "lod", "given_up") == 0);
+    CHECK(algorithm(s, "far.solver") == "Solver/DormandPrince54");
+    REQUIRE(s.ask(SetOperation{"lod", "budget", Value(3e-4)}).done);
+    run(240);
+    CHECK(algorithm(s, "near.solver") == "Solver/DormandPrince54");
+    CHECK(algorithm(s, "middle.solver") == "Solver/RungeKutta4");
+    CHECK(algorithm(s, "far.solver") == "Solver/RungeKutta4");  // (4 + 2 + 2) / 3 of 1e-4 s
+    CHECK(whole(s, "lod", "given_up") == 2);
+    CHECK(s.real("lod", "spent") < 1);
+    CHECK(s.real("lod", "lost") > 0.1);
+    CHECK(s.real("lod", "lost") < 0.3);  // 0.04 + 0.012 of 0.25
+    move_eye(s, 38);                     // in front of the far one, and the others are behind
+    run(240);
+    CHECK(algorithm(s, "far.solver") == "Solver/DormandPrince54");
+    CHECK(algorithm(s, "near.solver") != "Solver/DormandPrince54");
+    CHECK(s.real("lod", "spent") < 1);
 }

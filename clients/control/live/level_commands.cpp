@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -25,20 +27,32 @@ struct LevelsOptions
     bool live = false;
 };
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 /// What a governor has to do with a component, as the catalogue states it.
 struct LevelOf
 {
     std::string id, governor, algorithm, reason, since;
     long level = -1, levels = 0;
+    double error = kUnknown;  ///< as the governor measured it, in this unit
+    std::string unit;
+    double next_look = kUnknown, every = 0;  ///< s
 };
+
+const wire::Parameter& parameter_of(const std::vector<wire::Parameter>& parameters, std::string_view name)
+{
+    static const wire::Parameter none;
+    const auto is_it = [&](const wire::Parameter& p) { return p.kind == "level" && p.name == name; };
+    const auto at = std::find_if(parameters.begin(), parameters.end(), is_it);
+    return at == parameters.end() ? none : *at;
+}
 
 const std::string& parameter(const std::vector<wire::Parameter>& parameters, std::string_view name)
 {
-    static const std::string none;
-    const auto is_it = [&](const wire::Parameter& p) { return p.kind == "level" && p.name == name; };
-    const auto at = std::find_if(parameters.begin(), parameters.end(), is_it);
-    return at == parameters.end() ? none : at->text;
+    return parameter_of(parameters, name).text;
 }
+
+double real(const std::string& text) { return text.empty() ? kUnknown : std::strtod(text.c_str(), nullptr); }
 
 std::optional<LevelOf> level_of(const std::string& id, const std::vector<wire::Parameter>& parameters)
 {
@@ -49,8 +63,31 @@ std::optional<LevelOf> level_of(const std::string& id, const std::vector<wire::P
     out.since = parameter(parameters, "level_since");
     out.level = std::strtol(parameter(parameters, "level").c_str(), nullptr, 10);
     out.levels = std::strtol(parameter(parameters, "levels").c_str(), nullptr, 10);
+    const wire::Parameter& error = parameter_of(parameters, "level_error");
+    out.error = real(error.text), out.unit = error.unit;
+    out.next_look = real(parameter(parameters, "level_next_look")), out.every = real(parameter(parameters, "level_every"));
     return out;
 }
+
+/// s, from now to when the governor looks at the component again; a governor that measures no errors looks at all of them at each multiple
+/// of `every`.
+double until_next_look(const LevelOf& level, const link::CatalogueContents& now)
+{
+    if (!now.metrics) return kUnknown;
+    const double time = now.metrics->time;
+    if (!std::isnan(level.next_look)) return std::max(0.0, level.next_look - time);
+    constexpr double kRounding = 1e-9;
+    return level.every > 0 ? (std::floor(time / level.every + kRounding) + 1) * level.every - time : kUnknown;
+}
+
+/// The error that the governor measured, otherwise what the component itself reports.
+std::pair<std::string, std::string> error_of(const LevelOf& level, const link::InteractionMetrics* m)
+{
+    if (!std::isnan(level.error)) return {number(level.error), level.unit};
+    return m ? std::pair(error_text(*m), error_unit(*m)) : std::pair<std::string, std::string>();
+}
+
+std::string seconds_text(double seconds) { return std::isnan(seconds) ? "" : number(std::round(seconds * 100) / 100) + " s"; }
 
 std::vector<LevelOf> levels_in(const link::CatalogueContents& now, const std::vector<std::string>& only)
 {
@@ -74,7 +111,9 @@ std::string place(const LevelOf& level)
     return level.level < 0 ? "-" : std::to_string(level.level + 1) + " of " + std::to_string(level.levels);
 }
 
-Json json_of(const LevelOf& level, const link::InteractionMetrics* m)
+Json json_of(double value) { return std::isnan(value) ? Json() : Json(value); }
+
+Json json_of(const LevelOf& level, const link::CatalogueContents& now, const link::InteractionMetrics* m)
 {
     return {{"id", level.id},
             {"governor", level.governor},
@@ -82,7 +121,10 @@ Json json_of(const LevelOf& level, const link::InteractionMetrics* m)
             {"levels", level.levels},
             {"algorithm", level.algorithm},
             {"reason", level.reason},
-            {"since", level.since.empty() ? Json() : Json(std::strtod(level.since.c_str(), nullptr))},
+            {"since", json_of(real(level.since))},
+            {"measured_error", json_of(level.error)},
+            {"measured_error_unit", level.unit},
+            {"until_next_look", json_of(until_next_look(level, now))},
             {"metrics", m != nullptr ? wire::json_of(*m) : Json()}};
 }
 
@@ -114,6 +156,7 @@ void print_levels(const Context& c, const link::CatalogueContents& now, const st
                  {"cost/step", Align::Right, Shrink::Never, 2},
                  {"error", Align::Right, Shrink::Never, 3},
                  {"unit", Align::Left, Shrink::Never, 3},
+                 {"next look", Align::Right, Shrink::Never, 2},
                  {"since", Align::Right, Shrink::Never, 1},
                  {"why", Align::Left, Shrink::End}});
     const std::size_t shown = all ? levels.size() : std::min(levels.size(), kMostOnTerminal);
@@ -121,8 +164,9 @@ void print_levels(const Context& c, const link::CatalogueContents& now, const st
     {
         const LevelOf& l = levels[k];
         const link::InteractionMetrics* const m = link::find_metrics(now.metrics, l.id);
-        table.add({l.id, place(l), l.algorithm, m ? cost_text(*m) : "", m ? error_text(*m) : "", m ? error_unit(*m) : "",
-                   l.since.empty() ? "" : number(std::strtod(l.since.c_str(), nullptr)) + " s", l.reason});
+        const auto [error, unit] = error_of(l, m);
+        table.add({l.id, place(l), l.algorithm, m ? cost_text(*m) : "", error, unit, seconds_text(until_next_look(l, now)),
+                   seconds_text(real(l.since)), l.reason});
     }
     c.console.say("");
     table.print(c.console);
@@ -145,7 +189,7 @@ Exit run_levels(Context& c, const LevelsOptions& o)
         if (c.settings.json)
         {
             Json list = Json::array();
-            for (const LevelOf& l : levels) list.push_back(json_of(l, link::find_metrics(now.metrics, l.id)));
+            for (const LevelOf& l : levels) list.push_back(json_of(l, now, link::find_metrics(now.metrics, l.id)));
             print(c.console,
                   {{"server", c.session().server()}, {"step", now.metrics ? Json(now.metrics->step) : Json()}, {"levels", list}});
         }
@@ -184,14 +228,16 @@ Exit run_why(Context& c, const std::string& id)
     const link::InteractionMetrics* const m = link::find_metrics(now.metrics, id);
     if (c.settings.json)
     {
-        print(c.console, json_of(*level, m));
+        print(c.console, json_of(*level, now, m));
         return Exit::Done;
     }
     Lines lines;
     lines.add("component", id), lines.add("algorithm", level->algorithm), lines.add("governor", level->governor);
     lines.add("level", place(*level) + ", counted from the cheapest");
     lines.add("why", level->reason.empty() ? "it has not been changed since the run began" : level->reason);
-    if (!level->since.empty()) lines.add("since", number(std::strtod(level->since.c_str(), nullptr)) + " s");
+    if (!level->since.empty()) lines.add("since", seconds_text(real(level->since)));
+    if (!std::isnan(level->error)) lines.add("measured", number(level->error) + " " + level->unit + ", against the next finer level");
+    if (const double next = until_next_look(*level, now); !std::isnan(next)) lines.add("next look", "in " + seconds_text(next));
     if (m != nullptr)
         lines.add("cost", cost_in_words(*m)), lines.add("error", error_text(*m) + " " + error_unit(*m) + "; " + error_meaning(*m));
     lines.print(c.console);

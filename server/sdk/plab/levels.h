@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,8 +43,17 @@ struct GovernedComponent
     double since = 0;                    ///< s, when it got this level
     Vec3 center;                         ///< W, m: of a ball around all objects on which it acts
     double radius = 0;                   ///< m, of that ball; infinite: it acts on something without bounds
-    double speed = 0;                    ///< m/s, the largest speed of a point of these objects
+    double speed = 0;                    ///< m/s, the largest speed of their centres: a turn does not take an object out of the ball
     std::uint32_t objects = 0;           ///< their number; static ones do not count
+};
+
+/// How far the objects of a component depart, within an interval, from where the next finer level of the ladder would take them. The
+/// largest one of all objects counts. NaN: it cannot be told, or no object has it.
+struct LevelError
+{
+    double distance = std::numeric_limits<double>::quiet_NaN();  ///< m, of a point of a body
+    double angle = std::numeric_limits<double>::quiet_NaN();     ///< rad: the turn of a body, or of a shaft
+    double power = std::numeric_limits<double>::quiet_NaN();     ///< J/s, of the kinetic energy of all together
 };
 
 /// What Phase::Decide offers to governors. Each row has a ladder and a list of components, which the host derives from the fields `watches`
@@ -57,9 +67,12 @@ public:
     virtual std::span<const GovernedComponent> watched(Row row) = 0;
     virtual std::span<const Viewpoint> viewpoints() const = 0;
     virtual std::string_view id_of(std::uint32_t component) const = 0;
-    /// m (or rad, if it acts on shafts only): the distance by which its objects depart within `interval` (s) at a level from where the most
-    /// exact level of the ladder takes them. Measured by trial steps from the present state, which change nothing. NaN: it cannot be told.
-    virtual double error(Row row, std::size_t index, std::int32_t level, double interval) = 0;
+    /// Measured by a trial step with this level and one with the next finer one, from the present state, which they do not change. What
+    /// differs then is taken to add up over `interval` (s). The most exact level has no error.
+    virtual LevelError error(Row row, std::size_t index, std::int32_t level, double interval) = 0;
+    /// Tells observers what is known of a component: the error of the level that it is going to have, in the governor's unit, and when it
+    /// is looked at again (s). Not state: a decision cannot depend on it.
+    virtual void tell(Row row, std::size_t index, double error, std::string_view unit, double next_look) = 0;
     /// Asks for another level, from the coming step on. `reason`: in words, for people.
     virtual void choose(Row row, std::size_t index, std::int32_t level, std::string reason) = 0;
 };

@@ -14,7 +14,7 @@ namespace plab::simulation
 class LevelBook::Desk final : public LevelControl, public ViewpointSink, public RequestSink
 {
 public:
-    Desk(const LevelBook& book, const MeasureError& error) : book_(book), error_(error) { viewpoints_.clear(), looked_.clear(); }
+    Desk(LevelBook& book, const MeasureError& error) : book_(book), error_(error) { book_.viewpoints_.clear(), book_.looked_.clear(); }
 
     /// The calls that follow come from this component.
     void serve(std::uint32_t component);
@@ -28,33 +28,28 @@ public:
     // LevelControl
     std::int32_t levels(Row row) const override;
     std::span<const GovernedComponent> watched(Row row) override;
-    std::span<const Viewpoint> viewpoints() const override { return viewpoints_; }
-    std::string_view id_of(std::uint32_t component) const override { return book_.world_.id_of(component); }
-    double error(Row row, std::size_t index, std::int32_t level, double interval) override;
+    std::span<const Viewpoint> viewpoints() const override { return book_.viewpoints_; }
+    std::string_view id_of(std::uint32_t component) const override;
+    LevelError error(Row row, std::size_t index, std::int32_t level, double interval) override;
+    void tell(Row row, std::size_t index, double error, std::string_view unit, double next_look) override;
     void choose(Row row, std::size_t index, std::int32_t level, std::string reason) override;
 
     // RequestSink
     void ask(Row row, std::string_view verb, std::string_view target, std::string_view argument, std::string reason) override;
 
 private:
-    const LevelBook& book_;
+    LevelBook& book_;
     const MeasureError& error_;
     std::uint32_t by_ = kNoIndex;
     const Governor* governor_ = nullptr;  ///< null: the component watches nothing
     bool chose_ = false;                  ///< the last decision has choices of this component
-    // Kept from step to step, so that a look at a scene in which nothing changes needs no memory.
-    static thread_local std::vector<Viewpoint> viewpoints_;
-    static thread_local std::vector<GovernedComponent> looked_;
     std::vector<Decision> decisions_;
 };
-
-thread_local std::vector<Viewpoint> LevelBook::Desk::viewpoints_;
-thread_local std::vector<GovernedComponent> LevelBook::Desk::looked_;
 
 void LevelBook::Desk::serve(std::uint32_t component)
 {
     by_ = component, governor_ = nullptr, chose_ = false;
-    looked_.clear();
+    book_.looked_.clear();
     for (const Governor& g : book_.governors_)
         if (g.component == component) governor_ = &g;
 }
@@ -68,8 +63,8 @@ void LevelBook::Desk::refuse(const std::string& why, EventSink& events, double t
 
 void LevelBook::Desk::add(Row /*row*/, const Viewpoint& viewpoint)
 {
-    viewpoints_.push_back(viewpoint);
-    viewpoints_.back().component = by_;
+    book_.viewpoints_.push_back(viewpoint);
+    book_.viewpoints_.back().component = by_;
 }
 
 std::int32_t LevelBook::Desk::levels(Row /*row*/) const
@@ -79,19 +74,34 @@ std::int32_t LevelBook::Desk::levels(Row /*row*/) const
 
 std::span<const GovernedComponent> LevelBook::Desk::watched(Row /*row*/)
 {
-    if (governor_ && looked_.empty())
-        for (const Watched& w : governor_->watched) looked_.push_back(book_.look(*governor_, w));
-    return looked_;
+    if (governor_ && book_.looked_.empty())
+        for (const Watched& w : governor_->watched) book_.looked_.push_back(book_.look(*governor_, w));
+    return book_.looked_;
 }
 
-double LevelBook::Desk::error(Row /*row*/, std::size_t index, std::int32_t level, double interval)
+std::string_view LevelBook::Desk::id_of(std::uint32_t component) const
 {
-    assert(governor_ && index < governor_->watched.size());
+    return component < book_.ids_.size() ? std::string_view(book_.ids_[component]) : std::string_view();
+}
+
+LevelError LevelBook::Desk::error(Row /*row*/, std::size_t index, std::int32_t level, double interval)
+{
+    assert(governor_ && index < governor_->watched.size() && level >= 0);
     const auto& levels = governor_->ladder.levels;
     const auto at = static_cast<std::size_t>(level);
-    if (at >= levels.size() || !error_) return std::numeric_limits<double>::quiet_NaN();
-    if (at + 1 == levels.size()) return 0;
-    return error_(governor_->watched[index].component, &levels[at], &levels.back(), interval);
+    if (at + 1 == levels.size()) return {0, 0, 0};
+    if (at >= levels.size() || !error_) return {};
+    return error_(governor_->watched[index].component, &levels[at], &levels[at + 1], interval);
+}
+
+void LevelBook::Desk::tell(Row /*row*/, std::size_t index, double error, std::string_view unit, double next_look)
+{
+    assert(governor_ && index < governor_->watched.size());
+    const std::uint32_t component = governor_->watched[index].component;
+    Told& told = book_.told_[component];
+    told.by = by_, told.error = error, told.next_look = next_look;
+    told.unit = unit;
+    book_.changed_.push_back(component);
 }
 
 void LevelBook::Desk::choose(Row /*row*/, std::size_t index, std::int32_t level, std::string reason)
@@ -112,18 +122,24 @@ void LevelBook::Desk::ask(Row /*row*/, std::string_view verb, std::string_view t
     d.reasons.push_back(std::move(reason));
 }
 
-std::vector<Decision> LevelBook::decide(Tick tick, double time, double dt, const MeasureError& error, EventSink& events)
+world::CommandCall LevelBook::call_at(Tick tick, double time, double dt, Desk& desk) const
 {
-    Desk desk(*this, error);
     world::CommandCall call;
     call.context.time = time, call.context.dt = dt, call.context.tick = tick, call.context.seed = world_.scene().settings.seed;
-    call.context.events = &events;
     world::HostTables& host = world_.host();
     call.arguments.bodies = &host.bodies, call.arguments.shafts = &host.shafts, call.arguments.quantities = &host.quantities;
     call.arguments.shapes = &host.shapes;
     const world::WorldLookup lookup(world_, structure_);
     call.context.lookup = &lookup;
     call.arguments.viewpoints = &desk, call.arguments.levels = &desk, call.arguments.requests = &desk;
+    return call;
+}
+
+std::vector<Decision> LevelBook::decide(Tick tick, double time, double dt, const MeasureError& error, EventSink& events)
+{
+    Desk desk(*this, error);
+    world::CommandCall call = call_at(tick, time, dt, desk);
+    call.context.events = &events;
     deciding_ = true;
     for (const Phase phase : {Phase::View, Phase::Decide})
         for (const Block& block : stepper_.schedule().of(phase))
@@ -141,6 +157,24 @@ std::vector<Decision> LevelBook::decide(Tick tick, double time, double dt, const
         }
     deciding_ = false;
     return desk.take();
+}
+
+std::vector<Viewpoint> LevelBook::viewpoints(Tick tick, double time, double dt)
+{
+    const MeasureError none;
+    Desk desk(*this, none);
+    world::CommandCall call = call_at(tick, time, dt, desk);
+    for (const Block& block : stepper_.schedule().of(Phase::View))
+    {
+        const world::Table& table = *world_.tables()[block.table];
+        call.select(table);
+        for (const Row& row : block.rows)
+        {
+            desk.serve(table.component_of_row()[row]);
+            (void)call.run(*block.command, Rows(&row, 1));
+        }
+    }
+    return viewpoints_;
 }
 
 }  // namespace plab::simulation

@@ -132,7 +132,7 @@ Result<void> LevelBook::rebuild()
     std::vector<Governor> before;
     before.swap(governors_);
     std::vector<std::uint32_t> watcher(world_.components().size(), kNoIndex);
-    changes_.resize(world_.components().size());
+    changes_.resize(world_.components().size()), told_.resize(world_.components().size());
     for (const std::uint32_t i : stepper_.components())
     {
         const world::Component& c = world_.component(i);
@@ -154,8 +154,10 @@ Result<void> LevelBook::rebuild()
     }
     watcher_.resize(watcher.size(), kNoIndex);
     for (const std::uint32_t i : world_.in_id_order())
-        if (watcher_[i] != watcher[i]) reassigned_.push_back(i);
+        if (watcher_[i] != watcher[i]) changed_.push_back(i);
     watcher_ = std::move(watcher);
+    ids_.resize(governors_.empty() ? 0 : watcher_.size());
+    for (std::uint32_t i = 0; i < ids_.size(); ++i) ids_[i] = world_.id_of(i);
     const world::HostTables& host = world_.host();
     radius_of_shaft_.assign(governors_.empty() ? 0 : host.shafts.size(), 0.0);
     for (std::size_t s = 0; s < radius_of_shaft_.size(); ++s)
@@ -183,8 +185,8 @@ GovernedComponent LevelBook::look(const Governor& governor, const Watched& watch
         const Vec3 p = place(r);
         const double size = radius(r);
         for (int k = 0; k < 3; ++k) least[k] = std::min(least[k], p[k] - size), most[k] = std::max(most[k], p[k] + size);
-        const double speed = r.facet == Facet::Body ? length(bodies.velocity[r.index]) + size * length(bodies.angular_velocity[r.index])
-                                                    : size * std::fabs(shafts.speed[r.index]);
+        // A turn does not take it out of the ball around it.
+        const double speed = r.facet == Facet::Body ? length(bodies.velocity[r.index]) : 0.0;
         out.speed = std::max(out.speed, speed);
     }
     if (watched.objects.empty()) return out;
@@ -225,6 +227,9 @@ LevelInfo LevelBook::info(const Governor& g, const Watched& w) const
     out.text = out.level < 0 ? world_.type_of(w.component)->info.name : g.ladder.levels[static_cast<std::size_t>(out.level)].text;
     const Change& change = changes_[w.component];
     if (change.id == world_.id_of(w.component)) out.reason = change.reason, out.since = change.since;
+    out.every = real_of(world_, g.component, "every");
+    const Told& told = told_[w.component];
+    if (told.by == g.component) out.error = told.error, out.error_unit = told.unit, out.next_look = told.next_look;
     return out;
 }
 

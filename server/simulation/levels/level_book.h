@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,16 +40,20 @@ struct LevelInfo
 {
     std::uint32_t component = kNoIndex, governor = kNoIndex;
     std::int32_t level = -1, levels = 0;
-    std::string text;    ///< of the level
-    std::string reason;  ///< of the last change; empty: it has not been changed in this run
-    double since = 0;    ///< s, of that change
+    std::string text;                                             ///< of the level
+    std::string reason;                                           ///< of the last change; empty: it has not been changed in this run
+    double since = 0;                                             ///< s, of that change
+    double error = std::numeric_limits<double>::quiet_NaN();      ///< as its governor measured it last; NaN: it measures none
+    double next_look = std::numeric_limits<double>::quiet_NaN();  ///< s: when its governor measures it again; NaN: at its next look
+    double every = 0;                                             ///< s, from one look of its governor to the next
+    std::string error_unit;
 };
 
 class LevelBook
 {
 public:
     /// Measures how far apart two levels of a component are after a step: see LevelControl::error().
-    using MeasureError = std::function<double(std::uint32_t component, const Level* level, const Level* finest, double interval)>;
+    using MeasureError = std::function<LevelError(std::uint32_t component, const Level* level, const Level* finer, double interval)>;
 
     LevelBook(world::World& world, Stepper& stepper);
     ~LevelBook();
@@ -62,6 +67,8 @@ public:
 
     /// Asks all components that decide. `time`: s, of the coming step's start.
     std::vector<Decision> decide(Tick tick, double time, double dt, const MeasureError& error, EventSink& events);
+    /// From where the viewers of the scene look at this boundary.
+    std::vector<Viewpoint> viewpoints(Tick tick, double time, double dt);
     /// What was carried out, for observers.
     void note_change(std::uint32_t component, std::string reason, double time);
 
@@ -73,8 +80,8 @@ public:
     std::vector<LevelInfo> levels() const;
     /// Of one component; empty: no governor watches it.
     std::optional<LevelInfo> level(std::uint32_t component) const;
-    /// Components that have come under a governor, or have left it, since the last call.
-    std::vector<std::uint32_t> take_reassigned() { return std::exchange(reassigned_, {}); }
+    /// Components that have come under a governor, or have left it, or of which it told something, since the last call.
+    std::vector<std::uint32_t> take_changed() { return std::exchange(changed_, {}); }
     bool watches_anything() const { return !governors_.empty(); }
     bool is_governor(std::uint32_t component) const;
 
@@ -96,8 +103,16 @@ private:
         std::string id, reason;
         double since = 0;
     };
+    /// What a governor told of a component that it watches.
+    struct Told
+    {
+        std::uint32_t by = kNoIndex;
+        double error = 0, next_look = 0;
+        std::string unit;
+    };
     class Desk;
 
+    world::CommandCall call_at(Tick tick, double time, double dt, Desk& desk) const;
     Result<void> read_governor(Governor& governor) const;
     Result<void> watch(Governor& governor, std::vector<std::uint32_t>& watcher) const;
     void find_parts();
@@ -107,12 +122,18 @@ private:
 
     world::World& world_;
     Stepper& stepper_;
-    std::vector<Governor> governors_;                  ///< in id order
-    std::vector<Change> changes_;                      ///< by directory index
-    std::vector<std::uint32_t> watcher_, reassigned_;  ///< governor of each component, by directory index; components
-    bool deciding_ = false;                            ///< trials exchange components and put them back meanwhile
-    std::uint64_t structure_ = 0;                      ///< counts the calls of rebuild()
+    std::vector<Governor> governors_;  ///< in id order
+    std::vector<Change> changes_;      ///< by directory index
+    std::vector<Told> told_;           ///< by directory index
+    /// By directory index: what the world returns is not valid any more after a trial, which may copy the directory that a snapshot shares.
+    std::vector<std::string> ids_;
+    std::vector<std::uint32_t> watcher_, changed_;  ///< governor of each component, by directory index; components
+    bool deciding_ = false;                         ///< trials exchange components and put them back meanwhile
+    std::uint64_t structure_ = 0;                   ///< counts the calls of rebuild()
     std::vector<double> radius_of_shaft_;
+    // Of a Desk, kept from step to step, so that a look at a scene in which nothing changes needs no memory.
+    std::vector<Viewpoint> viewpoints_;
+    std::vector<GovernedComponent> looked_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> owner_of_part_;  ///< a component, and one that names it in a role; sorted
 };
 

@@ -25,6 +25,13 @@ public:
     virtual Result<void> rewind(double time) = 0;
 };
 
+/// What the first step with a request gave, for all objects that the request can affect.
+struct FirstStep
+{
+    std::vector<ObjectMotion> motion;  ///< bodies first, each in the order of host rows
+    double energy = 0;                 ///< J, kinetic and stored
+};
+
 /// A transaction: back up, apply, try, then commit or roll back.
 ///
 /// First everything that the operations can change is saved (saved_state.h): for an exchange, the components that it names. If the request
@@ -44,9 +51,8 @@ public:
     Transaction(Run& run, RunContext& context, RunOperations& operations, const Request& request);
     /// Applies, tries and commits the request. On any error everything is as it was before.
     Reply run();
-    /// The motion of all objects that the request can affect, at the end of its first step. The request is undone again, and leaves no
-    /// trace.
-    Result<std::vector<ObjectMotion>> first_step();
+    /// Makes the first step with the request, and undoes both: they leave no trace.
+    Result<FirstStep> first_step();
 
 private:
     Result<void> apply(const Operation& operation);

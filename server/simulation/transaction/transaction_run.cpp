@@ -174,13 +174,13 @@ void Transaction::run_on_scene(bool swaps)
     write_clock(clock);
 }
 
-Result<std::vector<ObjectMotion>> Transaction::first_step()
+Result<FirstStep> Transaction::first_step()
 {
     if (auto expanded = expand_patterns(); !expanded) return expanded.errors();
     saved_.begin(*run_, changes_contacts());
     TrialScope scope(run_->world());
     mark_touched(scope);
-    std::vector<ObjectMotion> motion;
+    FirstStep out;
     apply_all();
     // The scene's stepper is not rebuilt: an exchange within a family leaves roles and groups as they are.
     if (reply_.errors.empty())
@@ -191,11 +191,11 @@ Result<std::vector<ObjectMotion>> Transaction::first_step()
         TrialResult result = Trial(run_->world(), run_->stepper(), next_step()).run(scope, {}, deadline, context_->progress, 0);
         if (result.given_up) reply_.errors = {reason("the trial was interrupted")};
         if (!result.failure.empty()) reply_.errors = {reason(result.failure)};
-        motion = std::move(result.motion);
+        out.motion = std::move(result.motion), out.energy = result.outcome.energy;
     }
     saved_.restore_world(prepared_);
     if (!reply_.errors.empty()) return reply_.errors;
-    return motion;
+    return out;
 }
 
 }  // namespace plab::simulation

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/recording/analysis/curves.h"
+#include "control/recording/analysis/levels.h"
 #include "control/recording/analysis/report_tables.h"
 #include "control/recording/analysis/summary.h"
 #include "figures/page.h"
@@ -138,6 +139,15 @@ void add_interactions(Page& page, const Log& log, const std::vector<Segment>& se
     add_segments(page, segments);
 }
 
+void add_levels(Page& page, const Log& log)
+{
+    std::vector<Curve> levels = levels_over_time(log);
+    if (levels.empty()) return;
+    page.heading("Levels of detail");
+    page.figure(draw(chart_of("Levels of detail", std::move(levels), {})),
+                "How many components each governor had at each level of its ladder. The reasons are in the events `level.changed`.");
+}
+
 void add_pace(Page& page, const Log& log, const std::vector<figures::Moment>& moments)
 {
     std::vector<Curve> pace = curves_of_scene(log, {{"real_time_factor", "real-time factor"}});
@@ -206,6 +216,7 @@ std::string report_html(const Log& log, const Summary& summary)
     page.list(findings(summary, segments));
     add_energy(page, log, moments);
     add_interactions(page, log, segments, moments);
+    add_levels(page, log);
     add_pace(page, log, moments);
     add_requests(page, log);
     add_events(page, log, summary);

@@ -1,0 +1,202 @@
+#include "by_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sight.h"
+
+namespace plab::governors
+{
+namespace
+{
+
+constexpr double kHidden = 0;
+
+Entries::iterator place_of(Entries& next, std::string_view id)
+{
+    return std::lower_bound(next.begin(), next.end(), id, [](const Entry& e, std::string_view name) { return e.name < name; });
+}
+
+/// The factor by which a distance (m) appears in a picture (pixels), for the viewer to whom it is largest; kHidden: nobody can see the
+/// component within `look_ahead` (s).
+double pixels_per_metre(const GovernedComponent& g, std::span<const Viewpoint> eyes, double look_ahead, double margin)
+{
+    constexpr double kNearest = 0.1;  // m: what is nearer fills the picture
+    double most = kHidden;
+    for (const Viewpoint& eye : eyes)
+    {
+        const double reach = look_ahead * (length(eye.velocity) + g.speed);
+        if (!is_in_view(widened(eye, margin), {g.center, g.radius + reach})) continue;
+        const double distance = std::max(kNearest, distance_to(eye, {g.center, g.radius}) - reach);
+        most = std::max(most, 0.5 * eye.height / std::tan(0.5 * eye.field_of_view) / distance);
+    }
+    return most;
+}
+
+double pick(const LevelError& error, const std::string& unit, double scale)
+{
+    if (unit == "rad") return error.angle;
+    if (unit == "W") return error.power;
+    return unit == "pixels" ? scale * error.distance : error.distance;
+}
+
+/// One component in one look.
+class Measurement
+{
+public:
+    Measurement(Row row, std::size_t index, double scale, ErrorRows& governors, LevelControl& control)
+        : row_(row), index_(index), scale_(scale), governors_(governors), control_(control)
+    {
+    }
+    /// In the governor's unit. NaN: it cannot be told.
+    double at(std::int32_t level)
+    {
+        const double e = pick(control_.error(row_, index_, level, governors_.interval[row_]), governors_.unit[row_], scale_);
+        ++governors_.measured[row_];
+        governors_.unknown[row_] += std::isnan(e) ? 1 : 0;
+        return e;
+    }
+    /// What cannot be told is taken for too much.
+    bool fits(double error, double reserve = 0) const { return error * governors_.safety[row_] * (1 + reserve) <= governors_.bound[row_]; }
+
+private:
+    Row row_;
+    std::size_t index_;
+    double scale_;
+    ErrorRows& governors_;
+    LevelControl& control_;
+};
+
+void judge(bool held, Row row, ErrorRows& governors)
+{
+    constexpr double kGain = 0.25, kMost = 1e4;
+    const double c = governors.target[row];
+    ++governors.judged[row], governors.held[row] += held ? 1 : 0;
+    governors.safety[row] = std::clamp(governors.safety[row] * std::exp(kGain * (held ? c - 1 : c)), 1.0, kMost);
+}
+
+/// Rule of succession (Laplace): nothing is certain after no or few trials.
+double confidence_of(std::int64_t held, std::int64_t judged) { return static_cast<double>(held + 1) / static_cast<double>(judged + 2); }
+
+/// Measures a component, chooses its level, and says when it is measured again.
+void measure(const StepContext& context, Row row, std::size_t k, double scale, Look& look, ErrorRows& governors, LevelControl& control)
+{
+    const GovernedComponent& g = look.watched()[k];
+    const std::string_view id = control.id_of(g.component);
+    const double bound = governors.bound[row], every = governors.watch.every[row];
+    Entries& next = governors.next[row];
+    auto entry = place_of(next, id);
+    const bool known = entry != next.end() && entry->name == id && g.level >= 0;
+    Measurement of(row, k, scale, governors, control);
+    std::int32_t level = known ? g.level : 0;
+    double error = of.at(level);
+    if (known && level < look.finest()) judge(error <= bound, row, governors);
+    bool finer = false;
+    for (; level < look.finest() && !of.fits(error); finer = true) error = of.at(++level);
+    if (known && !finer && level > 0 && look.rested(k))
+        if (const double cheaper = of.at(level - 1); of.fits(cheaper, governors.watch.hysteresis[row])) --level, error = cheaper;
+    const bool waits = level < g.level && !look.rested(k);
+    if (waits) level = g.level, error = of.at(level);
+    if (look.may_choose(k, level))
+        (void)look.choose(k, level,
+                          "error " + brief(error) + " of " + brief(bound) + " " + governors.unit[row] + " in " +
+                              brief(governors.interval[row]) + " s, confidence " + brief(governors.confidence[row]));
+    if (!std::isnan(error)) governors.worst[row] = std::max(governors.worst[row], error);
+    // Far below the bound it is measured less often.
+    constexpr double kLongest = 16;
+    const double likely = error * governors.safety[row];
+    const double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, kLongest) : std::isnan(likely) ? 1 : kLongest;
+    const double then = context.time + every * (waits ? 1 : longer);
+    entry = place_of(next, id);
+    if (entry != next.end() && entry->name == id)
+        entry->value = then;
+    else
+        next.insert(entry, {std::string(id), then});
+    control.tell(row, k, error, governors.unit[row], then);
+}
+
+/// Nobody can see how wrong it is.
+void leave_unseen(Row row, std::size_t k, Look& look, ErrorRows& governors, LevelControl& control)
+{
+    Entries& next = governors.next[row];
+    const std::string_view id = control.id_of(look.watched()[k].component);
+    if (const auto entry = place_of(next, id); entry != next.end() && entry->name == id) next.erase(entry);
+    if (look.may_choose(k, 0)) (void)look.choose(k, 0, "out of every viewer's sight");
+}
+
+/// Those that are due, those first that have waited longest. (s, place in the look.)
+using Due = std::vector<std::pair<double, std::size_t>>;
+
+}  // namespace
+
+void ErrorRows::describe(Schema& schema)
+{
+    watch.describe(schema);
+    schema.param(bound, "bound", unit::one, "error that is allowed within `interval`, against the next finer level, in the unit `unit`")
+        .positive();
+    schema
+        .param(unit, "unit", unit::one,
+               "`m`: a point of a body; `rad`: a body or a shaft; `W`: energy made or lost in a second; `pixels`: as viewers see it")
+        .or_else("m")
+        .one_of({"m", "rad", "W", "pixels"});
+    schema.param(interval, "interval", unit::second, "time within which the error is counted").or_else(0.25).positive();
+    schema.param(target, "target", unit::one, "share of the measurements that shall find the error still below the bound")
+        .or_else(0.95)
+        .at_least(0.5)
+        .at_most(0.999);
+    schema.param(looks, "looks", unit::one, "components that are measured at most in one look").or_else(8).positive();
+    schema.param(look_ahead, "look_ahead", unit::second, "of `pixels`: what may come into view within this time counts as seen")
+        .or_else(0.5)
+        .not_negative();
+    schema.param(margin, "margin", unit::radian, "of `pixels`: what is outside of the picture by less than this angle counts as seen")
+        .or_else(0.15)
+        .not_negative();
+    schema.state(next, "next", unit::one, "when a component is measured again, s");
+    schema.state(safety, "safety", unit::one, "factor by which measured errors are taken to be larger").initially(1);
+    schema.state(judged, "judged", unit::one, "measurements of a level that was measured before");
+    schema.state(held, "held", unit::one, "those of them that found the error still below the bound");
+    schema.output(confidence, "confidence", unit::one, "with which a level's error is below the bound when it is measured again");
+    schema.output(worst, "worst", unit::one,
+                  "the largest error of the last look in which something was measured, of the levels that were kept");
+    schema.output(measured, "measured", unit::one, "number of errors that were measured");
+    schema.output(unknown, "unknown", unit::one, "number of those that could not be told");
+}
+
+void keep_error(const StepContext& context, Row row, ErrorRows& governors, LevelControl& control)
+{
+    if (!due(context, governors.watch.every[row])) return;
+    Look look(context, row, governors.watch, control);
+    governors.confidence[row] = confidence_of(governors.held[row], governors.judged[row]);
+    const bool by_sight = governors.unit[row] == "pixels";
+    Due waiting;
+    const auto scale_of = [&](std::size_t k) {
+        return by_sight ? pixels_per_metre(look.watched()[k], control.viewpoints(), governors.look_ahead[row], governors.margin[row]) : 1.0;
+    };
+    for (std::size_t k = 0; k < look.watched().size(); ++k)
+    {
+        const std::string_view id = control.id_of(look.watched()[k].component);
+        if (scale_of(k) == kHidden)
+        {
+            leave_unseen(row, k, look, governors, control);
+            continue;
+        }
+        const auto entry = place_of(governors.next[row], id);
+        const bool known = entry != governors.next[row].end() && entry->name == id;
+        const double at = known ? std::get<double>(entry->value) : 0;
+        if (at <= context.time + 1e-9 * std::max(1.0, context.time)) waiting.emplace_back(known ? at : -1, k);
+    }
+    if (waiting.empty()) return;
+    governors.worst[row] = 0;
+    std::sort(waiting.begin(), waiting.end());
+    const auto most = static_cast<std::size_t>(governors.looks[row]);
+    for (std::size_t n = 0; n < waiting.size(); ++n)
+    {
+        const std::size_t k = waiting[n].second;
+        if (n < most)
+            measure(context, row, k, scale_of(k), look, governors, control);
+        else if (by_sight && waiting[n].first < 0 && look.may_choose(k, look.finest()))
+            (void)look.choose(k, look.finest(), "it comes into view, and its error has not been measured yet");
+    }
+}
+
+}  // namespace plab::governors

@@ -1,0 +1,36 @@
+/// A governor that keeps an error below a bound, at the least cost.
+#pragma once
+
+#include "watch.h"
+
+namespace plab::governors
+{
+
+/// Governor/Error.
+struct ErrorRows
+{
+    WatchRows watch;
+    Column<double> bound;
+    Column<std::string> unit;  ///< of the bound: m, rad, W, pixels
+    Column<double> interval, target;
+    Column<std::int64_t> looks;
+    Column<double> look_ahead, margin;  ///< s, rad: of pixels, as those of Governor/Visibility
+    Column<Entries> next;               ///< s: when a component is measured again, by id
+    Column<double> safety;              ///< factor
+    Column<std::int64_t> judged, held;  ///< promises: see keep_error()
+    Column<double> confidence, worst;
+    Column<std::int64_t> measured, unknown;
+
+    void describe(Schema& schema);
+};
+
+/// Gives each component the cheapest level whose error within `interval`, measured by trial steps against the next finer level and
+/// multiplied by `safety`, is below the bound.
+///
+/// Keeping a level is a promise: its error will still be below the bound when it is measured again. The next measurement judges it. With
+/// the share c of promises that shall hold (`target`), a promise that held multiplies the safety factor by exp(-(1 - c) g), one that did
+/// not by exp(c g): the factor is at rest where the share is c. Source: Robbins and Monro, A stochastic approximation method, Ann. Math.
+/// Stat. 22 (1951): the estimate of a quantile.
+void keep_error(const StepContext& context, Row row, ErrorRows& governors, LevelControl& control);
+
+}  // namespace plab::governors

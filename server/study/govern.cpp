@@ -1,0 +1,282 @@
+#include "study/govern.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "simulation/simulation.h"
+#include "study/run.h"
+
+namespace plab::study
+{
+namespace
+{
+
+using simulation::LevelInfo;
+using simulation::Operation;
+using simulation::Simulation;
+
+Result<void> ask(Simulation& s, std::vector<Operation> operations)
+{
+    simulation::Request request;
+    request.trial.budget = simulation::TrialChoice::Budget::None;
+    request.operations = std::move(operations);
+    const simulation::Reply reply = s.carry_out_now(request);
+    if (!reply.done) return reply.errors;
+    return {};
+}
+
+Result<void> give_all(Simulation& s, const std::vector<std::string>& watched, const simulation::Level& level)
+{
+    std::vector<Operation> operations;
+    for (const std::string& id : watched) operations.emplace_back(simulation::SwapOperation{id, level.type, level.values});
+    return ask(s, std::move(operations));
+}
+
+/// A moving body in a run and in the reference.
+struct Pair
+{
+    std::uint32_t here = 0, there = 0;  ///< host rows
+};
+
+std::vector<Pair> pairs_of(const Simulation& one, const Simulation& other)
+{
+    std::vector<Pair> out;
+    for (const std::uint32_t i : one.world().in_id_order())
+    {
+        const world::Component& c = one.world().component(i);
+        if (c.facet != Facet::Body || !one.world().host().bodies.dynamic(c.host_index)) continue;
+        if (const std::uint32_t k = other.world().find(c.id); k != kNoIndex)
+            out.push_back({c.host_index, other.world().component(k).host_index});
+    }
+    return out;
+}
+
+/// Pixels in the picture of a viewer for each metre at p; 0: p is not in the picture.
+double pixels_per_metre(const Viewpoint& eye, const Vec3& p)
+{
+    constexpr double kNearest = 0.5;  // m
+    const Vec3 right = normalized(cross(eye.direction, eye.up)), up = cross(right, eye.direction), d = p - eye.position;
+    const double tall = std::tan(0.5 * eye.field_of_view), wide = tall * eye.width / eye.height, z = dot(d, eye.direction);
+    if (z < kNearest || std::fabs(dot(d, right)) > wide * z || std::fabs(dot(d, up)) > tall * z) return 0;
+    return 0.5 * eye.height / tall / z;
+}
+
+/// Sums of squares until mean() is called.
+void add_errors(Simulation& run, const Simulation& reference, GovernError& out)
+{
+    const Bodies &a = run.world().host().bodies, &b = reference.world().host().bodies;
+    const std::vector<Viewpoint> eyes = run.viewpoints();
+    for (const Pair& p : pairs_of(run, reference))
+    {
+        const Quat turn = conjugate(a.orientation[p.here]) * b.orientation[p.there];
+        const double angle = 2 * std::atan2(length(Vec3{turn.x, turn.y, turn.z}), std::fabs(turn.w));
+        const double radius = run.stepper().radius_of_body()[p.here];
+        const double apart = length(a.position[p.here] - b.position[p.there]) + (std::isfinite(radius) ? radius * angle : 0);
+        out.metres += apart * apart, ++out.bodies;
+        double scale = 0;
+        for (const Viewpoint& eye : eyes) scale = std::max(scale, pixels_per_metre(eye, a.position[p.here]));
+        if (scale == 0) continue;
+        const double pixels = apart * scale;
+        out.pixels += pixels * pixels, ++out.seen;
+        out.worst_pixels = std::max(out.worst_pixels, pixels);
+    }
+}
+
+void take_mean(GovernError& e)
+{
+    e.pixels = std::sqrt(e.pixels / static_cast<double>(std::max<std::size_t>(1, e.seen)));
+    e.metres = std::sqrt(e.metres / static_cast<double>(std::max<std::size_t>(1, e.bodies)));
+}
+
+double at_share(std::vector<double> values, double share)
+{
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+/// One of the runs that are compared, with its figures so far.
+struct Contender
+{
+    GovernPoint point;
+    std::unique_ptr<Simulation> run;
+    std::vector<double> steps;  ///< s of CPU time
+    double looks = 0;           ///< how often the levels were counted
+};
+
+class Comparison
+{
+public:
+    Comparison(model::TypeSource& types, const GovernPlan& plan) : types_(types), plan_(plan) {}
+
+    Result<GovernResult> run()
+    {
+        if (auto ready = begin(); !ready) return ready.errors();
+        for (double end = plan_.between; end <= plan_.until + 1e-9; end += plan_.between)
+            // One after the other within each interval, so that a busy machine slows all of them alike.
+            for (Contender& c : contenders_)
+            {
+                if (plan_.progress)
+                    plan_.progress(plan_.title + ": " + c.point.name + ", " + std::to_string(static_cast<int>(end - plan_.between)) +
+                                   " s of " + std::to_string(static_cast<int>(plan_.until)) + " s");
+                if (auto done = advance(c, end); !done) return done.errors();
+            }
+        for (Contender& c : contenders_) finish(c);
+        return std::move(out_);
+    }
+
+    Result<GovernResult> list()
+    {
+        if (auto ready = begin(); !ready) return ready.errors();
+        return std::move(out_);
+    }
+
+private:
+    Result<void> begin()
+    {
+        Contender governed;
+        governed.point.name = "governed", governed.point.governed = true;
+        governed.run = std::make_unique<Simulation>(types_);
+        if (auto loaded = governed.run->load(plan_.scene); !loaded) return loaded;
+        governed.run->let_measure(true);
+        if (auto found = choose_governor(*governed.run); !found) return found;
+        if (governed.run->viewpoints().empty()) return reason("the scene has no viewer, for whom an error in pixels could be told");
+        contenders_.push_back(std::move(governed));
+        for (const simulation::Level& level : ladder_.levels)
+        {
+            Contender fixed;
+            fixed.point.name = level.text, fixed.run = std::make_unique<Simulation>(types_);
+            if (auto loaded = fixed.run->load(plan_.scene); !loaded) return loaded;
+            fixed.run->let_measure(true);  // for other governors of the scene
+            if (auto removed = ask(*fixed.run, {simulation::RemoveOperation{out_.governor}}); !removed) return removed;
+            if (auto given = give_all(*fixed.run, watched_, level); !given) return given;
+            contenders_.push_back(std::move(fixed));
+            out_.levels.push_back(level.text);
+        }
+        reference_ = std::make_unique<Simulation>(types_);
+        reference_->let_decide(false);
+        return {};
+    }
+
+    Result<void> choose_governor(const Simulation& s)
+    {
+        const world::World& world = s.world();
+        for (const LevelInfo& l : s.levels().levels())
+        {
+            const std::string& id = world.id_of(l.governor);
+            if (!plan_.governor.empty() && id != plan_.governor) continue;
+            if (!out_.governor.empty() && id != out_.governor) continue;
+            out_.governor = id, out_.type = world.type_of(l.governor)->info.name;
+            watched_.push_back(world.id_of(l.component));
+        }
+        if (watched_.empty())
+            return reason(plan_.governor.empty() ? std::string("no governor of the scene watches anything")
+                                                 : "no governor '" + plan_.governor + "' of the scene watches anything");
+        const std::uint32_t governor = world.find(out_.governor);
+        const Value levels = world.get(governor, "levels"), budget = world.get(governor, "budget"), share = world.get(governor, "share");
+        auto ladder = simulation::read_ladder(std::get<std::string>(levels), types_);
+        if (!ladder) return ladder.errors();
+        ladder_ = ladder.take();
+        if (const auto* b = std::get_if<double>(&budget)) out_.budget = *b > 0 ? *b : std::get<double>(share) * s.dt();
+        out_.title = plan_.title, out_.command = plan_.command, out_.scene_file = plan_.scene.file;
+        out_.until = plan_.until, out_.between = plan_.between, out_.window = plan_.window, out_.dt = s.dt(), out_.refine = plan_.refine;
+        out_.components = watched_.size(), out_.objects = pairs_of(s, s).size();
+        return {};
+    }
+
+    Result<void> step(Contender& c)
+    {
+        if (plan_.stop && plan_.stop->due()) return reason("interrupted");
+        const double begin = thread_cpu_seconds();
+        (void)c.run->step();
+        c.steps.push_back(thread_cpu_seconds() - begin);
+        return {};
+    }
+
+    Result<void> advance(Contender& c, double end)
+    {
+        const double half = 0.5 * c.run->dt(), compared_from = end - plan_.window;
+        while (c.run->time() < compared_from - half)
+            if (auto made = step(c); !made) return made;
+        if (auto ready = begin_reference(*c.run); !ready) return ready;
+        while (c.run->time() < end - half)
+        {
+            if (auto made = step(c); !made) return made;
+            for (int k = 0; k < plan_.refine; ++k) (void)reference_->step_once();
+        }
+        add_errors(*c.run, *reference_, c.point.error);
+        count_levels(c);
+        return {};
+    }
+
+    /// From the state of the run, with the most exact level for all and shorter steps.
+    Result<void> begin_reference(const Simulation& run)
+    {
+        if (auto restored = reference_->restore(run.capture()); !restored) return restored;
+        if (auto given = give_all(*reference_, watched_, ladder_.levels.back()); !given) return given;
+        model::StepLength dt = plan_.scene.settings.dt;
+        dt.seconds /= plan_.refine;
+        if (dt.denominator > 0) dt.denominator *= plan_.refine;
+        return ask(*reference_, {simulation::StepLengthOperation{dt}});
+    }
+
+    void count_levels(Contender& c)
+    {
+        c.point.shares.resize(ladder_.levels.size());
+        ++c.looks;
+        for (const LevelInfo& l : c.run->levels().levels())
+            if (l.level >= 0 && c.run->world().id_of(l.governor) == out_.governor)
+                c.point.shares[static_cast<std::size_t>(l.level)] += 1.0 / static_cast<double>(watched_.size());
+    }
+
+    void finish(Contender& c)
+    {
+        double cpu = 0;
+        for (const double s : c.steps) cpu += s;
+        c.point.cpu = cpu / std::max(1e-9, c.run->time());
+        c.point.step_median = at_share(c.steps, 0.5), c.point.step_99 = at_share(c.steps, 0.99),
+        c.point.step_longest = at_share(c.steps, 1);
+        take_mean(c.point.error);
+        for (double& s : c.point.shares) s /= std::max(1.0, c.looks);
+        out_.points.push_back(std::move(c.point));
+    }
+
+    model::TypeSource& types_;
+    const GovernPlan& plan_;
+    GovernResult out_;
+    simulation::Ladder ladder_;
+    std::vector<std::string> watched_;
+    std::vector<Contender> contenders_;  ///< the governed one first
+    std::unique_ptr<Simulation> reference_;
+};
+
+}  // namespace
+
+Result<GovernResult> compare_governor(model::TypeSource& types, const GovernPlan& plan) { return Comparison(types, plan).run(); }
+
+Result<GovernResult> governed_levels(model::TypeSource& types, const GovernPlan& plan) { return Comparison(types, plan).list(); }
+
+std::optional<double> gain(const GovernResult& result)
+{
+    std::vector<const GovernPoint*> fixed;
+    for (const GovernPoint& p : result.points)
+        if (!p.governed && p.cpu > 0 && p.error.pixels > 0) fixed.push_back(&p);
+    const GovernPoint& governed = result.points.front();
+    std::sort(fixed.begin(), fixed.end(), [](const GovernPoint* a, const GovernPoint* b) { return a->cpu < b->cpu; });
+    const GovernPoint* before = nullptr;  // of the front
+    for (const GovernPoint* p : fixed)
+    {
+        if (before && p->error.pixels >= before->error.pixels) continue;
+        const double error = governed.error.pixels;
+        if (before && error <= before->error.pixels && error >= p->error.pixels && error > 0)
+        {
+            const double part = std::log(before->error.pixels / error) / std::log(before->error.pixels / p->error.pixels);
+            return before->cpu * std::pow(p->cpu / before->cpu, part) / governed.cpu;
+        }
+        before = p;
+    }
+    return {};
+}
+
+}  // namespace plab::study

@@ -1,0 +1,74 @@
+// A governor compared with one level for all: what its point is worth.
+#include "study/govern.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "support/load.h"
+#include "support/text.h"
+
+using namespace plab;
+using namespace plab::study;
+
+namespace
+{
+
+GovernPoint point(double cpu, double pixels, bool governed = false)
+{
+    GovernPoint out;
+    out.governed = governed, out.cpu = cpu, out.error.pixels = pixels;
+    return out;
+}
+
+GovernResult with_governed(double cpu, double pixels)
+{
+    GovernResult out;
+    out.points = {point(cpu, pixels, true), point(1, 1), point(3, 2), point(100, 1e-4)};  // the second level is worth nothing
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("the gain is the cost of the same error on the line that joins the levels, in logarithms")
+{
+    CHECK(*gain(with_governed(5, 1e-2)) == doctest::Approx(2));  // half of the way in logarithms: 10 instead of 5
+    CHECK(*gain(with_governed(20, 1e-2)) == doctest::Approx(0.5));
+    CHECK(*gain(with_governed(50, 1e-4)) == doctest::Approx(2));
+    CHECK_FALSE(gain(with_governed(50, 1e-5)));  // more exact than every level
+    CHECK_FALSE(gain(with_governed(0.5, 10)));
+}
+
+TEST_CASE("a governed scene and its single levels: the cheapest level has the largest error, and the governor's is that of what is seen")
+{
+    std::string text =
+        "<scene dt='1/60'/><component id='ball' type='Shape/Sphere' radius='0.3'/>"
+        "<component id='eye' type='Viewer/Free'/>"
+        "<component id='lod' type='Governor/Visibility' watches='bob.*.solver' pixels='1' every='0.1' dwell='0' "
+        "levels='Solver/SemiImplicitEuler; Solver/RungeKutta4'/>";
+    for (int i = 0; i < 8; ++i)
+    {
+        const std::string id = std::to_string(i), x = std::to_string(i % 2 == 0 ? 8 : -8), y = std::to_string(i / 2);
+        text += "<component id='post." + id + "' type='State/Static' position='" + x + " " + y + " 1'/>";
+        text += "<component id='bob." + id + "' type='State/RigidBody' mass='1' shape='ball' position='" + x + " " + y +
+                " 0.2' solver='Solver/RungeKutta4'/>";
+        text += "<component id='spring." + id + "' type='Constraint/SpringDamper' a='post." + id + "' b='bob." + id +
+                "' length='1' stiffness='60'/>";
+    }
+    auto scene = test::compile_text("<plab version='1'>" + text + "</plab>");
+    REQUIRE(scene.ok());
+    GovernPlan plan;
+    plan.scene = scene.take(), plan.until = 2, plan.governor = "lod";
+    const auto result = compare_governor(test::library(), plan);
+    REQUIRE(result.ok());
+    REQUIRE(result->points.size() == 3);
+    CHECK(result->components == 8);
+    const GovernError &governed = result->points[0].error, &cheap = result->points[1].error, &exact = result->points[2].error;
+    CHECK(cheap.pixels > 10 * exact.pixels);
+    CHECK(governed.pixels == doctest::Approx(exact.pixels).epsilon(0.2));
+    CHECK(governed.metres > 3 * exact.metres);  // nobody looks behind
+    plan.governor = "other";
+    const auto refused = compare_governor(test::library(), plan);
+    REQUIRE_FALSE(refused.ok());
+    CHECK(test::has(refused.error().text(), "no governor 'other'"));
+}
