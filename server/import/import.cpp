@@ -42,9 +42,14 @@ Result<std::string> read_bytes(const std::string& path, std::size_t most)
     if (std::filesystem::is_directory(path, ignored)) return Error{{path, 0, 0}, {}, "is a folder, not a file"};
     std::ifstream file(path, std::ios::binary);
     if (!file) return Error{{path, 0, 0}, {}, "cannot be opened"};
-    std::string bytes(most + 1, '\0');
-    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<std::size_t>(file.gcount()));
+    // One byte more than allowed shows that there are too many.
+    std::string bytes;
+    char buffer[1 << 16];
+    while (file && bytes.size() <= most)
+    {
+        file.read(buffer, sizeof buffer);
+        bytes.append(buffer, static_cast<std::size_t>(file.gcount()));
+    }
     return bytes;
 }
 
