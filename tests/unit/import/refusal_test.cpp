@@ -33,7 +33,7 @@ TEST_CASE("faulty URDF is refused with its place and a reason")
     check("<link name='a'/><link name='b'/><joint name='j' type='bendy'><parent link='a'/><child link='b'/></joint>",
           "robot:2:33: <joint> 'j': type must be one of fixed, revolute, continuous, prismatic, planar, floating, not 'bendy'");
     check("<link name='a'/><link name='b'>" + kMass + "</link><joint name='j' type='revolute'><parent link='a'/><child link='b'/></joint>",
-          "robot:2:121: <joint> 'j': a joint of type revolute needs a <limit>");
+          "robot:2:111: <joint> 'j': a joint of type revolute needs a <limit>");
     check("<link name='a'/><link name='b'/><joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint>",
           "robot:2:17: 'b': has no mass, but the joint 'j' moves it: give it an inertia");
     check("<link name='a'><inertial><mass value='-1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link>",
@@ -85,8 +85,8 @@ TEST_CASE("what is not carried over is listed in the order of the file, and noth
     for (const Error& loss : imported.losses) all += loss.text() + "\n";
     CHECK(all ==
           "robot:3:1: <gazebo>: is not carried over\n"
-          "robot:5:63: <limit>: the attribute effort='5' is not carried over\n"
-          "robot:5:103: <safety_controller>: is not carried over\n");
+          "robot:5:68: <limit>: the attribute effort='5' is not carried over\n"
+          "robot:5:108: <safety_controller>: is not carried over\n");
 }
 
 /// Random bytes, and files with random bytes in them.
