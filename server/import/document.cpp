@@ -1,6 +1,7 @@
 #include "import/document.h"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 #include "model/numbers.h"
@@ -129,6 +130,14 @@ void Document::list_children(const XmlElement& e, std::initializer_list<std::str
 {
     for (const XmlElement& child : e.children)
         if (std::ranges::find(known, child.name) == known.end()) lost(child, "is not carried over");
+}
+
+void Document::list_repeated(const XmlElement& e, std::initializer_list<std::string_view> several)
+{
+    std::set<std::string_view> seen;
+    for (const XmlElement& child : e.children)
+        if (std::ranges::find(several, child.name) == several.end() && !seen.insert(child.name).second)
+            lost(child, "is not carried over: only the first one counts");
 }
 
 bool Document::check_mass(TextPosition where, const std::string& element, double mass, const Mat3& inertia)

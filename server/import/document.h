@@ -49,6 +49,13 @@ public:
 
     /// Lists the attributes of e that are not among `known`.
     void list_attributes(const XmlElement& e, std::initializer_list<std::string_view> known);
+    /// Of an element without children.
+    void list_all_but(const XmlElement& e, std::initializer_list<std::string_view> known)
+    {
+        list_attributes(e, known), list_children(e, {});
+    }
+    /// Lists what stands in e a second time, but for elements of which there may be `several`.
+    void list_repeated(const XmlElement& e, std::initializer_list<std::string_view> several);
     /// Lists the children of e that are not among `known`.
     void list_children(const XmlElement& e, std::initializer_list<std::string_view> known);
 

@@ -97,10 +97,9 @@ Result<ImportedScene> import_text(std::string_view text, const std::string& file
     if (document.failed()) return document.errors();
     const Assembly assembly = assemble(robot, document);
     if (document.failed()) return document.errors();
-    ImportedScene out = write_blueprint(robot, assembly, document);
+    WrittenScene written = write_blueprint(robot, assembly, document);
     if (document.failed()) return document.errors();
-    out.losses = document.losses();
-    return out;
+    return ImportedScene{std::move(written.blueprint), document.losses(), written.bodies, written.joints};
 }
 
 Result<ImportedScene> import_file(const std::string& path, const ImportOptions& options)

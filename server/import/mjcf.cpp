@@ -66,6 +66,7 @@ private:
         if (childclass.empty()) childclass = inherited;
         document_.list_attributes(e, {"name", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "childclass"});
         document_.list_children(e, {"inertial", "joint", "freejoint", "geom", "body"});
+        document_.list_repeated(e, {"joint", "freejoint", "geom", "body"});
         body.pose = settings_.pose(e);
         read_joints(e, childclass, body);
         read_mass_and_shapes(e, childclass, body);

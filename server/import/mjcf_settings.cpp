@@ -22,6 +22,7 @@ bool is_default_of(std::string_view name) { return name == "geom" || name == "jo
 
 void list_unused_attributes(const XmlElement& e, Document& document)
 {
+    document.list_children(e, {});
     if (e.name == "geom")
         document.list_attributes(e, {"name", "class", "type", "size", "fromto", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis",
                                      "mass", "density", "rgba", "material", "contype", "conaffinity", "friction", "mesh"});

@@ -16,7 +16,7 @@ Pose read_origin(const XmlElement& parent, Document& document)
 {
     const XmlElement* const origin = find_child(parent, "origin");
     if (!origin) return {};
-    document.list_attributes(*origin, {"xyz", "rpy"});
+    document.list_all_but(*origin, {"xyz", "rpy"});
     const Vec3 rpy = document.vector(*origin, "rpy", {});
     const Quat q = rotation_about({0, 0, 1}, rpy.z) * rotation_about({0, 1, 0}, rpy.y) * rotation_about({1, 0, 0}, rpy.x);
     return {document.vector(*origin, "xyz", {}), normalized(q)};
@@ -61,9 +61,12 @@ private:
     std::optional<Vec3> read_material(const XmlElement& e)
     {
         const std::string name = document_.text(e, "name");
+        document_.list_attributes(e, {"name"});
         document_.list_children(e, {"color"});
+        document_.list_repeated(e, {});
         if (const XmlElement* const color = find_child(e, "color"))
         {
+            document_.list_all_but(*color, {"rgba"});
             double c[4] = {1, 1, 1, 1};
             if (document_.numbers(*color, "rgba", c, 4) == 4)
             {
@@ -82,6 +85,7 @@ private:
         if (name.empty()) return document_.error(e, "needs a name");
         document_.list_attributes(e, {"name"});
         document_.list_children(e, {"inertial", "visual", "collision"});
+        document_.list_repeated(e, {"visual", "collision"});
         Link link;
         link.body.name = name, link.body.where = e.where;
         if (const XmlElement* const inertial = find_child(e, "inertial"))
@@ -97,10 +101,14 @@ private:
 
     MassProperties read_inertial(const XmlElement& e, const std::string& link)
     {
+        document_.list_attributes(e, {});
         document_.list_children(e, {"origin", "mass", "inertia"});
+        document_.list_repeated(e, {});
         const XmlElement* const mass = find_child(e, "mass");
         const XmlElement* const inertia = find_child(e, "inertia");
         if (!mass || !inertia) return document_.error(e, "needs <mass> and <inertia>"), MassProperties{};
+        document_.list_all_but(*mass, {"value"});
+        document_.list_all_but(*inertia, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
         MassProperties out;
         out.mass = document_.number(*mass, "value", 0);
         const auto value = [&](const char* name) { return document_.number(*inertia, name, 0); };
@@ -118,6 +126,7 @@ private:
     {
         document_.list_attributes(e, {"name"});
         document_.list_children(e, {"origin", "geometry", "material"});
+        document_.list_repeated(e, {});
         const XmlElement* const geometry = find_child(e, "geometry");
         if (!geometry || geometry->children.empty()) return document_.error(e, "needs a <geometry> with a shape in it"), std::nullopt;
         RobotShape shape;
@@ -135,11 +144,14 @@ private:
     {
         if (e.name == "box")
         {
+            document_.list_all_but(e, {"size"});
             shape.kind = ShapeKind::Box, shape.size = document_.vector(e, "size", {}) * 0.5;
             if (!(shape.size.x > 0 && shape.size.y > 0 && shape.size.z > 0))
                 return document_.error(e, "size must be three positive numbers"), false;
             return true;
         }
+        if (e.name == "sphere" || e.name == "cylinder" || e.name == "capsule")
+            document_.list_all_but(e, {"radius", e.name == "sphere" ? "radius" : "length"});
         if (e.name == "sphere") return shape.kind = ShapeKind::Sphere, (shape.size.x = document_.positive(e, "radius")) > 0;
         if (e.name == "cylinder" || e.name == "capsule")
         {
@@ -153,7 +165,7 @@ private:
 
     bool read_mesh(const XmlElement& e, RobotShape& shape)
     {
-        document_.list_attributes(e, {"filename", "scale"});
+        document_.list_all_but(e, {"filename", "scale"});
         const std::string name = document_.text(e, "filename");
         const std::string path = find_mesh_file(document_.file(), "", name);
         if (path.empty()) return document_.lost(e, "the mesh '" + name + "' is missing: the shape is left out"), false;

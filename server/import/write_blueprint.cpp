@@ -22,7 +22,7 @@ public:
         for (const char* own : {"manager", "gravity", "contact", "contact.response", "solver"}) ids_.make(own);
     }
 
-    ImportedScene run()
+    WrittenScene run()
     {
         for (const PlacedBody& body : assembly_.bodies) body_ids_.push_back(ids_.make(body.name));
         read_materials();
@@ -253,12 +253,12 @@ private:
     std::set<double> frictions_;    ///< of bodies that collide
     std::string text_;
     bool moves_ = false, manager_ = false;
-    ImportedScene out_;
+    WrittenScene out_;
 };
 
 }  // namespace
 
-ImportedScene write_blueprint(const Robot& robot, const Assembly& assembly, Document& document)
+WrittenScene write_blueprint(const Robot& robot, const Assembly& assembly, Document& document)
 {
     return Writer(robot, assembly, document).run();
 }

@@ -2,12 +2,17 @@
 #pragma once
 
 #include "import/assembly.h"
-#include "import/import.h"
 
 namespace plab::import
 {
 
+struct WrittenScene
+{
+    std::string blueprint;  ///< XML
+    std::size_t bodies = 0, joints = 0;
+};
+
 /// Adds to the document's list what pLab has no component for.
-ImportedScene write_blueprint(const Robot& robot, const Assembly& assembly, Document& document);
+WrittenScene write_blueprint(const Robot& robot, const Assembly& assembly, Document& document);
 
 }  // namespace plab::import
