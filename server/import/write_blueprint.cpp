@@ -14,6 +14,41 @@ namespace
 /// A body that moves by several joints gets bodies between them, of this share of its mass and inertia.
 constexpr double kBetweenShare = 1e-6;
 
+/// Gives a body the largest red, green and blue of its shapes, and each shape what is left: their products are the shapes' colours.
+/// Viewers that show one colour for a body show that one. None if no shape has a colour.
+std::optional<Vec3> take_color(std::vector<RobotShape>& shapes)
+{
+    if (std::ranges::none_of(shapes, [](const RobotShape& s) { return s.color.has_value(); })) return {};
+    constexpr Vec3 kPlain{0.8, 0.8, 0.8};  // the default of Shape/*
+    Vec3 body;
+    for (const RobotShape& s : shapes)
+        for (int k = 0; k < 3; ++k) body[k] = std::max(body[k], s.color.value_or(kPlain)[k]);
+    for (RobotShape& s : shapes)
+    {
+        Vec3 rest = s.color.value_or(kPlain);
+        for (int k = 0; k < 3; ++k) rest[k] = body[k] > 0 ? rest[k] / body[k] : 1;
+        s.color = rest;
+    }
+    return body;
+}
+
+/// A camera that sees all bodies, from the front right.
+std::string camera(const Assembly& assembly)
+{
+    Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
+    double size = 0.1;
+    for (const PlacedBody& b : assembly.bodies)
+        for (const RobotShape& s : b.shapes)
+        {
+            const Vec3 p = b.X_WB * s.pose.p;
+            for (int k = 0; s.kind != ShapeKind::Plane && k < 3; ++k)
+                low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]), size = std::max(size, s.size[k]);
+        }
+    if (!(low.x <= high.x)) return {};
+    const Vec3 center = (low + high) * 0.5, from = Vec3{1.6, -2.2, 0.8} * (length(high - low) / 2 + size);
+    return "<camera id=\"front\"" + attribute("position", center + from) + attribute("look_at", center) + "/>";
+}
+
 class Writer
 {
 public:
@@ -35,7 +70,7 @@ public:
         if (manager_) line("<component id=\"manager\" type=\"Manager/Automatic\"/>");
         const std::string settings =
             (robot_.title.empty() ? "" : attribute("title", robot_.title)) + (robot_.step.empty() ? "" : attribute("dt", robot_.step));
-        out_.blueprint = "<plab version=\"1\">\n  <scene" + settings + "/>\n" + text_ + "</plab>\n";
+        out_.blueprint = "<plab version=\"1\">\n  <scene" + settings + ">" + camera(assembly_) + "</scene>\n" + text_ + "</plab>\n";
         return std::move(out_);
     }
 
@@ -76,8 +111,10 @@ private:
         if (!(b.X_WB.q == Quat{})) head += attribute("orientation", b.X_WB.q);
         if (!b.fixed) head += mass_attributes(b.mass), moves_ = true;
         if (frictions_.size() > 1 && collides(b)) head += attribute("material", material_of(friction_[i]));
+        std::vector<RobotShape> shapes = b.shapes;
+        if (const auto color = take_color(shapes)) head += attribute("color", *color);
         line(head + (b.shapes.empty() ? "/>" : ">"));
-        for (const RobotShape& shape : b.shapes) line("  " + shape_component(shape, ids_.make(body_ids_[i] + ".shape")));
+        for (const RobotShape& shape : shapes) line("  " + shape_component(shape, ids_.make(body_ids_[i] + ".shape")));
         if (!b.shapes.empty()) line("</component>");
         out_.bodies += b.fixed ? 0 : 1;
     }
@@ -223,7 +260,7 @@ private:
         return !b.fixed && on_world && b.joints.size() == 1 && b.joints.front().joint.kind != JointKind::Slide && robot_.base_collides;
     }
 
-    /// MuJoCo's rule: the larger coefficient counts.
+    /// As in MJCF, the larger coefficient counts.
     void write_friction_pairs()
     {
         if (frictions_.size() < 2) return;

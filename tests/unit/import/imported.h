@@ -18,9 +18,9 @@ inline Result<import::ImportedScene> import_robot(const std::string& text, impor
 inline std::string content_of(const import::ImportedScene& imported, std::string& settings)
 {
     const std::string& text = imported.blueprint;
-    const std::size_t begin = text.find("<scene"), end = text.find("/>", begin), last = text.rfind("</plab>");
+    const std::size_t begin = text.find("<scene"), end = text.find(">", begin), after = text.find("</scene>"), last = text.rfind("</plab>");
     settings = text.substr(begin + 6, end - begin - 6);
-    return text.substr(end + 2, last - end - 2);
+    return text.substr(after + 8, last - after - 8);
 }
 
 /// `more`: components that are added.

@@ -25,6 +25,19 @@ TEST_CASE("the arm from URDF and its twin from MJCF move alike")
     CHECK(moved > 1);
 }
 
+TEST_CASE("colours of body and shape multiply to those of the file")
+{
+    const Scene scene = imported_scene(imported_file("arm.urdf"));
+    const auto shown = [&](const char* shape)
+    {
+        const Vec3 a = scene.vec("fore", "color"), b = scene.vec(shape, "color");
+        return Vec3{a.x * b.x, a.y * b.y, a.z * b.z};
+    };
+    CHECK(distance(shown("fore.shape"), {0.55, 0.6, 0.68}) < 1e-15);
+    CHECK(distance(shown("fore.shape.1"), {0.9, 0.5, 0.15}) < 1e-15);
+    CHECK(scene.vec("upper", "color") == Vec3{0.9, 0.5, 0.15});
+}
+
 TEST_CASE("the joints of the arm stay within their limits")
 {
     Scene scene = imported_scene(imported_file("arm.urdf"));
