@@ -1,5 +1,6 @@
 #include "import/mjcf.h"
 
+#include <algorithm>
 #include <set>
 
 #include "import/mjcf_geom.h"
@@ -34,6 +35,7 @@ public:
             if (e.name == "actuator") document_.list_children(e, {});
         }
         if (!world) document_.error(root_, "has no <worldbody>");
+        match_contacts();
         for (const XmlElement& e : root_.children)
             if (e.name == "equality")
                 for (const XmlElement& child : e.children) read_equality(child);
@@ -43,6 +45,12 @@ public:
     }
 
 private:
+    struct Words
+    {
+        std::size_t tree;
+        std::uint32_t type, affinity;
+        auto operator<=>(const Words&) const = default;
+    };
     static constexpr std::size_t kMostBodies = 100'000;
 
     std::string name_of(const XmlElement& e, const std::string& otherwise) const
@@ -133,6 +141,10 @@ private:
         if (joint.kind == JointKind::Ball) return document_.lost(e, "the range of a ball joint is not carried over");
         if (!(range[0] < range[1])) return document_.error(e, "range must be two ascending numbers");
         joint.lower = unit(range[0]), joint.upper = unit(range[1]);
+        joint.start = std::clamp(joint.zero, joint.lower, joint.upper);
+        if (joint.start != joint.zero)
+            document_.lost(
+                e, "the pose of the file is outside its range: it begins at the nearest bound, as a stop of pLab would throw it there");
     }
 
     void read_mass_and_shapes(const XmlElement& e, const std::string& childclass, RobotBody& body)
@@ -175,6 +187,34 @@ private:
     }
 
     // ---- between bodies
+
+    /// Shapes collide where contype of one and conaffinity of the other have a bit in common. In pLab a shape collides with all others, or
+    /// with none.
+    void match_contacts()
+    {
+        // The words of each tree; those of the world under number 0.
+        std::vector<std::size_t> tree(robot_.bodies.size(), 0);
+        std::set<Words> words;
+        for (std::size_t i = 0; i < robot_.bodies.size(); ++i)
+        {
+            const std::size_t parent = robot_.bodies[i].parent;
+            tree[i] = parent == kWorld ? 0 : parent == 0 ? i : tree[parent];
+            for (const RobotShape& s : robot_.bodies[i].shapes) words.insert({tree[i], s.contact_type, s.contact_affinity});
+        }
+        for (std::size_t i = 0; i < robot_.bodies.size(); ++i)
+            for (RobotShape& s : robot_.bodies[i].shapes) match_contacts_of(s, tree[i], words);
+    }
+
+    void match_contacts_of(RobotShape& s, std::size_t tree, const std::set<Words>& words)
+    {
+        std::size_t matches = 0, others = 0;
+        for (const Words& w : words)
+            if (w.tree != tree && (w.type != 0 || w.affinity != 0))
+                matches += (s.contact_type & w.affinity) != 0 || (w.type & s.contact_affinity) != 0 ? 1 : 0, ++others;
+        s.collides = others == 0 ? s.contact_type != 0 || s.contact_affinity != 0 : matches > 0;
+        if (matches > 0 && matches < others)
+            document_.lost(s.where, "<geom>", "contype and conaffinity let it collide with some shapes only: here it collides with all");
+    }
 
     void read_equality(const XmlElement& e)
     {

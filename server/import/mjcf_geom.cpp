@@ -67,7 +67,7 @@ bool read_size(const XmlElement& e, RobotShape& shape, Document& document)
     if (between && wanted < 2) return document.error(e, "fromto is for capsules, cylinders, boxes and ellipsoids"), false;
     const std::size_t needed = between ? 1 : wanted;
     if (!e.find_attribute("size")) return document.error(e, "needs a size"), false;
-    if (document.numbers(e, "size", size, needed) < needed) return false;
+    if (document.numbers(e, "size", size, needed) < needed) return false;  // more numbers do not matter
     if (between)
     {
         const Vec3 a{ends[0], ends[1], ends[2]}, b{ends[3], ends[4], ends[5]};
@@ -84,10 +84,13 @@ bool read_size(const XmlElement& e, RobotShape& shape, Document& document)
 
 void read_contact(const XmlElement& e, RobotShape& shape, Document& document)
 {
-    const double type = document.number(e, "contype", 1), affinity = document.number(e, "conaffinity", 1);
-    shape.collides = type != 0 || affinity != 0;
-    if (shape.collides && (type != 1 || affinity != 1))
-        document.lost(e, "contype and conaffinity are not carried over, unless both are 0: it collides with everything");
+    const auto word = [&](const char* name)
+    {
+        const double value = document.number(e, name, 1);
+        if (value >= 0 && value <= 4294967295.0 && value == std::floor(value)) return static_cast<std::uint32_t>(value);
+        return document.error(e, std::string(name) + " must be a whole number of 32 bits"), std::uint32_t{0};
+    };
+    shape.contact_type = word("contype"), shape.contact_affinity = word("conaffinity");
     double friction[3] = {1, 0.005, 0.0001};
     if (document.numbers(e, "friction", friction, 1) > 1)
         document.lost(e, "friction: only sliding friction is carried over, not that of twisting and rolling");

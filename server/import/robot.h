@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -69,7 +70,8 @@ struct RobotShape
     std::shared_ptr<const TriangleMesh> mesh;
     std::optional<Vec3> color;
     bool collides = true;
-    double friction = 0;  ///< Coulomb coefficient
+    std::uint32_t contact_type = 1, contact_affinity = 1;  ///< of MJCF: it collides with what has one of its bits in the other word
+    double friction = 0;                                   ///< Coulomb coefficient
     blueprint::TextPosition where;
 };
 

@@ -98,6 +98,23 @@ TEST_CASE("a joint whose limits exclude 0 begins at the nearest one, and its lim
     CHECK(attitude_error(scene.quat("bob", "orientation"), {std::cos(0.6), 0, std::sin(0.6), 0}) < 1e-3);
 }
 
+TEST_CASE("a joint of MJCF whose range excludes the pose of the file begins at the nearest bound; ref moves the zero")
+{
+    const auto imported = imported_text(R"(<mujoco><worldbody><body name="bob"><inertial pos="0.5 0 0" mass="2" diaginertia="0.1 0.1 0.1"/>
+      <joint name="j" axis="0 1 0" range="30 70" ref="10"/></body></worldbody></mujoco>)",
+                                        SceneFormat::Mjcf);
+    CHECK(lists(imported, "begins at the nearest bound"));
+    Scene scene = imported_scene(imported);
+    const auto turned = [](double degrees)
+    {
+        const double half = degrees * std::numbers::pi / 360;
+        return Quat{std::cos(half), 0, std::sin(half), 0};
+    };
+    CHECK(attitude_error(scene.quat("bob", "orientation"), turned(30 - 10)) < 1e-12);
+    scene.run(3);
+    CHECK(attitude_error(scene.quat("bob", "orientation"), turned(70 - 10)) < 1e-3);
+}
+
 TEST_CASE("a spring with damping comes to rest where its torque is that of the weight")
 {
     const auto imported = imported_text(R"(<mujoco><compiler angle="radian"/><worldbody><body name="bob">

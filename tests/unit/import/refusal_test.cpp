@@ -89,6 +89,23 @@ TEST_CASE("what is not carried over is listed in the order of the file, and noth
           "robot:5:108: <safety_controller>: is not carried over\n");
 }
 
+TEST_CASE("a shape whose contype and conaffinity match no other is only seen")
+{
+    const auto shapes = [](const std::string& ball)
+    {
+        return imported_text(
+            "<mujoco><worldbody><geom type='plane' size='1 1 1' conaffinity='0'/><body name='b' pos='0 0 1'><freejoint/>"
+            "<geom size='0.1' " +
+                ball + "/></body></worldbody></mujoco>",
+            SceneFormat::Mjcf);
+    };
+    const auto bounces = [](const import::ImportedScene& imported) { return imported.blueprint.find("CDetection") != std::string::npos; };
+    CHECK(bounces(shapes("contype='0' conaffinity='1'")));
+    CHECK(!bounces(shapes("contype='1' conaffinity='0'")));
+    CHECK(!bounces(shapes("contype='4' conaffinity='2'")));
+    CHECK(lists(shapes("contype='1' conaffinity='3'"), "collide with some shapes only") == false);
+}
+
 /// Random bytes, and files with random bytes in them.
 TEST_CASE("random input ends in a scene or in an error")
 {
