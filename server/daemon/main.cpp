@@ -2,7 +2,6 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "blueprint/reader.h"
 #include "blueprint/writer.h"
 #include "control/component_requests.h"
 #include "daemon/ending.h"
@@ -11,6 +10,7 @@
 #include "daemon/options.h"
 #include "daemon/replaying.h"
 #include "daemon/runner.h"
+#include "daemon/scene_source.h"
 #include "daemon/shadow.h"
 #include "model/compile.h"
 #include "plugins/library.h"
@@ -103,7 +103,8 @@ int carry_out(const plab::daemon::DaemonOptions& options)
                                                           : plab::daemon::run_shadow(library, options, stop, work);
     }
     if (!options.load.empty()) return go_on(library, options, start);
-    auto blueprint = plab::blueprint::read_blueprint_file(options.scene);
+    if (options.task == plab::daemon::Task::Import) return plab::daemon::import_scene(library, options);
+    auto blueprint = plab::daemon::read_scene(options);
     if (!blueprint) return plab::daemon::fail(blueprint.errors());
     auto scene = plab::model::compile(*blueprint, library, nullptr, plab::daemon::limits_of(options));
     if (!scene) return plab::daemon::fail(scene.errors());

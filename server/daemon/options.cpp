@@ -21,6 +21,7 @@ constexpr const char* kExamples = R"(Examples:
   plabd --explain scenes/fan_and_balloons.xml
   plabd scenes/fan_and_balloons.xml --until 10 --record run.mcap
   plabd --replay run.mcap --verify
+  plabd --import scenes/imported/arm.urdf -o arm.xml
 While it runs: plabctl interactions; plabctl swap contact.response --to Response/None; plab-view --png now.png
 
 Exit codes: 0 done, 1 failed (message on standard error), 2 wrong usage.)";
@@ -132,8 +133,8 @@ std::string why_not_together(const CLI::App& app, bool replay, bool shadow)
         return given + " requires --shadow ID=TYPE";
     if (!replay && !shadow) return {};
     const std::string what = replay ? "--replay" : "--shadow";
-    const std::string given = first_given(
-        app, {"--swap", "--set", "--table", "--history", "--record", "--paused", "--check", "--expand", "--explain", "--reference"});
+    const std::string given = first_given(app, {"--swap", "--set", "--table", "--history", "--record", "--paused", "--check", "--expand",
+                                                "--explain", "--import", "--reference"});
     if (given.empty()) return {};
     if (given == "--swap" || given == "--set")
         return given + " cannot be combined with " + what +
@@ -220,11 +221,13 @@ struct WrittenOptions
     std::string rate, states, recorded_states;
     std::vector<std::string> swaps, sets;
     bool check = false, expand = false, explain = false, no_bus = false;
+    std::string imported;
 };
 
 void add_run_options(CLI::App& app, DaemonOptions& options, WrittenOptions& written)
 {
-    app.add_option("scene", options.scene, "blueprint (XML)");
+    app.add_option("scene", options.scene, "blueprint (XML), or a scene in URDF or MJCF");
+    app.add_flag("--fixed-base", options.fixed_base, "of a scene in URDF or MJCF: what hangs on nothing is fixed to the world");
     app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")->check(&not_seconds, "");
     app.add_option("--out", options.out, "write the final state as JSON to FILE (- is standard output)")->type_name("FILE");
     app.add_option("--trace", options.trace, "write the trajectories as CSV to FILE")->type_name("FILE");
@@ -259,6 +262,9 @@ void add_task_options(CLI::App& app, DaemonOptions& options, WrittenOptions& wri
     app.add_flag("--expand", written.expand,
                  "print the long form of the blueprint; with --until, of the scene as it is then, without rules");
     app.add_flag("--explain", written.explain, "print what is loaded, resolved and left out, and why; with --until, then");
+    app.add_option("--import", written.imported, "write the URDF or MJCF file FILE as a blueprint, and list what is not carried over")
+        ->type_name("FILE");
+    app.add_option("-o", options.blueprint, "with --import: the blueprint to write; without it, standard output")->type_name("SCENE");
     app.add_option("--reference", options.reference,
                    "print the reference of all component types, of one (Response/Rows, Rows) or of a kind")
         ->expected(0, 1)
@@ -268,12 +274,17 @@ void add_task_options(CLI::App& app, DaemonOptions& options, WrittenOptions& wri
 /// Reads which task, scene and rate are wanted; a reason if they contradict one another.
 std::string take_task(bool reference, const WrittenOptions& written, DaemonOptions& options)
 {
-    if (int(written.check) + int(written.expand) + int(written.explain) + int(reference) > 1)
-        return "--check, --expand, --explain and --reference exclude one another";
+    const bool import = !written.imported.empty();
+    if (int(written.check) + int(written.expand) + int(written.explain) + int(reference) + int(import) > 1)
+        return "--check, --expand, --explain, --import and --reference exclude one another";
+    if (import && !options.scene.empty()) return "--import FILE and a scene exclude one another";
+    if (!import && !options.blueprint.empty()) return "-o requires --import FILE";
+    if (import) options.scene = written.imported;
     options.task = written.check     ? Task::Check
                    : written.expand  ? Task::Expand
                    : written.explain ? Task::Explain
                    : reference       ? Task::Reference
+                   : import          ? Task::Import
                                      : Task::Run;
     if (options.scene.empty() && options.load.empty() && options.replay.file.empty() && options.task != Task::Reference)
         return "needs a scene; see plabd --help";

@@ -22,6 +22,7 @@ enum class Task
     Reference,  ///< print the manual of all types, or of some
     Replay,     ///< replay a recorded run
     Shadow,     ///< simulate from a snapshot with and without another algorithm
+    Import,     ///< write the scene of another program as a blueprint
 };
 
 /// --record and its further options.
@@ -64,6 +65,8 @@ struct DaemonOptions
 {
     Task task = Task::Run;
     std::string scene;
+    std::string blueprint;    ///< of Task::Import: where to write it; "" and "-": standard output
+    bool fixed_base = false;  ///< of a scene of another program
     std::string reference;  ///< types to describe; "": all
     double until = -1;      ///< s; < 0: until a signal
     std::string out;        ///< JSON of the final state; "-" is standard output

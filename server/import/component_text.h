@@ -1,0 +1,37 @@
+/// Components as text, with ids that are unique.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "import/robot.h"
+
+namespace plab::import
+{
+
+/// Ids of a blueprint, made from names of the file.
+class Ids
+{
+public:
+    /// `name` with '_' for blanks and control characters, of at most 150 bytes, and with a number if it is taken.
+    std::string make(std::string_view name);
+
+private:
+    std::set<std::string, std::less<>> taken_;
+    std::map<std::string, std::size_t, std::less<>> next_;
+};
+
+/// " name='value'" of numbers; the shortest text that reads back as the same double.
+std::string attribute(std::string_view name, std::string_view value);
+std::string attribute(std::string_view name, double value);
+std::string attribute(std::string_view name, const Vec3& v);
+std::string attribute(std::string_view name, const Quat& q);
+
+/// One <component> of kind Shape. Shapes that do not collide are triangles, as pLab has no others that are only seen.
+std::string shape_component(const RobotShape& shape, const std::string& id);
+/// mass, center_of_mass and inertia.
+std::string mass_attributes(const MassProperties& mass);
+
+}  // namespace plab::import

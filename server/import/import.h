@@ -1,0 +1,41 @@
+/// Scenes of other programs (URDF, MJCF) as blueprints. server/docs/importing.md states what is carried over and what is listed.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "plab/result.h"
+
+namespace plab::import
+{
+
+struct ImportOptions
+{
+    bool fixed_base = false;  ///< bodies that hang on nothing do not move
+};
+
+struct ImportedScene
+{
+    std::string blueprint;  ///< XML
+    Errors losses;          ///< what could not be carried over: place, element, reason
+    std::size_t bodies = 0, joints = 0;
+};
+
+enum class SceneFormat
+{
+    Blueprint,
+    Urdf,
+    Mjcf,
+};
+
+/// By the file's name (.urdf, .mjcf), else by its first element (<robot>, <mujoco>). Files that cannot be read count as blueprints.
+SceneFormat format_of_file(const std::string& path);
+/// The name of the first element of an XML text; "" if there is none in its first 64 kB.
+std::string_view first_element(std::string_view text);
+
+/// Never throws, whatever the file contains. Errors name file, line and column.
+Result<ImportedScene> import_file(const std::string& path, const ImportOptions& options);
+/// `file` is for messages and for finding meshes.
+Result<ImportedScene> import_text(std::string_view text, const std::string& file, SceneFormat format, const ImportOptions& options);
+
+}  // namespace plab::import

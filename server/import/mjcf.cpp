@@ -1,0 +1,273 @@
+#include "import/mjcf.h"
+
+#include <algorithm>
+#include <set>
+
+#include "import/mjcf_geom.h"
+#include "import/mjcf_settings.h"
+#include "objects/shapes/volume_integration.h"
+
+namespace plab::import
+{
+namespace
+{
+
+class MjcfReader
+{
+public:
+    MjcfReader(const XmlElement& root, bool fixed_base, Document& document)
+        : root_(root), fixed_base_(fixed_base), document_(document), settings_(root, document)
+    {
+    }
+
+    Robot read()
+    {
+        document_.list_attributes(root_, {"model"});
+        document_.list_children(root_,
+                                {"compiler", "option", "default", "asset", "worldbody", "contact", "equality", "actuator", "include"});
+        robot_.title = document_.text(root_, "model");
+        robot_.step = settings_.step(), robot_.gravity = settings_.gravity(), robot_.base_collides = true;
+        bool world = false;
+        for (const XmlElement& e : root_.children)
+        {
+            if (e.name == "include") document_.error(e, "is not supported: put the files together first");
+            if (e.name == "worldbody") read_body(e, kWorld, ""), world = true;
+            if (e.name == "actuator") document_.list_children(e, {});
+        }
+        if (!world) document_.error(root_, "has no <worldbody>");
+        match_contacts();
+        for (const XmlElement& e : root_.children)
+            if (e.name == "equality")
+                for (const XmlElement& child : e.children) read_equality(child);
+            else if (e.name == "contact")
+                for (const XmlElement& child : e.children) read_contact(child);
+        return std::move(robot_);
+    }
+
+private:
+    struct Words
+    {
+        std::size_t tree;
+        std::uint32_t type, affinity;
+        auto operator<=>(const Words&) const = default;
+    };
+    static constexpr std::size_t kMostBodies = 100'000;
+
+    std::string name_of(const XmlElement& e, const std::string& otherwise) const
+    {
+        const std::string name = document_.text(e, "name");
+        return name.empty() ? otherwise : name;
+    }
+
+    // ---- bodies
+
+    /// <worldbody>, or <body> with everything in it.
+    void read_body(const XmlElement& e, std::size_t parent, const std::string& inherited)
+    {
+        const bool world = e.name == "worldbody";
+        const std::size_t index = robot_.bodies.size();
+        if (index >= kMostBodies) return document_.error(e, "is one body too many: 100,000 are allowed");
+        RobotBody body;
+        body.name = world ? "world" : name_of(e, "body." + std::to_string(index)), body.where = e.where, body.parent = parent;
+        if (!body_names_.insert(body.name).second) document_.error(e, "there are two bodies of this name");
+        std::string childclass = document_.text(e, "childclass");
+        if (childclass.empty()) childclass = inherited;
+        document_.list_attributes(e, {"name", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "childclass"});
+        document_.list_children(e, {"inertial", "joint", "freejoint", "geom", "body"});
+        document_.list_repeated(e, {"joint", "freejoint", "geom", "body"});
+        body.pose = settings_.pose(e);
+        read_joints(e, childclass, body);
+        read_mass_and_shapes(e, childclass, body);
+        robot_.bodies.push_back(std::move(body));
+        for (const XmlElement& child : e.children)
+            if (child.name == "body") read_body(child, index, childclass);
+    }
+
+    void read_joints(const XmlElement& e, const std::string& childclass, RobotBody& body)
+    {
+        for (const XmlElement& child : e.children)
+        {
+            const bool free = child.name == "freejoint" || (child.name == "joint" && document_.text(child, "type") == "free");
+            if (child.name != "joint" && !free) continue;
+            if (e.name == "worldbody") return document_.error(child, "the world cannot move");
+            if (!free)
+                read_joint(child, childclass, body);
+            else
+            {
+                document_.list_attributes(child, {"name", "type", "class"});
+                if (body.parent != 0) document_.error(child, "a body that moves freely must be a child of <worldbody>");
+                body.free = !fixed_base_;
+                if (fixed_base_) document_.lost(child, "does not move: --fixed-base");
+            }
+        }
+        if (body.free && !body.joints.empty()) document_.error(e, "has other joints beside a free one");
+    }
+
+    void read_joint(const XmlElement& own, const std::string& childclass, RobotBody& body)
+    {
+        list_unused_attributes(own, document_);
+        const XmlElement e = settings_.resolved(own, childclass);
+        const std::string type = document_.text(e, "type");
+        if (!type.empty() && type != "hinge" && type != "slide" && type != "ball")
+            return document_.error(e, "type must be one of free, ball, slide, hinge, not '" + type + "'");
+        Joint joint;
+        joint.name = name_of(e, body.name + ".joint" + (body.joints.empty() ? "" : "." + std::to_string(body.joints.size())));
+        joint.where = e.where;
+        joint.kind = type == "ball" ? JointKind::Ball : type == "slide" ? JointKind::Slide : JointKind::Hinge;
+        joint.anchor = document_.vector(e, "pos", {});
+        joint.axis = document_.direction(e, "axis", {0, 0, 1});
+        const auto unit = [&](double x) { return joint.kind == JointKind::Hinge ? settings_.angle(x) : x; };
+        joint.zero = joint.start = unit(document_.number(e, "ref", 0));
+        joint.rest = unit(document_.number(e, "springref", 0));
+        joint.stiffness = document_.number(e, "stiffness", 0), joint.damping = document_.number(e, "damping", 0);
+        joint.friction = document_.number(e, "frictionloss", 0);
+        if (joint.stiffness < 0 || joint.damping < 0 || joint.friction < 0)
+            document_.error(e, "stiffness, damping and frictionloss must not be negative");
+        if (!joint_names_.insert(joint.name).second) document_.error(e, "there are two joints of this name");
+        read_range(e, unit, joint);
+        if (joint.kind == JointKind::Ball && (joint.stiffness > 0 || joint.damping > 0 || joint.friction > 0))
+            document_.lost(e, "stiffness, damping and friction of a ball joint are not carried over");
+        body.joints.push_back(std::move(joint));
+    }
+
+    template <class Unit>
+    void read_range(const XmlElement& e, Unit unit, Joint& joint)
+    {
+        double range[2] = {0, 0};
+        const bool given = document_.numbers(e, "range", range, 2) == 2;
+        const std::string limited = document_.text(e, "limited");
+        if (limited == "false" || (limited != "true" && !(given && settings_.auto_limits()))) return;
+        if (!given) return document_.error(e, "is limited, but has no range");
+        if (joint.kind == JointKind::Ball) return document_.lost(e, "the range of a ball joint is not carried over");
+        if (!(range[0] < range[1])) return document_.error(e, "range must be two ascending numbers");
+        joint.lower = unit(range[0]), joint.upper = unit(range[1]);
+        joint.start = std::clamp(joint.zero, joint.lower, joint.upper);
+        if (joint.start != joint.zero)
+            document_.lost(
+                e, "the pose of the file is outside its range: it begins at the nearest bound, as a stop of pLab would throw it there");
+    }
+
+    void read_mass_and_shapes(const XmlElement& e, const std::string& childclass, RobotBody& body)
+    {
+        const XmlElement* const inertial = find_child(e, "inertial");
+        const bool from_shapes = settings_.inertia_from_shapes() || (!inertial && !settings_.inertia_never_from_shapes());
+        std::vector<MassProperties> parts;
+        for (const XmlElement& child : e.children)
+        {
+            if (child.name != "geom") continue;
+            list_unused_attributes(child, document_);
+            auto geom = read_geom(settings_.resolved(child, childclass), from_shapes && e.name == "body", settings_, document_);
+            if (!geom) continue;
+            if (geom->mass.mass > 0) parts.push_back(geom->mass);
+            body.shapes.push_back(std::move(geom->shape));
+        }
+        if (e.name == "worldbody") return;
+        if (from_shapes && !parts.empty()) body.mass = shapes::joined(parts);
+        if (inertial && from_shapes) document_.lost(*inertial, "is not used: inertiafromgeom=\"true\"");
+        if (inertial && !from_shapes) body.mass = read_inertial(*inertial, body.name);
+    }
+
+    MassProperties read_inertial(const XmlElement& e, const std::string& body)
+    {
+        document_.list_attributes(e, {"pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "mass", "diaginertia", "fullinertia"});
+        double v[6];
+        Mat3 local;
+        if (document_.numbers(e, "diaginertia", std::span(v, 3), 3) == 3) local = Mat3::diagonal(v[0], v[1], v[2]);
+        if (document_.numbers(e, "fullinertia", v, 6) == 6)
+        {
+            if (settings_.turned(e)) document_.error(e, "fullinertia excludes an orientation");
+            local = {{{v[0], v[3], v[4]}, {v[3], v[1], v[5]}, {v[4], v[5], v[2]}}};
+        }
+        if (!e.find_attribute("diaginertia") && !e.find_attribute("fullinertia")) document_.error(e, "needs diaginertia or fullinertia");
+        const Pose X = settings_.pose(e);
+        const Mat3 R = rotation_matrix(X.q);
+        const double mass = document_.positive(e, "mass");
+        if (!document_.failed()) document_.check_mass(e.where, "<inertial> of body '" + body + "'", mass, local);
+        return {mass, X.p, R * local * transposed(R)};
+    }
+
+    // ---- between bodies
+
+    /// Shapes collide where contype of one and conaffinity of the other have a bit in common. In pLab a shape collides with all others, or
+    /// with none.
+    void match_contacts()
+    {
+        // The words of each tree; those of the world under number 0.
+        std::vector<std::size_t> tree(robot_.bodies.size(), 0);
+        std::set<Words> words;
+        for (std::size_t i = 0; i < robot_.bodies.size(); ++i)
+        {
+            const std::size_t parent = robot_.bodies[i].parent;
+            tree[i] = parent == kWorld ? 0 : parent == 0 ? i : tree[parent];
+            for (const RobotShape& s : robot_.bodies[i].shapes) words.insert({tree[i], s.contact_type, s.contact_affinity});
+        }
+        for (std::size_t i = 0; i < robot_.bodies.size(); ++i)
+            for (RobotShape& s : robot_.bodies[i].shapes) match_contacts_of(s, tree[i], words);
+    }
+
+    void match_contacts_of(RobotShape& s, std::size_t tree, const std::set<Words>& words)
+    {
+        std::size_t matches = 0, others = 0;
+        for (const Words& w : words)
+            if (w.tree != tree && (w.type != 0 || w.affinity != 0))
+                matches += (s.contact_type & w.affinity) != 0 || (w.type & s.contact_affinity) != 0 ? 1 : 0, ++others;
+        s.collides = others == 0 ? s.contact_type != 0 || s.contact_affinity != 0 : matches > 0;
+        if (matches > 0 && matches < others)
+            document_.lost(s.where, "<geom>", "contype and conaffinity let it collide with some shapes only: here it collides with all");
+    }
+
+    void read_equality(const XmlElement& e)
+    {
+        Coupling c;
+        c.where = e.where;
+        c.name = name_of(e, "equality." + std::to_string(robot_.couplings.size()));
+        if (document_.text(e, "active") == "false") return document_.lost(e, "is not active, and not carried over");
+        if (e.name == "connect" || e.name == "weld")
+        {
+            const bool point = e.name == "connect";
+            document_.list_attributes(e, {"name", "active", "body1", "body2", point ? "anchor" : "body1"});
+            if (!e.find_attribute("body1") || (point && !e.find_attribute("anchor")))
+                return document_.lost(e, "is not carried over: only body1, body2 and anchor are read");
+            c.kind = point ? CouplingKind::Point : CouplingKind::Weld;
+            c.first = document_.text(e, "body1"), c.second = document_.text(e, "body2");
+            c.anchor = document_.vector(e, "anchor", {});
+            robot_.couplings.push_back(std::move(c));
+        }
+        else if (e.name == "joint")
+            read_equal_joints(e, std::move(c));
+        else
+            document_.lost(e, "is not carried over");
+    }
+
+    /// q1 = ref1 + c0 + c1 (q2 - ref2) + ...
+    void read_equal_joints(const XmlElement& e, Coupling c)
+    {
+        document_.list_attributes(e, {"name", "active", "joint1", "joint2", "polycoef"});
+        double coefficients[5] = {0, 1, 0, 0, 0};
+        document_.numbers(e, "polycoef", coefficients, 1);
+        c.second = document_.text(e, "joint1"), c.first = document_.text(e, "joint2"), c.factor = coefficients[1];
+        const bool linear = coefficients[0] == 0 && coefficients[2] == 0 && coefficients[3] == 0 && coefficients[4] == 0;
+        if (c.first.empty() || c.second.empty() || !linear)
+            return document_.lost(e, "is not carried over: only two joints at a ratio are (polycoef=\"0 RATIO 0 0 0\")");
+        robot_.couplings.push_back(std::move(c));
+    }
+
+    void read_contact(const XmlElement& e)
+    {
+        if (e.name == "exclude") return document_.lost(e, "has no effect: bodies of one tree of joints never collide, others always do");
+        document_.lost(e, "is not carried over");
+    }
+
+    const XmlElement& root_;
+    bool fixed_base_;
+    Document& document_;
+    MjcfSettings settings_;
+    Robot robot_;
+    std::set<std::string> body_names_, joint_names_;
+};
+
+}  // namespace
+
+Robot read_mjcf(const XmlElement& root, bool fixed_base, Document& document) { return MjcfReader(root, fixed_base, document).read(); }
+
+}  // namespace plab::import

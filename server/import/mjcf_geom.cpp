@@ -1,0 +1,141 @@
+#include "import/mjcf_geom.h"
+
+#include <numbers>
+
+#include "objects/shapes/volume_integration.h"
+
+namespace plab::import
+{
+namespace
+{
+
+/// m = 4/3 pi a b c, I_xx = m (b^2 + c^2) / 5, ...
+MassProperties solid_ellipsoid(const Vec3& s)
+{
+    const double m = 4.0 / 3.0 * std::numbers::pi * s.x * s.y * s.z;
+    const double xx = s.x * s.x, yy = s.y * s.y, zz = s.z * s.z;
+    return {m, {}, Mat3::diagonal(m * (yy + zz) / 5, m * (xx + zz) / 5, m * (xx + yy) / 5)};
+}
+
+/// Of density 1, in the shape's frame.
+Result<MassProperties> solid_of(const RobotShape& shape)
+{
+    switch (shape.kind)
+    {
+        case ShapeKind::Box:
+            return shapes::solid_box(shape.size);
+        case ShapeKind::Sphere:
+            return shapes::solid_sphere(shape.size.x);
+        case ShapeKind::Cylinder:
+            return shapes::solid_cylinder(shape.size.x, 2 * shape.size.z);
+        case ShapeKind::Capsule:
+            return shapes::solid_capsule(shape.size.x, 2 * shape.size.z);
+        case ShapeKind::Ellipsoid:
+            return solid_ellipsoid(shape.size);
+        case ShapeKind::Mesh:
+            return shapes::solid_mesh(shape.mesh->vertices, shape.mesh->triangles);
+        default:
+            return MassProperties{};
+    }
+}
+
+std::optional<ShapeKind> kind_of(const std::string& type)
+{
+    if (type == "plane") return ShapeKind::Plane;
+    if (type == "sphere" || type.empty()) return ShapeKind::Sphere;
+    if (type == "capsule") return ShapeKind::Capsule;
+    if (type == "ellipsoid") return ShapeKind::Ellipsoid;
+    if (type == "cylinder") return ShapeKind::Cylinder;
+    if (type == "box") return ShapeKind::Box;
+    if (type == "mesh") return ShapeKind::Mesh;
+    return {};
+}
+
+std::size_t sizes_of(ShapeKind kind)
+{
+    if (kind == ShapeKind::Box || kind == ShapeKind::Ellipsoid) return 3;
+    return kind == ShapeKind::Cylinder || kind == ShapeKind::Capsule ? 2 : kind == ShapeKind::Sphere ? 1 : 0;
+}
+
+/// size, or fromto with the first number of size.
+bool read_size(const XmlElement& e, RobotShape& shape, Document& document)
+{
+    const std::size_t wanted = sizes_of(shape.kind);
+    if (wanted == 0) return true;
+    double ends[6], size[3] = {0, 0, 0};
+    const bool between = document.numbers(e, "fromto", ends, 6) == 6;
+    if (between && wanted < 2) return document.error(e, "fromto is for capsules, cylinders, boxes and ellipsoids"), false;
+    const std::size_t needed = between ? 1 : wanted;
+    if (!e.find_attribute("size")) return document.error(e, "needs a size"), false;
+    if (document.numbers(e, "size", size, needed) < needed) return false;  // more numbers do not matter
+    if (between)
+    {
+        const Vec3 a{ends[0], ends[1], ends[2]}, b{ends[3], ends[4], ends[5]};
+        size[wanted - 1] = length(b - a) / 2;
+        if (wanted == 3) size[1] = size[0];
+        if (!(size[wanted - 1] > 1e-12)) return document.error(e, "the two points of fromto must differ"), false;
+        shape.pose = {(a + b) * 0.5, rotation_from_z(normalized(b - a))};
+    }
+    for (std::size_t i = 0; i < wanted; ++i)
+        if (!(size[i] > 0)) return document.error(e, "size must be positive"), false;
+    shape.size = wanted == 2 ? Vec3{size[0], 0, size[1]} : Vec3{size[0], size[1], size[2]};
+    return true;
+}
+
+void read_contact(const XmlElement& e, RobotShape& shape, Document& document)
+{
+    const auto word = [&](const char* name)
+    {
+        const double value = document.number(e, name, 1);
+        if (value >= 0 && value <= 4294967295.0 && value == std::floor(value)) return static_cast<std::uint32_t>(value);
+        return document.error(e, std::string(name) + " must be a whole number of 32 bits"), std::uint32_t{0};
+    };
+    shape.contact_type = word("contype"), shape.contact_affinity = word("conaffinity");
+    double friction[3] = {1, 0.005, 0.0001};
+    if (document.numbers(e, "friction", friction, 1) > 1)
+        document.lost(e, "friction: only sliding friction is carried over, not that of twisting and rolling");
+    shape.friction = friction[0];
+    if (shape.friction < 0) document.error(e, "friction must not be negative");
+}
+
+MassProperties mass_of(const XmlElement& e, const RobotShape& shape, Document& document)
+{
+    if (shape.kind == ShapeKind::Plane) return {};
+    const auto solid = solid_of(shape);
+    if (!solid) return document.error(e, solid.error().reason + ": give the body an <inertial>"), MassProperties{};
+    MassProperties out = shapes::posed(*solid, shape.pose);
+    const double mass = document.number(e, "mass", -1), density = document.number(e, "density", 1000);
+    if (density < 0 || (e.find_attribute("mass") && mass < 0)) document.error(e, "mass and density must not be negative");
+    const double factor = mass >= 0 ? mass / out.mass : density;
+    out.mass = mass >= 0 ? mass : out.mass * density;
+    out.inertia = out.inertia * factor;
+    return out;
+}
+
+}  // namespace
+
+std::optional<MjcfGeom> read_geom(const XmlElement& e, bool has_mass, MjcfSettings& settings, Document& document)
+{
+    MjcfGeom out;
+    std::string type = document.text(e, "type");
+    const std::string mesh = document.text(e, "mesh");
+    if (type.empty() && !mesh.empty()) type = "mesh";
+    const auto kind = kind_of(type);
+    if (!kind) return document.lost(e, "a shape of type '" + type + "' is not carried over"), std::nullopt;
+    if (*kind != ShapeKind::Mesh && !mesh.empty()) document.lost(e, "a shape fitted to the mesh '" + mesh + "' is not carried over");
+    if (*kind != ShapeKind::Mesh && !mesh.empty()) return {};
+    RobotShape& shape = out.shape;
+    shape.kind = *kind, shape.where = e.where;
+    shape.pose = settings.pose(e);
+    if (!read_size(e, shape, document)) return {};
+    if (shape.kind == ShapeKind::Mesh && !(shape.mesh = settings.mesh(mesh)))
+        return document.lost(e, "is left out: there is no mesh '" + mesh + "'"), std::nullopt;
+    const std::string material = document.text(e, "material");
+    if (!material.empty()) shape.color = settings.material(material);
+    if (const auto color = settings.color(e)) shape.color = color;
+    read_contact(e, shape, document);
+    if (has_mass) out.mass = mass_of(e, shape, document);
+    return out;
+}
+
+}  // namespace plab::import

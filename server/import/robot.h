@@ -1,0 +1,116 @@
+/// What URDF and MJCF have in common: rigid bodies in trees, the joints between them, and their shapes. SI units and radians.
+///
+/// Frames: W the world, B a body, P its parent. Poses hold where all joints have the value `zero`.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blueprint/xml.h"
+#include "plab/tables.h"
+#include "plab/vector.h"
+
+namespace plab::import
+{
+
+/// The parent of a body that hangs on nothing else.
+inline constexpr std::size_t kWorld = std::numeric_limits<std::size_t>::max();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+enum class JointKind
+{
+    Hinge,
+    Slide,
+    Ball,
+};
+
+/// One of the joints between a body and its parent. Its coordinate q (rad or m) is that of the file.
+struct Joint
+{
+    std::string name;
+    JointKind kind = JointKind::Hinge;
+    Vec3 anchor;         ///< in B, m
+    Vec3 axis{0, 0, 1};  ///< in B, unit length
+    double zero = 0;     ///< q in the pose that the file gives
+    double start = 0;    ///< q at the beginning of the run
+    double lower = -kInfinity, upper = kInfinity;
+    double stiffness = 0, rest = 0;  ///< N m/rad or N/m; q without force
+    double damping = 0;              ///< N m s/rad or N s/m
+    double friction = 0;             ///< largest dry friction, N m or N
+    blueprint::TextPosition where;
+};
+
+struct TriangleMesh
+{
+    std::vector<Vec3> vertices;  ///< m
+    std::vector<std::uint32_t> triangles;
+};
+
+enum class ShapeKind
+{
+    Box,        ///< size: half extents
+    Sphere,     ///< size.x: radius
+    Cylinder,   ///< size.x: radius, size.z: half of the height, along z
+    Capsule,    ///< size.x: radius, size.z: half of the straight part, along z
+    Ellipsoid,  ///< size: semi-axes
+    Plane,      ///< solid below z = 0
+    Mesh,
+};
+
+struct RobotShape
+{
+    ShapeKind kind = ShapeKind::Box;
+    Pose pose;  ///< X_BS
+    Vec3 size;
+    std::shared_ptr<const TriangleMesh> mesh;
+    std::optional<Vec3> color;
+    bool collides = true;
+    std::uint32_t contact_type = 1, contact_affinity = 1;  ///< of MJCF: it collides with what has one of its bits in the other word
+    double friction = 0;                                   ///< Coulomb coefficient
+    blueprint::TextPosition where;
+};
+
+struct RobotBody
+{
+    std::string name;
+    std::size_t parent = kWorld;
+    Pose pose;                  ///< X_PB
+    bool free = false;          ///< moves freely in the world, wherever it begins
+    std::vector<Joint> joints;  ///< from the parent outwards; none and not free: fixed to the parent
+    MassProperties mass;        ///< in B
+    std::vector<RobotShape> shapes;
+    blueprint::TextPosition where;
+};
+
+enum class CouplingKind
+{
+    Gear,   ///< first, second: joints; q_second changes by `factor` times what q_first changes
+    Point,  ///< first, second: bodies (second may be empty: the world) that share the point `anchor` of the first
+    Weld,   ///< first, second: bodies that do not move relative to one another
+};
+
+struct Coupling
+{
+    CouplingKind kind = CouplingKind::Gear;
+    std::string name, first, second;
+    double factor = 1;
+    Vec3 anchor;
+    blueprint::TextPosition where;
+};
+
+struct Robot
+{
+    std::string title;
+    std::string step;  ///< s, as a text; "": pLab's default
+    Vec3 gravity{0, 0, -9.81};
+    bool base_collides = false;     ///< bodies that never move collide with the others
+    std::vector<RobotBody> bodies;  ///< parents come first
+    std::vector<Coupling> couplings;
+};
+
+}  // namespace plab::import

@@ -1,0 +1,303 @@
+#include "import/write_blueprint.h"
+
+#include <algorithm>
+#include <set>
+
+#include "import/component_text.h"
+#include "model/numbers.h"
+
+namespace plab::import
+{
+namespace
+{
+
+/// A body that moves by several joints gets bodies between them, of this share of its mass and inertia.
+constexpr double kBetweenShare = 1e-6;
+
+/// Gives a body the largest red, green and blue of its shapes, and each shape what is left: their products are the shapes' colours.
+/// Viewers that show one colour for a body show that one. None if no shape has a colour.
+std::optional<Vec3> take_color(std::vector<RobotShape>& shapes)
+{
+    if (std::ranges::none_of(shapes, [](const RobotShape& s) { return s.color.has_value(); })) return {};
+    constexpr Vec3 kPlain{0.8, 0.8, 0.8};  // the default of Shape/*
+    Vec3 body;
+    for (const RobotShape& s : shapes)
+        for (int k = 0; k < 3; ++k) body[k] = std::max(body[k], s.color.value_or(kPlain)[k]);
+    for (RobotShape& s : shapes)
+    {
+        Vec3 rest = s.color.value_or(kPlain);
+        for (int k = 0; k < 3; ++k) rest[k] = body[k] > 0 ? rest[k] / body[k] : 1;
+        s.color = rest;
+    }
+    return body;
+}
+
+/// A camera that sees all bodies, from the front right.
+std::string camera(const Assembly& assembly)
+{
+    Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
+    double size = 0.1;
+    for (const PlacedBody& b : assembly.bodies)
+        for (const RobotShape& s : b.shapes)
+        {
+            const Vec3 p = b.X_WB * s.pose.p;
+            for (int k = 0; s.kind != ShapeKind::Plane && k < 3; ++k)
+                low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]), size = std::max(size, s.size[k]);
+        }
+    if (!(low.x <= high.x)) return {};
+    const Vec3 center = (low + high) * 0.5, from = Vec3{1.6, -2.2, 0.8} * (length(high - low) / 2 + size);
+    return "<camera id=\"front\"" + attribute("position", center + from) + attribute("look_at", center) + "/>";
+}
+
+class Writer
+{
+public:
+    Writer(const Robot& robot, const Assembly& assembly, Document& document) : robot_(robot), assembly_(assembly), document_(document)
+    {
+        for (const char* own : {"manager", "gravity", "contact", "contact.response", "solver"}) ids_.make(own);
+    }
+
+    WrittenScene run()
+    {
+        for (const PlacedBody& body : assembly_.bodies) body_ids_.push_back(ids_.make(body.name));
+        read_materials();
+        for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_body(i);
+        for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_joints(i);
+        for (const Coupling& coupling : robot_.couplings) write_coupling(coupling);
+        if (moves_)
+            line("<component id=\"gravity\" type=\"Field/Gravity\" between=\"*\"" + attribute("acceleration", robot_.gravity) + "/>");
+        write_contacts();
+        if (manager_) line("<component id=\"manager\" type=\"Manager/Automatic\"/>");
+        const std::string settings =
+            (robot_.title.empty() ? "" : attribute("title", robot_.title)) + (robot_.step.empty() ? "" : attribute("dt", robot_.step));
+        out_.blueprint = "<plab version=\"1\">\n  <scene" + settings + ">" + camera(assembly_) + "</scene>\n" + text_ + "</plab>\n";
+        return std::move(out_);
+    }
+
+private:
+    void line(const std::string& component) { text_ += "  " + component + "\n"; }
+    const PlacedBody& body(std::size_t i) const { return assembly_.bodies[i]; }
+    static std::string quoted(const std::string& name) { return "'" + name + "'"; }
+    static bool collides(const PlacedBody& b) { return std::ranges::any_of(b.shapes, &RobotShape::collides); }
+
+    // ---- bodies
+
+    /// Each body's friction is that of its roughest shape.
+    void read_materials()
+    {
+        for (const PlacedBody& b : assembly_.bodies)
+        {
+            double least = kInfinity, most = -kInfinity;
+            for (const RobotShape& s : b.shapes)
+                if (s.collides) least = std::min(least, s.friction), most = std::max(most, s.friction);
+            if (most > least)
+                document_.lost(b.where, quoted(b.name),
+                               "its shapes have different friction: pLab has one material for a body, and takes the "
+                               "largest coefficient, " +
+                                   model::format_real(most));
+            friction_.push_back(most);
+            if (collides(b)) frictions_.insert(most);
+        }
+    }
+
+    std::string material_of(double friction) const { return "friction " + model::format_real(friction); }
+
+    void write_body(std::size_t i)
+    {
+        const PlacedBody& b = body(i);
+        if (b.fixed && b.shapes.empty()) return;
+        std::string head = "<component" + attribute("id", body_ids_[i]) + attribute("type", b.fixed ? "State/Static" : "State/RigidBody");
+        if (!(b.X_WB.p == Vec3{})) head += attribute("position", b.X_WB.p);
+        if (!(b.X_WB.q == Quat{})) head += attribute("orientation", b.X_WB.q);
+        if (!b.fixed) head += mass_attributes(b.mass), moves_ = true;
+        if (frictions_.size() > 1 && collides(b)) head += attribute("material", material_of(friction_[i]));
+        std::vector<RobotShape> shapes = b.shapes;
+        if (const auto color = take_color(shapes)) head += attribute("color", *color);
+        line(head + (b.shapes.empty() ? "/>" : ">"));
+        for (const RobotShape& shape : shapes) line("  " + shape_component(shape, ids_.make(body_ids_[i] + ".shape")));
+        if (!b.shapes.empty()) line("</component>");
+        out_.bodies += b.fixed ? 0 : 1;
+    }
+
+    // ---- joints
+
+    /// The role a: "" for the world and bodies that never move.
+    std::string base_role(std::size_t i) const { return i == kWorld || body(i).fixed ? std::string() : attribute("a", body_ids_[i]); }
+
+    void write_joints(std::size_t i)
+    {
+        const PlacedBody& b = body(i);
+        std::string base = base_role(b.parent);
+        for (std::size_t k = 0; k < b.joints.size(); ++k)
+        {
+            const PlacedJoint& placed = b.joints[k];
+            const bool last = k + 1 == b.joints.size();
+            const std::string held = last ? body_ids_[i] : write_between(i, placed.joint);
+            write_joint(placed, base + attribute("b", held));
+            base = attribute("a", held);
+            ++out_.joints;
+        }
+    }
+
+    /// A light body on which the next joint of body i sits.
+    std::string write_between(std::size_t i, const Joint& joint)
+    {
+        const PlacedBody& b = body(i);
+        MassProperties light = b.mass;
+        light.mass *= kBetweenShare, light.inertia = light.inertia * kBetweenShare;
+        const std::string id = ids_.make(body_ids_[i] + "." + joint.name);
+        line("<component" + attribute("id", id) + attribute("type", "State/RigidBody") + attribute("position", b.X_WB.p) +
+             attribute("orientation", b.X_WB.q) + mass_attributes(light) + "/>");
+        document_.lost(joint.where, "<joint> " + quoted(joint.name),
+                       quoted(b.name) + " moves by several joints: between them is a body of " + model::format_real(light.mass) + " kg");
+        return id;
+    }
+
+    void write_joint(const PlacedJoint& placed, const std::string& roles)
+    {
+        const Joint& j = placed.joint;
+        const std::string id = ids_.make(j.name), anchor = attribute("anchor", placed.anchor_W), axis = attribute("axis", placed.axis_W);
+        if (j.kind == JointKind::Ball)
+            return line("<component" + attribute("id", id) + " type=\"Constraint/Ball\"" + roles + anchor + "/>");
+        const bool slides = j.kind == JointKind::Slide;
+        line("<component" + attribute("id", id) + attribute("type", slides ? "Constraint/Slider" : "Constraint/Hinge") + roles + anchor +
+             axis + "/>");
+        const std::string place = roles + anchor + axis + attribute("along", slides ? "slide" : "turn");
+        if (j.lower > -kInfinity || j.upper < kInfinity)
+        {
+            line("<component" + attribute("id", ids_.make(id + ".limit")) + " type=\"Constraint/Limit\"" + place +
+                 (j.lower > -kInfinity ? attribute("lower", j.lower - j.start) : "") +
+                 (j.upper < kInfinity ? attribute("upper", j.upper - j.start) : "") + " manager=\"manager\"/>");
+            manager_ = true;
+        }
+        if (j.stiffness > 0 || j.damping > 0)
+            line("<component" + attribute("id", ids_.make(id + ".spring")) + " type=\"Constraint/TorsionSpring\"" + place +
+                 attribute("stiffness", j.stiffness) + attribute("damping", j.damping) + attribute("rest", j.rest - j.start) + "/>");
+        if (j.friction > 0)
+        {
+            // A motor that stands still and may slip is Coulomb's friction.
+            line("<component" + attribute("id", ids_.make(id + ".friction")) + " type=\"Constraint/Motor\"" + place + " speed=\"0\"" +
+                 attribute("max_effort", j.friction) + " manager=\"manager\"/>");
+            manager_ = true;
+        }
+    }
+
+    // ---- couplings
+
+    void write_coupling(const Coupling& c)
+    {
+        if (c.kind == CouplingKind::Gear) return write_gear(c);
+        const auto first = assembly_.frames.find(c.first), second = assembly_.frames.find(c.second);
+        const auto none = assembly_.frames.end();
+        if (first == none || (second == none && !c.second.empty()))
+            return document_.error(c.where, quoted(c.name), "there is no body " + quoted(first == none ? c.first : c.second));
+        const Vec3 anchor = body(first->second.body).X_WB * (first->second.pose * c.anchor);
+        std::size_t a = second == none ? kWorld : second->second.body, b = first->second.body;
+        if (body(b).fixed && a != kWorld) std::swap(a, b);
+        if (body(b).fixed || a == b)
+            return document_.lost(c.where, quoted(c.name), "holds bodies that do not move relative to one another");
+        line("<component" + attribute("id", ids_.make(c.name)) +
+             attribute("type", c.kind == CouplingKind::Point ? "Constraint/Ball" : "Constraint/Fixed") + base_role(a) +
+             attribute("b", body_ids_[b]) + attribute("anchor", anchor) + "/>");
+    }
+
+    void write_gear(const Coupling& c)
+    {
+        const auto first = assembly_.moved.find(c.first), second = assembly_.moved.find(c.second);
+        if (first == assembly_.moved.end() || second == assembly_.moved.end())
+            return document_.error(c.where, quoted(c.name),
+                                   "there is no joint " + quoted(first == assembly_.moved.end() ? c.first : c.second));
+        const PlacedBody &driver = body(first->second), &driven = body(second->second);
+        const auto turns = [](const PlacedBody& b) { return b.joints.size() == 1 && b.joints.front().joint.kind == JointKind::Hinge; };
+        const auto base = [&](const PlacedBody& b) { return b.parent == kWorld || body(b.parent).fixed ? kWorld : b.parent; };
+        if (c.factor == 0 || !turns(driver) || !turns(driven) || base(driver) != base(driven))
+            return document_.lost(c.where, quoted(c.name),
+                                  "is not carried over: a Constraint/Gear couples hinges on the same body, with a "
+                                  "factor that is not zero");
+        line("<component" + attribute("id", ids_.make(c.name)) + " type=\"Constraint/Gear\"" +
+             attribute("driver", body_ids_[first->second]) + attribute("driven", body_ids_[second->second]) +
+             (base(driver) == kWorld ? "" : attribute("carrier", body_ids_[base(driver)])) + attribute("velocity_factor", c.factor) +
+             attribute("driver_axis", driver.joints.front().axis_W) + attribute("driven_axis", driven.joints.front().axis_W) + "/>");
+    }
+
+    // ---- contacts
+
+    /// The links of a tree do not collide with one another: joints hold parts that overlap. So they are `against`; what is alone, or never
+    /// moves, is `between`.
+    void write_contacts()
+    {
+        std::vector<std::size_t> members(assembly_.bodies.size());
+        for (const PlacedBody& b : assembly_.bodies) members[b.tree] += b.fixed ? 0 : 1;
+        std::string between, against;
+        bool something_moves = false;
+        for (std::size_t i = 0; i < assembly_.bodies.size(); ++i)
+        {
+            const PlacedBody& b = body(i);
+            if (!collides(b) || (b.fixed && !robot_.base_collides)) continue;
+            if (hangs_at_a_point(b))
+            {
+                document_.lost(b.where, quoted(b.name),
+                               "does not collide: a joint holds it at a point of the world, where it may overlap it");
+                continue;
+            }
+            something_moves = something_moves || !b.fixed;
+            std::string& role = b.fixed || members[b.tree] == 1 ? between : against;
+            role += (role.empty() ? "" : " ") + body_ids_[i];
+        }
+        list_lost_pairs(members);
+        if (between.empty() || !something_moves) return;
+        line("<component id=\"contact\" type=\"CDetection/ODE\"" + attribute("between", between) +
+             (against.empty() ? "" : attribute("against", against)) + " response=\"contact.response\"/>");
+        line("<component id=\"contact.response\" type=\"Response/Automatic\" manager=\"manager\"" +
+             attribute("friction", frictions_.empty() ? 0 : *frictions_.rbegin()) + "/>");
+        manager_ = true;
+        write_friction_pairs();
+    }
+
+    bool hangs_at_a_point(const PlacedBody& b) const
+    {
+        const bool on_world = b.parent == kWorld || body(b.parent).fixed;
+        return !b.fixed && on_world && b.joints.size() == 1 && b.joints.front().joint.kind != JointKind::Slide && robot_.base_collides;
+    }
+
+    /// As in MJCF, the larger coefficient counts.
+    void write_friction_pairs()
+    {
+        if (frictions_.size() < 2) return;
+        std::size_t n = 0;
+        for (auto a = frictions_.begin(); a != frictions_.end(); ++a)
+            for (auto b = frictions_.begin(); b != std::next(a); ++b)
+                line("<component" + attribute("id", ids_.make("materials." + std::to_string(n++))) + " type=\"Material/Pair\"" +
+                     attribute("a", material_of(*b)) + attribute("b", material_of(*a)) + attribute("friction", *a) +
+                     " restitution=\"0\"/>");
+    }
+
+    void list_lost_pairs(const std::vector<std::size_t>& members)
+    {
+        std::set<std::size_t> trees;
+        for (const PlacedBody& b : assembly_.bodies)
+            if (!b.fixed && members[b.tree] > 1 && collides(b) && trees.insert(b.tree).second)
+                document_.lost(body(b.tree).where, quoted(body(b.tree).name),
+                               "the bodies that hang on it do not collide with one another, nor with those of other trees of joints");
+    }
+
+    const Robot& robot_;
+    const Assembly& assembly_;
+    Document& document_;
+    Ids ids_;
+    std::vector<std::string> body_ids_;
+    std::vector<double> friction_;  ///< of each body
+    std::set<double> frictions_;    ///< of bodies that collide
+    std::string text_;
+    bool moves_ = false, manager_ = false;
+    WrittenScene out_;
+};
+
+}  // namespace
+
+WrittenScene write_blueprint(const Robot& robot, const Assembly& assembly, Document& document)
+{
+    return Writer(robot, assembly, document).run();
+}
+
+}  // namespace plab::import
