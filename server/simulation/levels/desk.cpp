@@ -14,7 +14,11 @@ namespace plab::simulation
 class LevelBook::Desk final : public LevelControl, public ViewpointSink, public RequestSink
 {
 public:
-    Desk(LevelBook& book, const MeasureError& error) : book_(book), error_(error) { book_.viewpoints_.clear(), book_.looked_.clear(); }
+    Desk(LevelBook& book, const MeasureError& error) : book_(book), error_(error), lookup_(book.world_, book.structure_)
+    {
+        book_.viewpoints_.clear(), book_.looked_.clear();
+    }
+    const Lookup& lookup() const { return lookup_; }
 
     /// The calls that follow come from this component.
     void serve(std::uint32_t component);
@@ -40,6 +44,7 @@ public:
 private:
     LevelBook& book_;
     const MeasureError& error_;
+    world::WorldLookup lookup_;
     std::uint32_t by_ = kNoIndex;
     const Governor* governor_ = nullptr;  ///< null: the component watches nothing
     bool chose_ = false;                  ///< the last decision has choices of this component
@@ -129,8 +134,7 @@ world::CommandCall LevelBook::call_at(Tick tick, double time, double dt, Desk& d
     world::HostTables& host = world_.host();
     call.arguments.bodies = &host.bodies, call.arguments.shafts = &host.shafts, call.arguments.quantities = &host.quantities;
     call.arguments.shapes = &host.shapes;
-    const world::WorldLookup lookup(world_, structure_);
-    call.context.lookup = &lookup;
+    call.context.lookup = &desk.lookup();
     call.arguments.viewpoints = &desk, call.arguments.levels = &desk, call.arguments.requests = &desk;
     return call;
 }
