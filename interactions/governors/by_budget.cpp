@@ -12,6 +12,8 @@ namespace plab::governors
 {
 namespace
 {
+/// s: what is shorter was not measured, and its square would underflow.
+constexpr double kLeastCost = 1e-12;
 
 /// rad: of what nobody sees, and of everything where there is no viewer.
 constexpr double kUnseen = 1e-3;
@@ -195,7 +197,7 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
 {
     if (!due(context, governors.watch.every[row])) return;
     const double budget = governors.budget[row] > 0 ? governors.budget[row] : governors.share[row] * context.dt;
-    const double cost = governors.step_cost[row];
+    const double cost = governors.step_cost[row] > kLeastCost ? governors.step_cost[row] : 0;
     governors.spent[row] = cost / budget;
     Look look(context, row, governors.watch, control);
     if (look.watched().empty()) return;
