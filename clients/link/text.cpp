@@ -87,23 +87,4 @@ std::string terminal_text(std::string_view text)
     return out;
 }
 
-std::string attribute_text(std::string_view text)
-{
-    std::string out;
-    for (const char c : text)
-    {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '\'')
-            out += "&apos;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
-    return out;
-}
-
 }  // namespace plab::link

@@ -17,7 +17,4 @@ std::string number_text(float value);
 /// UTF-8 become U+FFFD.
 std::string terminal_text(std::string_view text);
 
-/// Between quotes, the value of an attribute in XML: "<", "&" and quotes are written as entities.
-std::string attribute_text(std::string_view text);
-
 }  // namespace plab::link

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "link/text.h"
+#include "plab/xml_text.h"
 
 namespace plab::web
 {
@@ -21,7 +22,7 @@ void Hands::grab(PageId page, const Grab& grab, Requests::Then then)
     const auto stamp = std::chrono::system_clock::now().time_since_epoch().count() % 1'000'000'000;
     hand.id = "web_grab_" + std::to_string(stamp) + "_" + std::to_string(++last_);
     hand.position = grab.position;
-    const std::string body = link::attribute_text(grab.body);
+    const std::string body = xml_text(grab.body);
     const std::string xml = "<plab version='1'><component id='" + hand.id + "_hand' type='State/User' position='" + text_of(grab.position) +
                             "'/><component id='" + hand.id + "' type='Constraint/Grab' user='" + hand.id + "_hand' body='" + body +
                             "' hold='" + body + "' max_force='" + link::number_text(grab.force) + "'/></plab>";

@@ -3,37 +3,12 @@
 #include <charconv>
 
 #include "expression.h"
+#include "plab/xml_text.h"
 
 namespace plab::rules
 {
 namespace
 {
-
-std::string escaped(std::string_view text)
-{
-    std::string out;
-    for (const char c : text) switch (c)
-        {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            case '\'':
-                out += "&#39;";
-                break;
-            default:
-                out += c;
-        }
-    return out;
-}
 
 std::string unescaped(std::string_view text)
 {
@@ -53,7 +28,7 @@ std::string unescaped(std::string_view text)
 
 std::string text_of(const Value& value)
 {
-    if (const auto* text = std::get_if<std::string>(&value)) return escaped(*text);
+    if (const auto* text = std::get_if<std::string>(&value)) return xml_text(*text);
     if (const auto* number = std::get_if<double>(&value)) return in_digits(*number);
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
     if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "true" : "false";

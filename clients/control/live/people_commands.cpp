@@ -16,6 +16,7 @@
 #include "link/numbers.h"
 #include "link/person.h"
 #include "link/text.h"
+#include "plab/xml_text.h"
 
 namespace plab::cli
 {
@@ -126,9 +127,8 @@ Exit run_grab(Context& c, const GrabOptions& o)
     const std::string grab = "grab_" + std::to_string(std::chrono::system_clock::now().time_since_epoch().count() % 1'000'000'000),
                       hand = grab + "_hand";
     const std::string xml = "<plab version='1'><component id='" + hand + "' type='State/User' position='" + text_of_place(*from) +
-                            "'/><component id='" + grab + "' type='Constraint/Grab' user='" + hand + "' body='" +
-                            link::attribute_text(o.id) + "' hold='" + link::attribute_text(o.id) + "' max_force='" + exact_number(o.force) +
-                            "'/></plab>";
+                            "'/><component id='" + grab + "' type='Constraint/Grab' user='" + hand + "' body='" + xml_text(o.id) +
+                            "' hold='" + xml_text(o.id) + "' max_force='" + exact_number(o.force) + "'/></plab>";
     if (const Exit e = send(c, {{"add", "", "grab", xml}}); e != Exit::Done) return e;
     const auto most = move_hand(c, o, hand, *from, to);
     // The hand goes also after Ctrl-C.
