@@ -54,7 +54,7 @@ int main(int argc, char** argv)
     auto environment = plab::link::options_from_environment();
     if (environment) context.settings.link = *environment;
     add_global_options(line.root(), context.settings);
-    for (const auto add : {add_list_commands, add_level_commands, add_show_command, add_watch_command, add_scene_commands,
+    for (const auto add : {add_list_commands, add_level_commands, add_top_command, add_show_command, add_watch_command, add_scene_commands,
                            add_people_commands, add_clock_commands, add_past_commands, add_wait_command, add_topics_command,
                            add_file_commands, add_diff_command, add_view_commands, add_record_command, add_play_command})
         add(line.root(), context);

@@ -18,26 +18,6 @@ std::string shortened(std::string line)
     return line + "...";
 }
 
-/// Ids, limited to the most expensive ones if there are too many; in order of ids.
-std::vector<std::string> choose(const link::CatalogueContents& scene)
-{
-    std::vector<std::pair<double, std::string>> ranked;
-    for (const auto& [id, interaction] : scene.interactions)
-    {
-        const link::InteractionMetrics* const metrics = link::find_metrics(scene.metrics, id);
-        ranked.emplace_back(metrics != nullptr ? metrics->cost_ns : 0.0, id);
-    }
-    if (ranked.size() > Captions::kMostLines)
-    {
-        std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-        ranked.resize(Captions::kMostLines);
-        std::sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-    }
-    std::vector<std::string> ids;
-    for (auto& [cost, id] : ranked) ids.push_back(std::move(id));
-    return ids;
-}
-
 }  // namespace
 
 void Captions::use(const link::CatalogueContents& scene)
@@ -46,16 +26,15 @@ void Captions::use(const link::CatalogueContents& scene)
     if (run != run_) algorithms_.clear();
     run_ = run;
     title_ = !scene.scene ? "" : scene.scene->title.empty() ? scene.scene->file : scene.scene->title;
-    shown_ = choose(scene);
-    left_out_ = scene.interactions.size() - shown_.size();
-    quarantined_.clear();
+    known_.clear();
     for (const auto& [id, interaction] : scene.interactions)
     {
         std::vector<Change>& changes = algorithms_[id];
         if (changes.empty() || changes.back().second != interaction.type_name)
             changes.emplace_back(interaction.since, interaction.type_name);
         if (changes.size() > kMostChanges) changes.erase(changes.begin());
-        quarantined_[id] = interaction.quarantined;
+        const link::InteractionMetrics* const metrics = link::find_metrics(scene.metrics, id);
+        known_[id] = {metrics != nullptr ? metrics->cost_ns : 0, interaction.quarantined};
     }
 }
 
@@ -68,14 +47,49 @@ const std::string& Captions::algorithm_at(const std::string& id, std::int64_t st
     return change->second;
 }
 
+std::vector<std::string> Captions::grouped_lines(std::int64_t step) const
+{
+    struct Group
+    {
+        std::string algorithm, first;
+        double cost = 0;
+        std::size_t count = 0;
+    };
+    std::map<std::string, Group> by_algorithm;
+    for (const auto& [id, known] : known_)
+    {
+        const std::string algorithm = algorithm_at(id, step) + (known.is_quarantined ? " (quarantined)" : "");
+        Group& group = by_algorithm.try_emplace(algorithm, Group{algorithm, id}).first->second;
+        group.cost += known.cost, ++group.count;
+    }
+    std::vector<Group> groups;
+    for (auto& [algorithm, group] : by_algorithm) groups.push_back(std::move(group));
+    std::size_t left_out = 0;
+    if (groups.size() > kMostLines)
+    {
+        std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.cost > b.cost; });
+        for (std::size_t k = kMostLines; k < groups.size(); ++k) left_out += groups[k].count;
+        groups.resize(kMostLines);
+        std::sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.algorithm < b.algorithm; });
+    }
+    std::vector<std::string> out;
+    for (const Group& g : groups)
+        out.push_back(g.count == 1 ? g.first + ": " + g.algorithm : g.algorithm + ": " + std::to_string(g.count) + ", such as " + g.first);
+    if (left_out > 0) out.push_back("and " + std::to_string(left_out) + " more");
+    return out;
+}
+
 std::vector<std::string> Captions::lines(const State& state) const
 {
     char time[48];
     std::snprintf(time, sizeof time, "t = %.3f s", state.time);
-    std::vector<std::string> out{shortened(title_.empty() ? time : title_ + ", " + time)};
-    for (const std::string& id : shown_)
-        out.push_back(shortened(id + ": " + algorithm_at(id, state.step) + (quarantined_.at(id) ? " (quarantined)" : "")));
-    if (left_out_ > 0) out.push_back("and " + std::to_string(left_out_) + " more");
+    std::vector<std::string> out{title_.empty() ? time : title_ + ", " + time};
+    if (known_.size() > kMostLines)
+        for (std::string& line : grouped_lines(state.step)) out.push_back(std::move(line));
+    else
+        for (const auto& [id, known] : known_)
+            out.push_back(id + ": " + algorithm_at(id, state.step) + (known.is_quarantined ? " (quarantined)" : ""));
+    for (std::string& line : out) line = shortened(std::move(line));
     return out;
 }
 

@@ -16,14 +16,14 @@ namespace plab::view
 class Captions
 {
 public:
-    /// If there are more interactions than this, show those with the highest cost, and the number of the others.
+    /// If there are more interactions than this, those with the same algorithm share a line with their number: in a scene with levels of
+    /// detail that tells how many run at which level. Of more algorithms than this, the costliest are shown.
     static constexpr std::size_t kMostLines = 12;
     static constexpr std::size_t kLongestLine = 72;  ///< characters
 
-    /// The scene has changed. The selection of interactions stays the same until the next change.
     void use(const link::CatalogueContents& scene);
 
-    /// From the top: title and time, then "id: algorithm" as it was in this state.
+    /// From the top: title and time, then "id: algorithm", or "algorithm: number, such as id", as it was in this state.
     std::vector<std::string> lines(const State& state) const;
 
 private:
@@ -31,12 +31,16 @@ private:
     using Change = std::pair<std::int64_t, std::string>;
 
     const std::string& algorithm_at(const std::string& id, std::int64_t step) const;
+    std::vector<std::string> grouped_lines(std::int64_t step) const;
 
     std::string title_;
     std::uint64_t run_ = 0;
-    std::vector<std::string> shown_;  ///< ids
-    std::size_t left_out_ = 0;
-    std::map<std::string, bool> quarantined_;
+    struct Known
+    {
+        double cost = 0;  ///< ns, when the scene last changed
+        bool is_quarantined = false;
+    };
+    std::map<std::string, Known> known_;  ///< the interactions of the scene
     std::map<std::string, std::vector<Change>> algorithms_;
 };
 

@@ -8,7 +8,7 @@ namespace plab::view
 {
 
 Painter::Painter(const ViewerOptions& options, std::unique_ptr<render::Renderer> renderer)
-    : model_({options.captions, options.ground}), viewpoint_(options.view), renderer_(std::move(renderer))
+    : model_({options.captions, options.ground}), camera_(options.view), renderer_(std::move(renderer))
 {
 }
 
@@ -23,7 +23,7 @@ Result<const render::Picture*> Painter::paint(const Moment& moment, const std::s
 {
     model_.use(moment.scene);
     render::Drawing& drawing = model_.draw(moment.state);
-    auto view = viewpoint_.find(model_, drawing.items, moment.state, camera);
+    auto view = camera_.find(model_, drawing.items, moment.state, camera);
     if (!view) return view.errors();
     drawing.view = *view;
     if (auto drawn = renderer_->draw(drawing, picture_); !drawn) return drawn.errors();
@@ -51,7 +51,7 @@ Result<render::View> view_of(const std::vector<link::Camera>& cameras, const std
 
 }  // namespace
 
-Result<render::View> Viewpoint::start(const SceneModel& model, const std::string& camera) const
+Result<render::View> CameraController::start(const SceneModel& model, const std::string& camera) const
 {
     if (!camera.empty()) return view_of(model.cameras(), camera);
     if (!choice_.camera.empty()) return view_of(model.cameras(), choice_.camera);
@@ -60,7 +60,7 @@ Result<render::View> Viewpoint::start(const SceneModel& model, const std::string
     return view_of(model.cameras().front());
 }
 
-void Viewpoint::circle(render::View& view, double time) const
+void CameraController::circle(render::View& view, double time) const
 {
     // As far away and as high as the view of everything; a given radius changes only the distance.
     const Vec3 arm = of_everything_->position - of_everything_->look_at;
@@ -72,8 +72,8 @@ void Viewpoint::circle(render::View& view, double time) const
     view.position = view.look_at + radius * direction;
 }
 
-Result<render::View> Viewpoint::find(const SceneModel& model, const std::vector<render::Item>& items, const State& state,
-                                     const std::string& camera)
+Result<render::View> CameraController::find(const SceneModel& model, const std::vector<render::Item>& items, const State& state,
+                                            const std::string& camera)
 {
     if (!of_everything_ || run_ != state.run) of_everything_ = render::view_of_everything(items);
     run_ = state.run;

@@ -9,10 +9,10 @@ namespace plab::view
 {
 
 /// The view: a camera of the scene, a fixed position, a circle around the scene, or tracking of an object.
-class Viewpoint
+class CameraController
 {
 public:
-    explicit Viewpoint(ViewChoice choice) : choice_(std::move(choice)) {}
+    explicit CameraController(ViewChoice choice) : choice_(std::move(choice)) {}
 
     /// The view of `items` at this state. `camera` (of the scene) overrides the options, unless empty. Errors: no such camera,
     /// no such object.
@@ -41,7 +41,7 @@ private:
     Painter(const ViewerOptions& options, std::unique_ptr<render::Renderer> renderer);
 
     SceneModel model_;
-    Viewpoint viewpoint_;
+    CameraController camera_;
     std::unique_ptr<render::Renderer> renderer_;
     render::Picture picture_;
 };

@@ -68,7 +68,7 @@ void choose_search(const StepContext& context, Row row, AutomaticRows& rows, Con
                  {static_cast<double>(load.island_bodies), static_cast<double>(load.island_points), load.travel});
 }
 
-void find_root_automatically(const StepContext& context, Row row, const AutomaticRows& rows, Trial& trial)
+void find_root_automatically(const StepContext& context, Row row, const AutomaticRows& rows, EventBracket& trial)
 {
     find_root(context, row, rows.root, trial);
 }

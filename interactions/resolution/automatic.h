@@ -32,6 +32,6 @@ struct AutomaticRows
 /// Phase::Choose.
 void choose_search(const StepContext& context, Row row, AutomaticRows& rows, ContactLoad& load);
 /// Phase::Locate, in steps in which impacts are located.
-void find_root_automatically(const StepContext& context, Row row, const AutomaticRows& rows, Trial& trial);
+void find_root_automatically(const StepContext& context, Row row, const AutomaticRows& rows, EventBracket& trial);
 
 }  // namespace plab::resolution

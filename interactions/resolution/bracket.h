@@ -13,7 +13,7 @@ namespace plab::resolution
 {
 
 /// s: below 2^-48 of the step, consecutive representable times are hardly distinct.
-inline double shortest_bracket(const Trial& trial, double tolerance = 0) { return std::max(tolerance, 0x1p-48 * trial.step); }
+inline double shortest_bracket(const EventBracket& trial, double tolerance = 0) { return std::max(tolerance, 0x1p-48 * trial.step); }
 
 /// Describes the limit on the work for locating events. The largest value of all resolutions of a scene applies.
 inline void describe_work(Schema& s, Column<double>& max_work)
@@ -27,7 +27,7 @@ inline void describe_work(Schema& s, Column<double>& max_work)
 }
 
 /// Two bodies that pass one another at a small distance require many small steps.
-inline void report_grazing(const StepContext& context, Row row, const Trial& trial)
+inline void report_grazing(const StepContext& context, Row row, const EventBracket& trial)
 {
     context.emit(row, "resolution.grazing", Severity::Warning,
                  "two bodies pass one another within " + rounded_text(trial.gap_begin) + " m; after " + std::to_string(trial.iteration) +

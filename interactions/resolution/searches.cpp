@@ -9,7 +9,7 @@
 namespace plab::resolution
 {
 
-void accept_end(const StepContext&, Row, const NoneRows&, Trial& trial) { trial.decision = Trial::Decision::Accept; }
+void accept_end(const StepContext&, Row, const NoneRows&, EventBracket& trial) { trial.decision = EventBracket::Decision::Accept; }
 
 void BisectionRows::describe(Schema& s)
 {
@@ -21,20 +21,20 @@ void BisectionRows::describe(Schema& s)
     describe_work(s, max_work);
 }
 
-void bisect(const StepContext& context, Row row, const BisectionRows& rows, Trial& trial)
+void bisect(const StepContext& context, Row row, const BisectionRows& rows, EventBracket& trial)
 {
     const double tolerance = shortest_bracket(trial, rows.time_tolerance[row]);
     const double length = trial.end - trial.begin;
     const double middle = trial.begin + 0.5 * length;
-    trial.decision = Trial::Decision::Accept;
+    trial.decision = EventBracket::Decision::Accept;
     if (length <= tolerance || !(middle > trial.begin && middle < trial.end)) return;
     if (trial.iteration < rows.max_iterations[row])
     {
-        trial.decision = Trial::Decision::Try;
+        trial.decision = EventBracket::Decision::Try;
         trial.next = middle;
         return;
     }
-    trial.decision = Trial::Decision::GiveUp;
+    trial.decision = EventBracket::Decision::GiveUp;
     context.emit(row, "resolution.gave_up", Severity::Warning,
                  "the time of impact is known only to " + rounded_text(length / trial.step) + " of the step after " +
                      std::to_string(trial.iteration) + " trials; allow more max_iterations or a larger time_tolerance",
@@ -51,7 +51,10 @@ void describe_acceleration(Schema& s, Column<double>& acceleration)
 
 void SpeculativeRows::describe(Schema& s) { describe_acceleration(s, acceleration); }
 
-void accept_speculation(const StepContext&, Row, const SpeculativeRows&, Trial& trial) { trial.decision = Trial::Decision::Accept; }
+void accept_speculation(const StepContext&, Row, const SpeculativeRows&, EventBracket& trial)
+{
+    trial.decision = EventBracket::Decision::Accept;
+}
 
 void AdvancementRows::describe(Schema& s)
 {
@@ -65,18 +68,18 @@ void AdvancementRows::describe(Schema& s)
     describe_work(s, max_work);
 }
 
-void advance_to_contact(const StepContext& context, Row row, const AdvancementRows& rows, Trial& trial)
+void advance_to_contact(const StepContext& context, Row row, const AdvancementRows& rows, EventBracket& trial)
 {
-    trial.decision = Trial::Decision::Accept;
+    trial.decision = EventBracket::Decision::Accept;
     const bool bracketed = trial.gap_end < 0 && trial.begin < trial.last;
     if (trial.gap_begin <= rows.gap_tolerance[row] || trial.end - trial.begin <= shortest_bracket(trial)) return;
     if (trial.iteration >= rows.max_iterations[row])
     {
-        trial.decision = Trial::Decision::GiveUp;
+        trial.decision = EventBracket::Decision::GiveUp;
         report_grazing(context, row, trial);
         return;
     }
-    trial.decision = Trial::Decision::Try;
+    trial.decision = EventBracket::Decision::Try;
     // If the bodies overlap at a trial time, the forces differed from those in the bound; halving is always correct.
     trial.next = bracketed || !(trial.closing > 0) ? 0.5 * (trial.begin + trial.end) : trial.begin + trial.gap_begin / trial.closing;
 }
@@ -122,7 +125,7 @@ namespace
 {
 
 /// The next trial time in a bracket after `iteration` queries.
-double next_in_bracket(const Trial& t)
+double next_in_bracket(const EventBracket& t)
 {
     const double length = t.end - t.begin, middle = t.begin + 0.5 * length;
     // Guarantees that it is never much slower than halving, whatever the shape of the gap function.
@@ -138,19 +141,19 @@ double next_in_bracket(const Trial& t)
 
 }  // namespace
 
-void find_root(const StepContext& context, Row row, const RootRows& rows, Trial& trial)
+void find_root(const StepContext& context, Row row, const RootRows& rows, EventBracket& trial)
 {
     const double shortest = shortest_bracket(trial, rows.time_tolerance[row]);
-    trial.decision = Trial::Decision::Accept;
+    trial.decision = EventBracket::Decision::Accept;
     const bool bracketed = trial.gap_end < 0;
     if (bracketed ? trial.end - trial.begin <= shortest : trial.gap_begin <= -trial.rate_begin * shortest) return;
     if (trial.iteration >= rows.max_iterations[row])
     {
-        trial.decision = Trial::Decision::GiveUp;
+        trial.decision = EventBracket::Decision::GiveUp;
         report_grazing(context, row, trial);
         return;
     }
-    trial.decision = Trial::Decision::Try;
+    trial.decision = EventBracket::Decision::Try;
     trial.next = bracketed ? next_in_bracket(trial) : trial.begin - trial.gap_begin / trial.rate_begin;
 }
 

@@ -16,7 +16,7 @@ struct NoneRows
 {
     void describe(Schema&) {}
 };
-void accept_end(const StepContext& context, Row row, const NoneRows& rows, Trial& trial);
+void accept_end(const StepContext& context, Row row, const NoneRows& rows, EventBracket& trial);
 
 /// Resolution/Bisection and Resolution/LocalBisection: halves the bracket [begin, end], at whose begin the bodies are separated and at
 /// whose end they overlap. After n trials its length is h 2^-n. Nothing is assumed of the gap but that its sign can be seen.
@@ -30,7 +30,7 @@ struct BisectionRows
 };
 /// Phase::Locate. Resolution/Bisection rewinds the whole world for each trial (as in the paper), Resolution/LocalBisection only
 /// the group of touching bodies.
-void bisect(const StepContext& context, Row row, const BisectionRows& rows, Trial& trial);
+void bisect(const StepContext& context, Row row, const BisectionRows& rows, EventBracket& trial);
 
 /// Declares the parameter `acceleration`, by which gaps are judged.
 void describe_acceleration(Schema& schema, Column<double>& acceleration);
@@ -45,7 +45,7 @@ struct SpeculativeRows
     void describe(Schema& schema);
 };
 /// Phase::Locate: accepts the end of the step, as contacts by rows are not events.
-void accept_speculation(const StepContext& context, Row row, const SpeculativeRows& rows, Trial& trial);
+void accept_speculation(const StepContext& context, Row row, const SpeculativeRows& rows, EventBracket& trial);
 
 /// Resolution/ConservativeAdvancement: approaches a contact from the separated side in steps that cannot pass it.
 ///
@@ -62,7 +62,7 @@ struct AdvancementRows
     void describe(Schema& schema);
 };
 /// Phase::Locate.
-void advance_to_contact(const StepContext& context, Row row, const AdvancementRows& rows, Trial& trial);
+void advance_to_contact(const StepContext& context, Row row, const AdvancementRows& rows, EventBracket& trial);
 
 /// Resolution/LocalRoot: the first zero of the signed gap.
 ///
@@ -86,7 +86,7 @@ struct RootRows
     void describe_search(Schema& schema);
 };
 /// Phase::Locate.
-void find_root(const StepContext& context, Row row, const RootRows& rows, Trial& trial);
+void find_root(const StepContext& context, Row row, const RootRows& rows, EventBracket& trial);
 
 /// Zero of the cubic through (t0, g0 > 0) and (t1, g1 < 0) with slopes r0 and r1 (NaN: slope of the chord), inside (t0, t1).
 double hermite_zero(double t0, double g0, double r0, double t1, double g1, double r1);

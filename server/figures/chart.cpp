@@ -12,14 +12,29 @@ namespace
 constexpr double kWidth = 980, kLeft = 96, kRight = 28;  // px
 constexpr double kHead = 48, kMomentLine = 15, kPanel = 210, kOnlyPanel = 290, kBetween = 22, kFoot = 56;
 constexpr double kLegendLine = 19, kLegendSize = 12, kMomentSize = 10.5;
-constexpr double kNear = 3;  // px; marks closer than this are merged
+constexpr double kNames = 190, kLegend = kNames + 46;  // px; the same in all charts, so that their time axes agree
+constexpr double kNear = 3;                            // px; marks closer than this are merged
 const Ink kMuted{Ink::Role::Muted, 0, 0, 0, 0};
+
+/// A curve with the names of all that are equal to it.
+struct NamedCurve
+{
+    const Curve* curve;
+    std::vector<std::string> names;
+};
 
 struct Group
 {
     std::string unit;
-    std::vector<const Curve*> curves;
+    std::vector<NamedCurve> curves;
 };
+
+bool are_equal(const Curve& a, const Curve& b)
+{
+    const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+    return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                      [&](const auto& p, const auto& q) { return same(p.first, q.first) && same(p.second, q.second); });
+}
 
 std::vector<Group> groups_of(const Chart& chart)
 {
@@ -28,21 +43,52 @@ std::vector<Group> groups_of(const Chart& chart)
     {
         auto found = std::find_if(out.begin(), out.end(), [&](const Group& g) { return g.unit == curve.unit; });
         if (found == out.end()) found = out.insert(out.end(), Group{curve.unit, {}});
-        found->curves.push_back(&curve);
+        const auto is_equal = [&](const NamedCurve& other) { return are_equal(*other.curve, curve); };
+        if (auto equal = std::find_if(found->curves.begin(), found->curves.end(), is_equal); equal != found->curves.end())
+            equal->names.push_back(curve.name);
+        else
+            found->curves.push_back({&curve, {curve.name}});
     }
     return out;
 }
 
-double legend_width(const Chart& chart)
+/// The beginning of `text` that fits, or all of it.
+std::string fitted(std::string text, double width)
 {
-    double out = 40;
-    for (const Curve& curve : chart.curves) out = std::max(out, text_width(curve.name, kLegendSize));
-    return std::min(out, 300.0) + 46;
+    if (text_width(text, kLegendSize) <= width) return text;
+    while (!text.empty() && text_width(text + "…", kLegendSize) > width)
+    {
+        while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0u) == 0x80u) text.pop_back();
+        if (!text.empty()) text.pop_back();
+    }
+    return text + "…";
+}
+
+/// "a, b and 3 more", as many names as fit.
+std::string legend_text(const std::vector<std::string>& names)
+{
+    std::string out = names.front();
+    for (std::size_t i = 1; i < names.size(); ++i)
+    {
+        const std::string more = i + 1 < names.size() ? " and " + std::to_string(names.size() - i - 1) + " more" : "";
+        if (text_width(out + ", " + names[i] + more, kLegendSize) > kNames)
+            return fitted(out, kNames - text_width(" and 99 more", kLegendSize)) + " and " + std::to_string(names.size() - i) + " more";
+        out += ", " + names[i];
+    }
+    return fitted(out, kNames);
+}
+
+std::string joined(const std::vector<std::string>& names)
+{
+    std::string out;
+    for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+    return out;
 }
 
 Scale times_of(const Chart& chart)
 {
     Scale out{Scale::Kind::Linear, INFINITY, -INFINITY, 1};
+    if (chart.times && chart.times->first < chart.times->second) return {Scale::Kind::Linear, chart.times->first, chart.times->second, 1};
     for (const Curve& curve : chart.curves)
         for (const auto& [time, value] : curve.points)
             if (std::isfinite(value)) out.low = std::min(out.low, time), out.high = std::max(out.high, time);
@@ -54,8 +100,8 @@ Scale times_of(const Chart& chart)
 Scale values_of(const Group& group, const Chart& chart)
 {
     std::vector<double> values;
-    for (const Curve* curve : group.curves)
-        for (const auto& [time, value] : curve->points) values.push_back(value);
+    for (const NamedCurve& c : group.curves)
+        for (const auto& [time, value] : c.curve->points) values.push_back(value);
     Scale out = Scale::around(chart.kind, values);
     out.threshold = std::max(out.threshold, chart.least);
     return out;
@@ -64,13 +110,15 @@ Scale values_of(const Group& group, const Chart& chart)
 bool is_on(const Scale& x, double at) { return at >= x.low && at <= x.high; }
 
 /// The segments between points that have no position on the scale.
-void draw_curve(Drawing& d, const Panel& p, const Curve& curve, const Pen& pen)
+void draw_curve(Drawing& d, const Panel& p, const NamedCurve& named, const Pen& pen)
 {
+    const Curve& curve = *named.curve;
+    const std::string hint = joined(named.names);
     std::vector<Spot> piece;
     const auto finish = [&]
     {
-        if (piece.size() == 1) d.marker(piece.front(), 0, 2, pen.ink, true, curve.name);
-        if (piece.size() > 1) d.line(std::move(piece), pen, curve.name);
+        if (piece.size() == 1) d.marker(piece.front(), 0, 2, pen.ink, true, hint);
+        if (piece.size() > 1) d.line(std::move(piece), pen, hint);
         piece.clear();
     };
     for (const auto& [time, value] : curve.points)
@@ -96,7 +144,7 @@ void draw_legend(Drawing& d, const Panel& p, const Group& group)
         Pen pen = pen_of(i);
         pen.width = 2.5;
         d.line({{p.right() + 14, y}, {p.right() + 34, y}}, pen);
-        d.words({p.right() + 40, y + 4}, group.curves[i]->name, {kLegendSize, {}, Anchor::Start, false, false});
+        d.words({p.right() + 40, y + 4}, legend_text(group.curves[i].names), {kLegendSize, {}, Anchor::Start, false, false});
     }
     const std::size_t rest = group.curves.size() - shown;
     if (rest > 0)
@@ -186,10 +234,10 @@ void draw_group(Drawing& d, const Panel& p, const Chart& chart, const Group& gro
     const std::size_t count = std::min(group.curves.size(), kMostCurves);
     for (std::size_t i = 0; i < count; ++i)
     {
-        // The first curves are the broadest, so that coinciding curves are all visible.
+        // The first curves are the broadest, so that curves which nearly coincide are all visible.
         Pen pen = pen_of(i);
         pen.width += 0.7 * static_cast<double>(std::min<std::size_t>(count - 1 - i, 5));
-        draw_curve(d, p, *group.curves[i], pen);
+        draw_curve(d, p, group.curves[i], pen);
     }
     draw_legend(d, p, group);
     if (is_last && has_notices(chart)) draw_notices(d, p, chart);
@@ -201,7 +249,7 @@ Drawing draw(const Chart& chart)
 {
     const std::vector<Group> groups = groups_of(chart);
     const Scale x = times_of(chart);
-    const double width = kWidth - kLeft - kRight - legend_width(chart);
+    const double width = kWidth - kLeft - kRight - kLegend;
     const Moments moments(chart, x, kLeft, width, kWidth - 8);
     const double top = kHead + moments.height() + (moments.height() > 0 ? 4 : 0);
     const double panels = static_cast<double>(std::max<std::size_t>(groups.size(), 1));

@@ -1,6 +1,7 @@
 /// Curves over time: one panel per unit, one below the other, with a legend beside each, and marked moments across all panels.
 #pragma once
 
+#include <optional>
 #include <utility>
 
 #include "figures/axes.h"
@@ -39,11 +40,14 @@ struct Chart
     double least = 0;           ///< of SymLog: smaller values are drawn linearly
     std::vector<Curve> curves;  ///< panels are in the order in which their units first occur
     std::vector<Moment> moments;
+    /// From where to where the time axis goes, so that charts below one another have the same; otherwise as far as there are points.
+    std::optional<std::pair<double, double>> times;
 };
 
 /// Maximum number of curves in a panel; the legend states the number of the others.
 inline constexpr std::size_t kMostCurves = 16;
 
+/// Curves of one unit that are equal, point by point, are drawn as one with all their names. Panels are equally wide in all charts.
 Drawing draw(const Chart& chart);
 
 /// "run.svg" or "run.png"; an error for anything else.

@@ -104,31 +104,57 @@ void draw_front(Drawing& d, const Panel& p, const StudyResult& r)
     if (steps.size() > 1) d.line(std::move(steps), {{Ink::Role::Front, 0, 0, 0, 0}, 5, false}, "Pareto front: no other is better in both");
 }
 
-/// Points of each algorithm, joined in the order of their step lengths; those are named where `labels` has room.
+/// The points of an algorithm in a diagram, the longest step first.
+struct Series
+{
+    std::vector<const Point*> points;
+    std::vector<Spot> spots;
+};
+
+/// Of the series after `k`: how many have a point here too. They are drawn over this one.
+std::size_t covers(const std::vector<Series>& series, std::size_t k, Spot at)
+{
+    constexpr double kSame = 4;  // px
+    const auto is_here = [&](const Spot& other) { return std::hypot(other.x - at.x, other.y - at.y) < kSame; };
+    return static_cast<std::size_t>(std::count_if(series.begin() + static_cast<std::ptrdiff_t>(k) + 1, series.end(),
+                                                  [&](const Series& s) { return std::any_of(s.spots.begin(), s.spots.end(), is_here); }));
+}
+
+Series series_of(const Panel& p, const StudyResult& r, const std::string& algorithm, double (*x_of)(const Point&))
+{
+    Series out;
+    for (const Point& q : r.points)
+        if (q.combination.algorithm == algorithm && std::isfinite(error_of(q)) && std::isfinite(x_of(q)) && x_of(q) > 0)
+            out.points.push_back(&q);
+    std::stable_sort(out.points.begin(), out.points.end(), [](const Point* a, const Point* b) { return a->record.dt > b->record.dt; });
+    for (const Point* q : out.points) out.spots.push_back(p.at(x_of(*q), shown(error_of(*q))));
+    return out;
+}
+
+/// Points of each algorithm, joined in the order of their step lengths; those are named where `labels` has room. What others cover is
+/// drawn larger, so that it is seen around them.
 void draw_series(Drawing& d, const Panel& p, const StudyResult& r, const std::vector<std::string>& algorithms, double (*x_of)(const Point&),
                  Labels* labels)
 {
-    std::vector<std::pair<Spot, std::string>> named;
-    for (std::size_t k = 0; k < algorithms.size(); ++k)
+    constexpr std::size_t kMostAround = 4;
+    std::vector<Series> series;
+    for (const std::string& algorithm : algorithms) series.push_back(series_of(p, r, algorithm, x_of));
+    for (std::size_t k = 0; k < series.size(); ++k)
     {
-        std::vector<const Point*> points;
-        for (const Point& q : r.points)
-            if (q.combination.algorithm == algorithms[k] && std::isfinite(error_of(q)) && std::isfinite(x_of(q)) && x_of(q) > 0)
-                points.push_back(&q);
-        std::stable_sort(points.begin(), points.end(), [&](const Point* a, const Point* b) { return a->record.dt > b->record.dt; });
-        std::vector<Spot> line;
-        for (const Point* q : points) line.push_back(p.at(x_of(*q), shown(error_of(*q))));
-        if (line.size() > 1) d.line(line, {ink_of(k), 1.5, k >= Ink::kSeries});
-        for (std::size_t i = 0; i < points.size(); ++i)
-        {
-            d.marker(line[i], shape_of(k), 5.5, ink_of(k), points[i]->is_resolved(), hint_of(r, *points[i]));
-            named.emplace_back(line[i], points[i]->combination.dt);
-        }
+        const Series& s = series[k];
+        std::vector<double> around;
+        for (const Spot& at : s.spots) around.push_back(static_cast<double>(std::min(covers(series, k, at), kMostAround)));
+        const double width = around.empty() ? 0 : *std::min_element(around.begin(), around.end());
+        if (s.spots.size() > 1) d.line(s.spots, {ink_of(k), 1.5 + 2.5 * width, k >= Ink::kSeries});
+        for (std::size_t i = 0; i < s.spots.size(); ++i)
+            d.marker(s.spots[i], shape_of(k), 5.5 + 3.5 * around[i], ink_of(k), s.points[i]->is_resolved(), hint_of(r, *s.points[i]));
     }
     if (!labels) return;
-    for (const auto& [at, dt] : named) labels->occupy(at, 5);
-    for (const auto& [at, dt] : named)
-        if (!dt.empty()) labels->add(d, at, dt);
+    for (const Series& s : series)
+        for (const Spot& at : s.spots) labels->occupy(at, 5);
+    for (const Series& s : series)
+        for (std::size_t i = 0; i < s.spots.size(); ++i)
+            if (const std::string& dt = s.points[i]->combination.dt; !dt.empty()) labels->add(d, s.spots[i], dt);
 }
 
 /// Runs that have a cost but no error are drawn at the upper edge.

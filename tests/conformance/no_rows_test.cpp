@@ -96,7 +96,7 @@ struct Host
     EmptySystem system;
     std::vector<ParameterChange> changes;
     NoReports reports;
-    Trial trial;
+    EventBracket trial;
     Island island;
     GapQuery gap;
     Impact impact;

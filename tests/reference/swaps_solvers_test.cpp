@@ -43,12 +43,12 @@ Simulation* posts_to = nullptr;
 const Request* posted = nullptr;
 int trials = 0;
 
-void bisect_and_post(const StepContext&, Row, const PostingRows&, plab::Trial& trial)
+void bisect_and_post(const StepContext&, Row, const PostingRows&, EventBracket& trial)
 {
     ++trials;
     if (posts_to && trial.iteration == 5) std::exchange(posts_to, nullptr)->post(*posted);
     const double middle = 0.5 * (trial.begin + trial.end);
-    trial.decision = trial.end - trial.begin <= 1e-12 ? plab::Trial::Decision::Accept : plab::Trial::Decision::Try;
+    trial.decision = trial.end - trial.begin <= 1e-12 ? EventBracket::Decision::Accept : EventBracket::Decision::Try;
     trial.next = middle;
 }
 

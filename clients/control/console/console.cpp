@@ -33,6 +33,12 @@ std::size_t terminal_width()
     return width > 0 ? width : kUsualWidth;
 }
 
+std::size_t terminal_height()
+{
+    winsize size{};
+    return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_row : 0;
+}
+
 bool begins_character(char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }
 
 /// The first `most` characters of UTF-8 text.
@@ -62,6 +68,7 @@ Console Console::make(const std::string& color)
     Console c;
     c.is_terminal_ = isatty(STDOUT_FILENO) == 1;
     c.width_ = c.is_terminal_ ? terminal_width() : 0;
+    c.height_ = c.is_terminal_ ? terminal_height() : 0;
     const char* const term = std::getenv("TERM");
     const bool can = c.is_terminal_ && !is_set("NO_COLOR") && (term == nullptr || std::string_view(term) != "dumb");
     c.is_colored_ = color == "always" || (color == "auto" && can);

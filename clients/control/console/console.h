@@ -29,6 +29,8 @@ public:
     bool is_terminal() const { return is_terminal_; }
     /// Columns of a line; 0: unlimited, if standard output is not a terminal.
     std::size_t width() const { return width_; }
+    /// Lines of the terminal; 0: unlimited or unknown.
+    std::size_t height() const { return height_; }
     std::string styled(Style style, std::string_view text) const;
 
     /// Standard output. The caller handles control characters: text from the bus must go through printable().
@@ -40,7 +42,7 @@ public:
 
 private:
     bool is_terminal_ = false, is_colored_ = false;
-    std::size_t width_ = 0;
+    std::size_t width_ = 0, height_ = 0;
 };
 
 /// Foreign text without control characters, so that it cannot move the cursor or colour the terminal.

@@ -8,6 +8,7 @@ namespace plab::cli
 
 void add_list_commands(const Command& app, Context& context);    // servers, objects, interactions, types
 void add_level_commands(const Command& app, Context& context);   // levels, why
+void add_top_command(const Command& app, Context& context);      // top
 void add_show_command(const Command& app, Context& context);     // show
 void add_watch_command(const Command& app, Context& context);    // watch
 const std::vector<std::string>& watch_streams();                 // what it can print

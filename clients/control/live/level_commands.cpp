@@ -1,15 +1,14 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "control/console/table.h"
 #include "control/live/commands.h"
 #include "control/live/metrics_text.h"
+#include "control/live/refresh.h"
 #include "idl/values/scene.h"
 #include "link/names.h"
 
@@ -181,32 +180,15 @@ Exit run_levels(Context& c, const LevelsOptions& o)
         link::Catalogue::open(c.session(), link::Part::Interactions | link::Part::Objects | static_cast<link::Parts>(link::Part::Metrics));
     if (!catalogue) return c.fail(Exit::NoServer, catalogue.errors());
     if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
-    const auto begin = std::chrono::steady_clock::now();
-    for (std::uint64_t n = 1;; ++n)
+    const auto print_now = [&](const link::CatalogueContents& now)
     {
-        const link::CatalogueContents& now = catalogue->now();
         const std::vector<LevelOf> levels = levels_in(now, o.only);
-        if (c.settings.json)
-        {
-            Json list = Json::array();
-            for (const LevelOf& l : levels) list.push_back(json_of(l, now, link::find_metrics(now.metrics, l.id)));
-            print(c.console,
-                  {{"server", c.session().server()}, {"step", now.metrics ? Json(now.metrics->step) : Json()}, {"levels", list}});
-        }
-        else
-            print_levels(c, now, levels, !o.only.empty());
-        const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
-        const bool enough =
-            (c.settings.count && n >= *c.settings.count) || (c.settings.duration && passed.count() + 1 > *c.settings.duration);
-        if (!o.live || enough) return Exit::Done;
-        for (int slice = 0; slice < 10 && !c.stopped(); ++slice)
-        {
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
-            (void)catalogue->update();
-        }
-        if (c.stopped()) return Exit::Interrupted;
-        if (catalogue->server_is_gone()) return c.fail(Exit::NoServer, "the server has gone");
-    }
+        if (!c.settings.json) return print_levels(c, now, levels, !o.only.empty());
+        Json list = Json::array();
+        for (const LevelOf& l : levels) list.push_back(json_of(l, now, link::find_metrics(now.metrics, l.id)));
+        print(c.console, {{"server", c.session().server()}, {"step", now.metrics ? Json(now.metrics->step) : Json()}, {"levels", list}});
+    };
+    return print_again(c, *catalogue, link::Seconds(1), o.live, print_now);
 }
 
 Exit run_why(Context& c, const std::string& id)

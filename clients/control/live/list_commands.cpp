@@ -34,14 +34,6 @@ std::string three_decimals(double value)
 
 // ---- servers --------------------------------------------------------------------------------------------------------
 
-/// In a word: what it is doing, or how it handles steps that take too long.
-std::string doing(const link::ServerInfo& s)
-{
-    const std::string word = s.playback.empty() ? "running" : "playback";
-    if (s.paused) return s.playback.empty() ? "paused" : word + ", paused";
-    return s.overload.empty() ? word : s.overload;
-}
-
 /// Conditions that a user should know: an incomplete recording, samples that rings dropped.
 std::string note_of(const link::ServerInfo& s)
 {
@@ -69,7 +61,7 @@ void print_servers(const Console& console, const std::vector<link::ServerInfo>& 
                  {"host", Align::Left, Shrink::End},
                  {"version", Align::Left, Shrink::Never, 8}});
     for (const link::ServerInfo& s : servers)
-        table.add({s.name, doing(s), std::to_string(s.step), three_decimals(s.time) + " s", number(s.rate_reached) + "x",
+        table.add({s.name, state_text(s), std::to_string(s.step), three_decimals(s.time) + " s", number(s.rate_reached) + "x",
                    std::to_string(s.run), s.scene_file, note_of(s), age_text(static_cast<double>(now - s.started_ns) * 1e-9),
                    std::to_string(s.process), s.host, s.version},
                   !s.recording.trouble.empty() || s.recording.dropped > 0 ? Style::Red
@@ -172,10 +164,8 @@ std::string members_text(const link::Interaction& i)
 
 std::string note_of(const link::Interaction& i, const link::InteractionMetrics* m)
 {
-    if (i.quarantined || (m != nullptr && m->quarantined)) return "quarantined";
-    if (m == nullptr || m->resolved.empty() || m->resolved == i.type_name) return {};
-    // "TYPE: what about it", or another type that does the work.
-    return m->resolved.starts_with(i.type_name + ": ") ? m->resolved.substr(i.type_name.size() + 2) : "works as " + m->resolved;
+    if (i.quarantined) return "quarantined";
+    return m == nullptr ? "" : note_text(i.type_name, *m);
 }
 
 Exit run_interactions(Context& c)

@@ -49,4 +49,19 @@ std::string error_meaning(const link::InteractionMetrics& m)
     return known.empty() ? text_of(m, "no_error") : known;
 }
 
+std::string note_text(const std::string& type, const link::InteractionMetrics& m)
+{
+    if (m.quarantined) return "quarantined";
+    if (m.resolved.empty() || m.resolved == type) return {};
+    // "TYPE: what about it", or another type that does the work.
+    return m.resolved.starts_with(type + ": ") ? m.resolved.substr(type.size() + 2) : "works as " + m.resolved;
+}
+
+std::string state_text(const link::ServerInfo& s)
+{
+    const std::string word = s.playback.empty() ? "running" : "playback";
+    if (s.paused) return s.playback.empty() ? "paused" : word + ", paused";
+    return s.overload.empty() ? word : s.overload;
+}
+
 }  // namespace plab::cli

@@ -17,5 +17,9 @@ std::string error_text(const link::InteractionMetrics& m);
 std::string error_unit(const link::InteractionMetrics& m);
 /// The meaning of the error, or why there is none.
 std::string error_meaning(const link::InteractionMetrics& m);
+/// What else a user should know of a component of this type: "quarantined", what it does itself, or which algorithm works in its place.
+std::string note_text(const std::string& type, const link::InteractionMetrics& m);
+/// In a word: what a server is doing, or how it handles steps that take too long.
+std::string state_text(const link::ServerInfo& s);
 
 }  // namespace plab::cli

@@ -228,6 +228,9 @@ Exit run_watch(Context& c, const WatchOptions& o)
     if (!catalogue) return c.fail(Exit::Failed, catalogue.errors());
     if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
     if (const Exit e = check_names(c, o, catalogue->now()); e != Exit::Done) return e;
+    // Events and collisions come when something happens, which may take long: say so where a person waits.
+    if (c.console.is_terminal() && (o.stream == "events" || o.stream == "collisions"))
+        c.console.say("plabctl: " + o.stream + " of server '" + printable(c.session().server()) + "' as they come; Ctrl-C ends");
     const Selection selection{{o.only.begin(), o.only.end()}};
     Watch w{c, *catalogue, WatchPrinter(c.console, c.settings.json, selection), Limit(c), Thinning(o.every), {}};
     if (o.stream == "states") return watch_states(w);

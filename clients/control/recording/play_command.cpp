@@ -1,4 +1,6 @@
+#include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "control/console/json.h"
 #include "control/recording/commands.h"

@@ -102,7 +102,7 @@ struct ContactLoad
 };
 
 /// Phase::Locate: a step [0, h] is known to contain an event; the resolution chooses the next time to try.
-struct Trial
+struct EventBracket
 {
     // in
     double begin = 0;    ///< s, known to be free of the event

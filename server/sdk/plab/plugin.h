@@ -15,10 +15,10 @@ inline constexpr std::uint32_t kSdkVersion = 1;
 constexpr std::uint64_t layout_stamp()
 {
     std::uint64_t h = 0xcbf29ce484222325ull;
-    for (const std::size_t n : {sizeof(StepContext), sizeof(PhaseCall), sizeof(TypeInfo), sizeof(CommandInfo), sizeof(Field),
-                                sizeof(Role),        sizeof(Bodies),    sizeof(Shafts),   sizeof(Shapes),      sizeof(Geometry),
-                                sizeof(Wrenches),    sizeof(Contact),   sizeof(Trial),    sizeof(Impact),      sizeof(ConstraintRow),
-                                sizeof(Island),      sizeof(GapQuery),  sizeof(Event),    sizeof(Value),       sizeof(Result<void>)})
+    for (const std::size_t n : {sizeof(StepContext), sizeof(PhaseCall), sizeof(TypeInfo),     sizeof(CommandInfo), sizeof(Field),
+                                sizeof(Role),        sizeof(Bodies),    sizeof(Shafts),       sizeof(Shapes),      sizeof(Geometry),
+                                sizeof(Wrenches),    sizeof(Contact),   sizeof(EventBracket), sizeof(Impact),      sizeof(ConstraintRow),
+                                sizeof(Island),      sizeof(GapQuery),  sizeof(Event),        sizeof(Value),       sizeof(Result<void>)})
         h = (h ^ n) * 0x100000001b3ull;
     return h;
 }

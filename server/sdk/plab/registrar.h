@@ -74,7 +74,7 @@ struct PhaseCall
     std::span<Island> islands;                  // Solve
     GapQuery* gap = nullptr;                    // Gap
     ContactSink* contacts = nullptr;            // Detect
-    Trial* trial = nullptr;                     // Locate
+    EventBracket* trial = nullptr;              // Locate
     ContactLoad* load = nullptr;                // Choose
     Impact* impact = nullptr;                   // Respond, Touch
     Touches* touches = nullptr;                 // Finish
@@ -164,7 +164,7 @@ PLAB_ARGUMENT(DynamicSystem&, system, "DynamicSystem");
 PLAB_ARGUMENT(Island&, island, "Island");
 PLAB_ARGUMENT(GapQuery&, gap, "Gap");
 PLAB_ARGUMENT(ContactSink&, contacts, "Contacts");
-PLAB_ARGUMENT(Trial&, trial, "Trial");
+PLAB_ARGUMENT(EventBracket&, trial, "EventBracket");
 PLAB_ARGUMENT(ContactLoad&, load, "ContactLoad");
 PLAB_ARGUMENT(Impact&, impact, "Impact");
 PLAB_ARGUMENT(Touches&, touches, "Touches");

@@ -201,42 +201,18 @@ void ArticulatedBodies::set_bias(Link& link) const
     link.bias.linear += cross(link.bias.angular, link.r) + cross(link.w, cross(link.w, link.r));
 }
 
-/// U = I^A S and D = S^T U = L diag(d) L^T.
+/// U = I^A S and the factors of D = S^T U.
 void ArticulatedBodies::factor(Link& link, std::size_t n) const
 {
     const auto inner = [](const Spatial& a, const Spatial& b) { return dot(a.linear, b.linear) + dot(a.angular, b.angular); };
-    for (std::size_t k = 0; k < n; ++k)
+    std::array<double, 6> D{};
+    for (std::size_t k = 0, at = 0; k < n; ++k)
     {
         link.U[k] = times(link.inertia, link.S[k]);
         link.push[k] = -inner(link.S[k], link.p);
+        for (std::size_t j = 0; j <= k; ++j) D[at++] = inner(link.S[k], link.U[j]);
     }
-    std::array<double, 6>& D = link.D;
-    const double d0 = inner(link.S[0], link.U[0]);
-    D[0] = 1 / d0;
-    if (n == 1) return;
-    const double a10 = inner(link.S[1], link.U[0]), a20 = inner(link.S[2], link.U[0]), a21 = inner(link.S[2], link.U[1]);
-    D[3] = a10 * D[0], D[4] = a20 * D[0];
-    const double d1 = inner(link.S[1], link.U[1]) - D[3] * a10;
-    D[1] = 1 / d1;
-    const double b21 = a21 - D[4] * a10;
-    D[5] = b21 * D[1];
-    D[2] = 1 / (inner(link.S[2], link.U[2]) - D[4] * a20 - D[5] * b21);
-}
-
-/// b := D^-1 b
-void ArticulatedBodies::solve(const Link& link, std::array<double, 3>& b, std::size_t n)
-{
-    const std::array<double, 6>& D = link.D;
-    if (n == 1)
-    {
-        b[0] *= D[0];
-        return;
-    }
-    b[1] -= D[3] * b[0];
-    b[2] -= D[4] * b[0] + D[5] * b[1];
-    b[0] *= D[0], b[1] *= D[1], b[2] *= D[2];
-    b[1] -= D[5] * b[2];
-    b[0] -= D[3] * b[1] + D[4] * b[2];
+    link.D.factor(D, n);
 }
 
 /// Adds to the parent the inertia and the bias force that the joint lets through.
@@ -245,12 +221,12 @@ void ArticulatedBodies::pass_inward(const Link& link, std::size_t n)
     if (link.parent == kNoIndex) return;
     Inertia I = link.inertia;
     std::array<double, 3> give = link.push;
-    if (n > 0) solve(link, give, n);
+    link.D.solve(give, n);
     for (std::size_t k = 0; k < n; ++k)
     {
         std::array<double, 3> unit{};  // row k of D^-1
         unit[k] = 1;
-        solve(link, unit, n);
+        link.D.solve(unit, n);
         Spatial w{};
         for (std::size_t j = 0; j < n; ++j) w.linear += unit[j] * link.U[j].linear, w.angular += unit[j] * link.U[j].angular;
         add_outer(I.M, link.U[k].linear, w.linear, -1);
@@ -279,7 +255,8 @@ void ArticulatedBodies::pass_inward(const Link& link, std::size_t n)
     parent.p.linear += p.linear, parent.p.angular += p.angular + cross(l, p.linear);
 }
 
-/// The acceleration of a free root: I^A a = -p, by block elimination of the linear part (M is positive definite).
+/// The acceleration of a free root: I^A a = -p. The inertia is stored as 3 x 3 blocks, so the linear part is eliminated as one block;
+/// M and the Schur complement are positive definite.
 void ArticulatedBodies::free_acceleration(Link& link)
 {
     const Inertia& I = link.inertia;
@@ -327,7 +304,7 @@ void ArticulatedBodies::accelerate(const Bodies& bodies, const Wrenches& wrenche
         const std::size_t n = freedom(link.kind);
         std::array<double, 3> du = link.push;
         for (std::size_t j = 0; j < n; ++j) du[j] -= dot(link.U[j].linear, link.a.linear) + dot(link.U[j].angular, link.a.angular);
-        if (n > 0) solve(link, du, n);
+        link.D.solve(du, n);
         for (std::size_t j = 0; j < n; ++j)
         {
             rates[k + j] = du[j];

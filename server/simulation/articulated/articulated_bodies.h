@@ -12,9 +12,11 @@
 /// of a free root are rotation vectors (sdk/plab/minimal_coordinates.h has the units).
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
+#include "linear/ldlt3.h"
 #include "plab/tables.h"
 #include "plab/wrenches.h"
 #include "simulation/articulated/joint_tree.h"
@@ -75,12 +77,11 @@ private:
         Spatial p, bias, a;
         std::array<Spatial, 3> S, U;
         std::array<double, 3> push{};  ///< -S^T p
-        std::array<double, 6> D{};     ///< factors L and D^-1 of S^T U: d0 d1 d2 inverted, l10 l20 l21
+        linear::Ldlt3 D;               ///< factors of S^T U
     };
 
     static std::size_t freedom(JointKind kind);
     static Spatial times(const Inertia& inertia, const Spatial& a);
-    static void solve(const Link& link, std::array<double, 3>& b, std::size_t n);
     static void free_acceleration(Link& link);
     void set_subspace(Link& link) const;
     void set_bias(Link& link) const;

@@ -90,7 +90,7 @@ private:
     /// How far the conservative advancement of a pair has got.
     struct Advancement
     {
-        Trial trial;             ///< question to the resolution
+        EventBracket trial;      ///< question to the resolution
         DistanceSample sample;   ///< the present one
         DistanceSample at_end;   ///< at the end of the step; taken after a few advances
         Vec3 turn;               ///< rad/s: angular velocity of the normal between the last two samples
@@ -181,10 +181,10 @@ private:
 
     // event_search.cpp
     void locate(Candidate& candidate);
-    void bracket(Candidate& candidate, Trial& trial);
+    void bracket(Candidate& candidate, EventBracket& trial);
     bool overlaps_at(Candidate& candidate, double time);
     double begin_of_scope() const;
-    void ask(const Candidate& candidate, Trial& trial);
+    void ask(const Candidate& candidate, EventBracket& trial);
     void search(Candidate& candidate);
     bool meets(Candidate& candidate);
     std::optional<bool> decide_now(Candidate& candidate, Advancement& a);

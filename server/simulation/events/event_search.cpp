@@ -51,7 +51,7 @@ bool EventLocator::overlaps_at(Candidate& candidate, double time)
     return true;
 }
 
-void EventLocator::ask(const Candidate& candidate, plab::Trial& trial)
+void EventLocator::ask(const Candidate& candidate, EventBracket& trial)
 {
     const std::uint32_t resolution = contacts_.detectors()[candidate.detector].resolution;
     ComponentCall question(step_, resolution);
@@ -60,12 +60,12 @@ void EventLocator::ask(const Candidate& candidate, plab::Trial& trial)
     question.run(Phase::Locate);
 }
 
-void EventLocator::bracket(Candidate& candidate, plab::Trial& trial)
+void EventLocator::bracket(Candidate& candidate, EventBracket& trial)
 {
     for (;; ++trial.iteration)
     {
         ask(candidate, trial);
-        if (trial.decision != plab::Trial::Decision::Try || budget_.is_spent() || step_.frame.give_up()) return;
+        if (trial.decision != EventBracket::Decision::Try || budget_.is_spent() || step_.frame.give_up()) return;
         (overlaps_at(candidate, trial.next) ? trial.end : trial.begin) = trial.next;
     }
 }
@@ -78,7 +78,7 @@ void EventLocator::locate(Candidate& candidate)
     if (candidate.at_end) return;
     // Trials advance the groups of the pair only, whatever is rewound for the answer: the others are not affected by them.
     scope_of_pair(candidate);
-    plab::Trial trial;
+    EventBracket trial;
     trial.begin = begin_of_scope(), trial.end = trial.step = step_.frame.step;
     trial.gap_begin = trial.gap_end = trial.rate_begin = trial.rate_end = kUnknown;
     for (const FoundContact& f : candidate.contacts) trial.depth = std::max(trial.depth, f.contact.depth);
@@ -165,7 +165,7 @@ Vec3 EventLocator::turn_between(const DistanceSample& first, const DistanceSampl
 /// certain not to have met earlier.
 bool EventLocator::settle_in_bracket(Candidate& candidate, const DistanceSample& clear, const DistanceSample& over, bool certify)
 {
-    plab::Trial trial;
+    EventBracket trial;
     trial.begin = clear.time, trial.end = over.time, trial.step = step_.frame.step;
     trial.gap_begin = clear.query.gap, trial.rate_begin = clear.rate;
     trial.gap_end = std::min(over.query.gap, -kNothing), trial.rate_end = over.rate;
@@ -175,7 +175,7 @@ bool EventLocator::settle_in_bracket(Candidate& candidate, const DistanceSample&
     for (;; ++trial.iteration)
     {
         ask(candidate, trial);
-        if (trial.decision != plab::Trial::Decision::Try || budget_.is_spent() || step_.frame.give_up()) break;
+        if (trial.decision != EventBracket::Decision::Try || budget_.is_spent() || step_.frame.give_up()) break;
         const DistanceSample sample = sample_at(candidate, trial.next);
         trial.last = sample.time, trial.last_gap = sample.query.gap, trial.last_rate = sample.rate;
         if (sample.query.gap > 0)
@@ -247,7 +247,7 @@ void EventLocator::extend_uncertified(Advancement& a) const
 void EventLocator::fill_trial(const Candidate& candidate, Advancement& a)
 {
     const DistanceSample& sample = a.sample;
-    plab::Trial& trial = a.trial;
+    EventBracket& trial = a.trial;
     if (trial.iteration == kFirstSteps) a.at_end = sample_at(candidate, step_.frame.step);
     a.bracketed = trial.iteration >= kFirstSteps && a.at_end.query.gap < -a.at_end.contact_gap;
     trial.begin = sample.time, trial.gap_begin = std::max(sample.query.gap, 0x1p-60 * sample.contact_gap);
@@ -262,14 +262,14 @@ std::optional<bool> EventLocator::choose_time(Candidate& candidate, Advancement&
 {
     const DistanceSample& sample = a.sample;
     ask(candidate, a.trial);
-    if (a.trial.decision == plab::Trial::Decision::Accept)
+    if (a.trial.decision == EventBracket::Decision::Accept)
     {
         // A pair that separates has no impact, however narrow its gap still is: go on.
         if (!contacts_.detectors()[candidate.detector].responds || sample.rate < 0) return true;
         extend_uncertified(a);
         a.trial.next = sample.time + a.clear;
     }
-    if (a.trial.decision == plab::Trial::Decision::GiveUp) return found_when_given_up(candidate, sample);
+    if (a.trial.decision == EventBracket::Decision::GiveUp) return found_when_given_up(candidate, sample);
     // With a known overlap ahead, the resolution may jump to its estimate of the zero.
     const bool may_jump = a.bracketed && (a.trial.iteration & 7) == kFirstSteps;
     if (may_jump && a.trial.next > sample.time + a.clear && settle_in_bracket(candidate, sample, a.at_end, true)) return true;

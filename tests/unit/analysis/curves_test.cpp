@@ -204,3 +204,40 @@ TEST_CASE("a chart is written in both formats, without NaN in it")
     chart.kind = figures::Scale::Kind::Log;
     CHECK(draw(chart).svg(true).find("nan") == std::string::npos);
 }
+
+TEST_CASE("a chart draws equal curves once, under all their names, and its time axis is as wide as in any other chart")
+{
+    const std::vector<std::pair<double, double>> points{{0, 1}, {1, 2}, {2, 1}};
+    figures::Chart chart;
+    chart.curves = {
+        {"first", "J", points}, {"second", "J", points}, {"other unit", "m", points}, {"third", "J", {{0, 1}, {1, 2}, {2, 1.5}}}};
+    const std::string svg = draw(chart).svg(true);
+    CHECK(svg.find(">first, second<") != std::string::npos);
+    CHECK(svg.find(">third<") != std::string::npos);
+    CHECK(svg.find(">other unit<") != std::string::npos);
+    // Eight equal ones do not fill the legend; a long name is cut and does not move the panel.
+    for (int i = 0; i < 7; ++i) chart.curves.push_back({"a name of some length " + std::to_string(i), "J", points});
+    const std::string many = draw(chart).svg(true);
+    CHECK(many.find(">first, second and 7 more<") != std::string::npos);
+    const auto right_end = [](const figures::Chart& c)
+    {
+        // The legend begins beside the panel.
+        const std::string text = draw(c).svg(true);
+        const std::size_t at = text.find(">" + c.curves.front().name.substr(0, 5));
+        const std::size_t x = text.rfind("x=\"", at);
+        return text.substr(x, text.find('"', x + 3) - x);
+    };
+    figures::Chart narrow, broad;
+    narrow.curves = {{"short", "J", points}}, broad.curves = {{"short but then a very long name that does not fit at all", "J", points}};
+    CHECK(right_end(narrow) == right_end(broad));
+    CHECK(draw(broad).svg(true).find("…<") != std::string::npos);
+}
+
+TEST_CASE("a chart's time axis goes as far as it is told to")
+{
+    figures::Chart chart;
+    chart.curves = {{"short", "J", {{4, 1}, {5, 2}}}};
+    CHECK(draw(chart).svg(true).find(">10<") == std::string::npos);
+    chart.times = {{0, 10}};
+    CHECK(draw(chart).svg(true).find(">10<") != std::string::npos);
+}

@@ -106,6 +106,41 @@ TEST_CASE("the command interactions joins the catalogue with the metrics")
     CHECK(has(table.out, "quarantined"));
 }
 
+TEST_CASE("the command top shows the costliest first, their share of the step, and the past as a curve")
+{
+    FakeServer server(test_domain(), "lab");
+    const Outcome twice = lab("top --every 0.2 -n 3");
+    CHECK(twice.code == 0);
+    const std::vector<std::string> lines = twice.lines();
+    REQUIRE(lines.size() == 3 * 7);  // head of 3 lines, a blank one, a title, two rows; and blank lines between
+    const std::size_t last = lines.size() - 8;
+    CHECK(has(lines[last], "lab  running"));
+    CHECK(has(lines[last + 1], "step    8.6 us"));
+    CHECK(has(lines[last + 1], "▁▁▁"));
+    CHECK(has(lines[last + 2], "unexplained 1e-12 J"));
+    CHECK(lines[last + 5].starts_with("contact "));
+    CHECK(has(lines[last + 5], "14 %"));  // 1234 of 8600 ns
+    CHECK(has(lines[last + 6], "quarantined"));
+    CHECK(lab("top --by error -n 1 --json").json()["interactions"][0]["id"] == "contact.response");
+    CHECK(lab("top --by work -n 1 --json").json()["interactions"][0]["id"] == "contact.response");
+    CHECK(lab("top --by name -n 1 --json").json()["interactions"][0]["id"] == "contact");
+    const Outcome wrong = lab("top --by costs");
+    CHECK(wrong.code == 2);
+    CHECK(has(wrong.err, "did you mean 'cost'"));
+}
+
+TEST_CASE("the command top ends after -d, and says so if the server ends")
+{
+    CHECK(plabctl("top --timeout 0.2").code == 3);
+    auto server = std::make_unique<FakeServer>(test_domain(), "lab");
+    CHECK(lab("top --every 0.1 -d 0.35").code == 0);
+    std::thread ending([&] { std::this_thread::sleep_for(std::chrono::seconds(1)), server.reset(); });
+    const Outcome gone = lab("top --every 10");
+    ending.join();
+    CHECK(gone.code == 3);
+    CHECK(has(gone.err, "server 'lab' has gone"));
+}
+
 TEST_CASE("the command types selects by part of a name, by family, or by what can replace a component")
 {
     FakeServer server(test_domain(), "lab");

@@ -13,16 +13,16 @@ namespace
 {
 /// Takes the host's part, with an overlap known at the end.
 template <class Gap, class Rate>
-Trial close_in(double step, Gap gap, Rate rate)
+EventBracket close_in(double step, Gap gap, Rate rate)
 {
     OneRow<resolution::RootRows> row;
-    Trial t;
+    EventBracket t;
     t.step = t.end = step;
     t.gap_begin = gap(0), t.rate_begin = rate(0), t.gap_end = gap(step), t.rate_end = rate(step);
     for (;; ++t.iteration)
     {
         resolution::find_root({}, 0, row.rows, t);
-        if (t.decision != Trial::Decision::Try) return t;
+        if (t.decision != EventBracket::Decision::Try) return t;
         REQUIRE(t.next > t.begin);
         REQUIRE(t.next < t.end);
         const double g = gap(t.next);
@@ -40,8 +40,8 @@ TEST_CASE("a falling ball's impact takes a few evaluations where bisection takes
     const auto gap = [](double t) { return 1e-3 - 0.01 * t - 0.5 * 9.81 * t * t; };
     const auto rate = [](double t) { return -0.01 - 9.81 * t; };
     const double want = (-0.01 + std::sqrt(1e-4 + 2 * 9.81 * 1e-3)) / 9.81;
-    const Trial t = close_in(1.0 / 60, gap, rate);
-    CHECK(t.decision == Trial::Decision::Accept);
+    const EventBracket t = close_in(1.0 / 60, gap, rate);
+    CHECK(t.decision == EventBracket::Decision::Accept);
     CHECK(std::fabs(t.begin - want) < 1e-15);
     CHECK(gap(t.begin) >= 0);
     CHECK(t.end - t.begin <= 0x1p-47 / 60);
@@ -65,7 +65,7 @@ TEST_CASE("rotating corners, springs that push back, steep and flat gaps: few ev
     };
     for (const Case& c : cases)
     {
-        const Trial t = close_in(c.step, c.gap, c.rate);
+        const EventBracket t = close_in(c.step, c.gap, c.rate);
         CHECK(std::fabs(t.begin - c.want) < 1e-14 * c.step);
         CHECK(t.iteration <= c.most_evaluations);
     }
@@ -74,7 +74,7 @@ TEST_CASE("rotating corners, springs that push back, steep and flat gaps: few ev
 TEST_CASE("without rates it is the secant method, and still ends")
 {
     const auto unknown = [](double) { return std::nan(""); };
-    const Trial t = close_in(
+    const EventBracket t = close_in(
         1, [](double s) { return 0.3 - s * s; }, unknown);
     CHECK(std::fabs(t.begin - std::sqrt(0.3)) < 1e-14);
     CHECK(t.iteration <= 55);  // like bisection, and hardly more
@@ -91,15 +91,15 @@ TEST_CASE("a Hermite cubic's zero is exact for a cubic")
 TEST_CASE("conservative advancement steps by gap over closing speed, and accepts a gap within its tolerance")
 {
     OneRow<resolution::AdvancementRows> row;
-    Trial t;
+    EventBracket t;
     t.step = t.end = 0.1, t.begin = t.last = 0.02, t.gap_begin = 0.3, t.closing = 10;
     t.gap_end = std::nan("");
     resolution::advance_to_contact({}, 0, row.rows, t);
-    CHECK(t.decision == Trial::Decision::Try);
+    CHECK(t.decision == EventBracket::Decision::Try);
     CHECK(t.next == 0.02 + 0.3 / 10);
     t.gap_begin = 0.9e-12;
     resolution::advance_to_contact({}, 0, row.rows, t);
-    CHECK(t.decision == Trial::Decision::Accept);
+    CHECK(t.decision == EventBracket::Decision::Accept);
 }
 
 TEST_CASE("bodies that graze for too long are reported")
@@ -109,13 +109,13 @@ TEST_CASE("bodies that graze for too long are reported")
     context.events = &events;
     OneRow<resolution::AdvancementRows> steps;
     OneRow<resolution::RootRows> root;
-    Trial t;
+    EventBracket t;
     t.step = t.end = 0.1, t.gap_begin = 1e-7, t.closing = 10, t.rate_begin = -1, t.gap_end = std::nan("");
     t.iteration = 1000;
     resolution::advance_to_contact(context, 0, steps.rows, t);
-    CHECK(t.decision == Trial::Decision::GiveUp);
+    CHECK(t.decision == EventBracket::Decision::GiveUp);
     resolution::find_root(context, 0, root.rows, t);
-    CHECK(t.decision == Trial::Decision::GiveUp);
+    CHECK(t.decision == EventBracket::Decision::GiveUp);
     REQUIRE(events.all.size() == 2);
     CHECK(events.all[0].kind == "resolution.grazing");
     CHECK(events.all[1].severity == Severity::Warning);

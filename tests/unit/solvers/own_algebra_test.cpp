@@ -1,6 +1,7 @@
-// Linear algebra of the solvers that is not Eigen's: cases in which Eigen's functions lose digits.
+// Linear algebra of the solvers that is not Eigen's: cases in which Eigen's functions lose digits, or time.
 #include "objects/solvers/dense_view.h"
 #include "objects/solvers/matrix_exponential.h"
+#include "support/shortest.h"
 
 #include <doctest/doctest.h>
 #include <Eigen/LU>
@@ -41,3 +42,21 @@ TEST_CASE("exp(A): Eigen's does not balance, and loses digits if units differ")
     CHECK(std::fabs(out[0] - std::cos(1.0)) < 1e-15);
     CHECK(std::fabs(theirs(0, 0) - std::cos(1.0)) > 1e-8);
 }
+
+#ifdef PLAB_TIMES_MEAN_SOMETHING
+TEST_CASE("Eigen's product computes with zeros, and takes longer for the Jacobian of a chain")
+{
+    // The links of a chain are coupled to their neighbours only: a band of blocks of 12.
+    constexpr int kSize = 240, kBand = 18;
+    SquareMatrix<double> a, out;
+    a.resize(kSize), out.resize(kSize);
+    for (int i = 0; i < kSize; ++i)
+        for (int j = 0; j < kSize; ++j) view(a)(i, j) = std::abs(i - j) < kBand ? 1.0 / (1 + i + 2 * j) : 0;
+    Eigen::MatrixXd product(kSize, kSize);
+    const double theirs = plab::test::shortest([&] { product.noalias() = view(a) * view(a); });
+    const double ours = plab::test::shortest([&] { multiply(a, a, out); });
+    CAPTURE(theirs), CAPTURE(ours);
+    CHECK((product - view(out)).cwiseAbs().maxCoeff() < 1e-14);
+    CHECK(theirs > 1.3 * ours);
+}
+#endif

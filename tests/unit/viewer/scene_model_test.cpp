@@ -157,14 +157,8 @@ TEST_CASE("objects that the catalogue or the state does not have yet are left ou
 TEST_CASE("meshes are passed on once, and again only when one changes")
 {
     link::CatalogueContents snapshot = sample();
-    snapshot.shapes["tetra"] = {"tetra",
-                                "Shape/Mesh",
-                                "mesh",
-                                {},
-                                {},
-                                {},
-                                {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}};
+    snapshot.shapes["tetra"] = {
+        "tetra", "Shape/Mesh", "mesh", {}, {}, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}};
     snapshot.objects["ball"].shapes = {"round", "tetra"};
     SceneModel model = model_of(snapshot);
     const std::uint64_t revision = model.draw(at(0)).meshes_revision;
@@ -197,14 +191,38 @@ TEST_CASE("a caption shows each algorithm as it was at the step of the state")
     CHECK(lines(100).back() == "contact: CDetection/Other");
 }
 
-TEST_CASE("of many interactions the most expensive ones are shown, and the number of the others")
+TEST_CASE("of many interactions, those with the same algorithm share a line: who runs at which level")
+{
+    link::CatalogueContents snapshot = sample();
+    for (int i = 10; i < 51; ++i)
+    {
+        const std::string id = "i" + std::to_string(i);
+        snapshot.interactions[id] = interaction(id, i < 20 ? "Solver/DormandPrince54" : "Solver/RungeKutta4");
+    }
+    Captions captions;
+    captions.use(snapshot);
+    std::vector<std::string> lines = captions.lines(at(0));
+    REQUIRE(lines.size() == 4);
+    CHECK(lines[1] == "contact: CDetection/ODE");
+    CHECK(lines[2] == "Solver/DormandPrince54: 10, such as i10");
+    CHECK(lines[3] == "Solver/RungeKutta4: 31, such as i20");
+    // Two change their level before step 7.
+    for (const char* id : {"i10", "i11"})
+        snapshot.interactions[id] = interaction(id, "Solver/RungeKutta4"), snapshot.interactions[id].since = 7;
+    captions.use(snapshot);
+    CHECK(captions.lines(at(6))[2] == "Solver/DormandPrince54: 10, such as i10");
+    CHECK(captions.lines(at(7))[2] == "Solver/DormandPrince54: 8, such as i12");
+    CHECK(captions.lines(at(7))[3] == "Solver/RungeKutta4: 33, such as i10");
+}
+
+TEST_CASE("of many algorithms the most expensive ones are shown, and the number of the other interactions")
 {
     link::CatalogueContents snapshot = sample();
     snapshot.metrics.emplace();
     for (int i = 10; i < 51; ++i)
     {
         const std::string id = "i" + std::to_string(i);
-        snapshot.interactions[id] = interaction(id, "Field/Gravity");
+        snapshot.interactions[id] = interaction(id, "Field/F" + std::to_string(i));
         link::InteractionMetrics metrics;
         metrics.component_id = id, metrics.cost_ns = i % 2 == 0 ? i : 0;
         snapshot.metrics->interactions.push_back(metrics);
@@ -213,8 +231,8 @@ TEST_CASE("of many interactions the most expensive ones are shown, and the numbe
     captions.use(snapshot);
     const std::vector<std::string> lines = captions.lines(at(0));
     REQUIRE(lines.size() == 14);
-    CHECK(lines[1] == "i28: Field/Gravity");
-    CHECK(lines[12] == "i50: Field/Gravity");
+    CHECK(lines[1] == "i28: Field/F28");
+    CHECK(lines[12] == "i50: Field/F50");
     CHECK(lines[13] == "and 30 more");
 }
 
@@ -236,8 +254,8 @@ TEST_CASE("the view: a named camera, the front one, everything; and the effect o
     const std::vector<render::Item> items = model.draw(at(0)).items;
     const auto view_of = [&](const ViewChoice& choice, double time = 0)
     {
-        view::Viewpoint viewpoint(choice);
-        return viewpoint.find(model, items, at(time));
+        view::CameraController controller(choice);
+        return controller.find(model, items, at(time));
     };
     CHECK(view_of({})->position == Vec3{0, -9, 0});
     CHECK(view_of({.camera = "side"})->position == Vec3{9, 0, 0});

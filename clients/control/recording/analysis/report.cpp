@@ -66,11 +66,17 @@ bool is_all_zero(const Curve& curve)
     return std::all_of(curve.points.begin(), curve.points.end(), [](const auto& p) { return !(std::fabs(p.second) > 0); });
 }
 
-Chart chart_of(std::string title, std::vector<Curve> curves, const std::vector<figures::Moment>& moments,
-               Scale::Kind kind = Scale::Kind::Linear)
+/// What all charts of the report have in common.
+struct TimeLine
+{
+    std::vector<figures::Moment> moments;
+    std::pair<double, double> span;  ///< s, from the first moment of the recording to the last
+};
+
+Chart chart_of(std::string title, std::vector<Curve> curves, const TimeLine& line, Scale::Kind kind = Scale::Kind::Linear)
 {
     Chart out;
-    out.title = std::move(title), out.curves = std::move(curves), out.moments = moments, out.kind = kind;
+    out.title = std::move(title), out.curves = std::move(curves), out.moments = line.moments, out.times = line.span, out.kind = kind;
     return out;
 }
 
@@ -97,20 +103,20 @@ std::vector<Curve> curves_of_interactions(const Log& log, const std::vector<std:
     return out;
 }
 
-void add_energy(Page& page, const Log& log, const std::vector<figures::Moment>& moments)
+void add_energy(Page& page, const Log& log, const TimeLine& line)
 {
     std::vector<Curve> energy = curves_of_scene(
         log,
         {{"energy.total", "kinetic + stored"}, {"energy.kinetic", "kinetic"}, {"energy.stored", "stored"}, {"energy.work", "work done"}});
     if (energy.empty()) return;
     page.heading("Energy and momentum");
-    page.figure(draw(chart_of("Energy", std::move(energy), moments)),
+    page.figure(draw(chart_of("Energy", std::move(energy), line)),
                 "Kinetic and stored energy, and the work that all interactions have done since the run began. Dashed lines are swaps, "
                 "grey lines mark the start of a run.");
     std::vector<Curve> unexplained = curves_of_scene(log, {{"energy.unexplained", "unexplained"}});
     if (!unexplained.empty() && !is_all_zero(unexplained.front()))
         page.figure(
-            draw(chart_of("Unexplained energy", std::move(unexplained), moments, Scale::Kind::SymLog)),
+            draw(chart_of("Unexplained energy", std::move(unexplained), line, Scale::Kind::SymLog)),
             "Kinetic energy, less that at the start, less all work: energy that the numerical methods created (above 0) or lost (below).");
     std::vector<Curve> momentum = curves_of_scene(log, {{"momentum.x", "momentum x"},
                                                         {"momentum.y", "momentum y"},
@@ -118,49 +124,51 @@ void add_energy(Page& page, const Log& log, const std::vector<figures::Moment>& 
                                                         {"angular_momentum.x", "angular momentum x"},
                                                         {"angular_momentum.y", "angular momentum y"},
                                                         {"angular_momentum.z", "angular momentum z"}});
-    page.figure(draw(chart_of("Momentum", std::move(momentum), moments)),
-                "Of all moving objects; the angular one about the world's origin.");
+    page.figure(draw(chart_of("Momentum", std::move(momentum), line)), "Of all moving objects; the angular one about the world's origin.");
 }
 
-void add_interactions(Page& page, const Log& log, const std::vector<Segment>& segments, const std::vector<figures::Moment>& moments)
+void add_interactions(Page& page, const Log& log, const std::vector<Segment>& segments, const TimeLine& line)
 {
     const std::vector<std::string> ids = costly_interactions(segments);
     if (ids.empty()) return;
     page.heading("Cost and error of the interactions");
-    std::vector<Curve> cost = curves_of_interactions(log, ids, "cost", "ns per step");
+    std::vector<Curve> cost = curves_of_interactions(log, ids, "cost", "µs per step");
+    for (Curve& curve : cost)
+        for (auto& [time, value] : curve.points) value *= 1e-3;
     if (!cost.empty())
         page.figure(
-            draw(chart_of("Cost", std::move(cost), moments, Scale::Kind::Log)),
+            draw(chart_of("Cost", std::move(cost), line, Scale::Kind::Log)),
             "CPU time per step of each interaction, the most costly ones; components of one type share it by their number of rows.");
     std::vector<Curve> error = curves_of_interactions(log, ids, "error", "error");
     if (!error.empty())
-        page.figure(draw(chart_of("Error", std::move(error), moments, Scale::Kind::Log)),
+        page.figure(draw(chart_of("Error", std::move(error), line, Scale::Kind::Log)),
                     "The largest output that each type declares as its error, in that output's unit.");
     add_segments(page, segments);
 }
 
-void add_levels(Page& page, const Log& log)
+void add_levels(Page& page, const Log& log, const TimeLine& line)
 {
     std::vector<Curve> levels = levels_over_time(log);
     if (levels.empty()) return;
     page.heading("Levels of detail");
-    page.figure(draw(chart_of("Levels of detail", std::move(levels), {})),
+    page.figure(draw(chart_of("Levels of detail", std::move(levels), {{}, line.span})),
                 "How many components each governor had at each level of its ladder. The reasons are in the events `level.changed`.");
 }
 
-void add_pace(Page& page, const Log& log, const std::vector<figures::Moment>& moments)
+void add_pace(Page& page, const Log& log, const TimeLine& line)
 {
     std::vector<Curve> pace = curves_of_scene(log, {{"real_time_factor", "real-time factor"}});
-    if (pace.empty()) return;
-    page.heading("Pace");
-    pace.front().unit = "× real time";
+    std::erase_if(pace, is_all_zero);  // without the clock of a server nothing is known of real time
+    for (Curve& curve : pace) curve.unit = "× real time";
     for (Curve& curve : curves_of_scene(log, {{"step_cost", "CPU time of a step"}}))
     {
         for (auto& [time, value] : curve.points) value *= 1e-3;
         curve.unit = "µs";
         pace.push_back(std::move(curve));
     }
-    page.figure(draw(chart_of("Pace", std::move(pace), moments)), "How many times faster than real time it ran, and what a step cost.");
+    if (pace.empty()) return;
+    page.heading("Pace");
+    page.figure(draw(chart_of("Pace", std::move(pace), line)), "How many times faster than real time it ran, and what a step cost.");
 }
 
 std::vector<std::string> findings(const Summary& s, const std::vector<Segment>& segments)
@@ -211,13 +219,13 @@ void add_facts(Page& page, const Summary& s)
 std::string report_html(const Log& log, const Summary& summary)
 {
     const std::vector<Segment> segments = segments_of(log);
-    const std::vector<figures::Moment> moments = moments_of(log, {}, false);
+    const TimeLine line{moments_of(log, {}, false), {seconds(summary.begin), seconds(summary.end)}};
     Page page(title_of(summary), lead_of(summary));
     page.list(findings(summary, segments));
-    add_energy(page, log, moments);
-    add_interactions(page, log, segments, moments);
-    add_levels(page, log);
-    add_pace(page, log, moments);
+    add_energy(page, log, line);
+    add_interactions(page, log, segments, line);
+    add_levels(page, log, line);
+    add_pace(page, log, line);
     add_requests(page, log);
     add_events(page, log, summary);
     add_runs(page, summary);
