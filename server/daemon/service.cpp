@@ -301,6 +301,7 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
         collector_.note(*simulation_, std::move(event));
         return;
     }
+    event.severity = "info";
     for (const control::Description& op : origin.operations)
     {
         if (op.verb == "swap") continue;

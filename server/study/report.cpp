@@ -42,21 +42,24 @@ std::string lead_of(const StudyResult& r)
 void add_table(Page& page, const StudyResult& r)
 {
     page.heading("Every run");
-    page.paragraph("Click a column header to sort by it. Errors are the largest of the whole series over all quantities.");
+    page.paragraph(
+        "Click a column header to sort by it; what it means appears when the pointer rests on it. `error` and `digits` are of the worst "
+        "quantity at its worst moment.");
     std::vector<PageCell> head{{"run", "", ""},
                                {"digits", "", "-log10 of the error"},
                                {"error", "", "mixed relative error |y-r|/(a+|r|), attitudes in rad"},
                                {"at the end", "", "the same at the last instant"}};
-    for (const Quantity& q : r.quantities) head.push_back({q.name, "", "largest absolute error, " + (q.unit.empty() ? "1" : q.unit)});
+    for (const Quantity& q : r.quantities)
+        head.push_back({q.name + (q.unit.empty() ? "" : ", " + q.unit), "", "largest absolute error of the whole series"});
     for (const auto& [name, hint] : std::initializer_list<std::pair<const char*, const char*>>{
-             {"ms/s", "CPU milliseconds per simulated second, least of the timed runs"},
+             {"CPU, ms/s", "CPU milliseconds per simulated second, least of the timed runs"},
              {"median", "the same, median"},
-             {"µs/step", "CPU microseconds per step, least"},
-             {"energy", "drift of energy relative to the largest energy of the run"},
+             {"CPU, µs/step", "CPU microseconds per step, least"},
+             {"energy drift", "drift of energy relative to the largest energy of the run"},
              {"violation", "largest declared error of a constraint"},
-             {"overlap", "largest penetration left at the end of a step, m"},
-             {"missed", "impacts of the reference that were missed, and impacts that the reference does not have"},
-             {"impact t", "largest error of an impact's time, s"},
+             {"overlap, m", "largest penetration left at the end of a step"},
+             {"missed impacts", "impacts of the reference that were missed, and impacts that the reference does not have"},
+             {"impact time, s", "largest error of an impact's time"},
              {"evaluations", "of forces"},
              {"trials", "trial advances made to locate events"},
              {"allocations",

@@ -70,14 +70,20 @@ double seconds_to_frame(const link::Session& session, wire::DataReader<plab_v2_F
     return Seconds(Clock::now() - begin).count();
 }
 
-/// Kinds of events received.
+/// Kinds of events received; each says how severe it is.
 std::vector<std::string> kinds(wire::DataReader<plab_v2_Events>& events)
 {
     std::vector<std::string> out;
     (void)events.take(
         [&](const plab_v2_Events& batch, const dds_sample_info_t& info)
         {
-            for (std::uint32_t i = 0; info.valid_data && i < batch.entries._length; ++i) out.emplace_back(batch.entries._buffer[i].kind);
+            for (std::uint32_t i = 0; info.valid_data && i < batch.entries._length; ++i)
+            {
+                const plab_v2_EventInfo& event = batch.entries._buffer[i];
+                out.emplace_back(event.kind);
+                const std::string severity = event.severity;
+                CHECK_MESSAGE((severity == "info" || severity == "warning" || severity == "failure"), event.kind, " is '", severity, "'");
+            }
         });
     return out;
 }
