@@ -1,6 +1,5 @@
 #include "foxglove/audience.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace plab::foxglove
@@ -43,11 +42,6 @@ bool Audience::wants(const Channel& channel) const
         for (const auto& [id, subscribed] : member.subscriptions)
             if (subscribed == &channel) return true;
     return false;
-}
-
-bool Audience::wants_any() const
-{
-    return std::any_of(members_.begin(), members_.end(), [](const auto& m) { return !m.second.subscriptions.empty(); });
 }
 
 void Audience::begin_anew()

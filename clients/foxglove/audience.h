@@ -32,7 +32,6 @@ public:
     void leave(ClientId client) { members_.erase(client); }
 
     bool wants(const Channel& channel) const;
-    bool wants_any() const;
     /// Those that have come since the last call, and have to get what is kept.
     std::vector<Subscription> new_ones() { return std::exchange(new_, {}); }
     /// All have to get it anew: another server is there.

@@ -19,6 +19,7 @@ std::optional<ClientId> Clients::join()
     if (outboxes_.size() >= kMostClients) return {};
     Outbox& outbox = outboxes_[++last_];
     for (const MessagePtr& message : greeting_) outbox.say(message);
+    if (trouble_ != nullptr) outbox.say(trouble_);
     return last_;
 }
 
@@ -56,12 +57,6 @@ std::vector<Arrived> Clients::arrived()
     return std::exchange(arrived_, {});
 }
 
-std::size_t Clients::count() const
-{
-    const std::lock_guard lock(mutex_);
-    return outboxes_.size();
-}
-
 void Clients::say(ClientId client, MessagePtr message)
 {
     with(client, [&](Outbox& outbox) { outbox.say(std::move(message)); });
@@ -71,6 +66,14 @@ void Clients::say_to_all(const MessagePtr& message)
 {
     const std::lock_guard lock(mutex_);
     for (auto& [id, outbox] : outboxes_) outbox.say(message);
+}
+
+void Clients::set_trouble(MessagePtr message)
+{
+    const std::lock_guard lock(mutex_);
+    trouble_ = std::move(message);
+    if (trouble_ == nullptr) return;
+    for (auto& [id, outbox] : outboxes_) outbox.say(trouble_);
 }
 
 void Clients::tell_time(std::uint64_t time)

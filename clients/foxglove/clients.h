@@ -42,9 +42,10 @@ public:
 
     // For the thread that talks to the server.
     std::vector<Arrived> arrived();
-    std::size_t count() const;
     void say(ClientId client, MessagePtr message);
     void say_to_all(const MessagePtr& message);
+    /// Says it to all, and to those who join later; null: nothing more.
+    void set_trouble(MessagePtr message);
     void tell_time(std::uint64_t time);
     void put(const Channel& channel, std::uint64_t instance, const Stamped& message);
     /// Uses the outbox of one client, if it is still there.
@@ -53,6 +54,7 @@ public:
 private:
     std::vector<MessagePtr> greeting_;
     mutable std::mutex mutex_;
+    MessagePtr trouble_;  ///< null: none
     std::map<ClientId, Outbox> outboxes_;
     std::vector<Arrived> arrived_;
     ClientId last_ = 0;

@@ -40,6 +40,7 @@ Result<void> Feed::serve(const link::Session& session)
 {
     auto connection = Connection::open(session, clients_, audience_, playback_, stop_);
     if (!connection) return connection.errors();
+    clients_.set_trouble(nullptr);
     if (!std::exchange(trouble_, {}).empty()) clients_.say_to_all(text_message(remove_status(kServerStatus)));
     wake_();
     while (!stop_() && !(*connection)->is_over())
@@ -58,7 +59,7 @@ void Feed::wait_for_server(const std::string& why)
     bool has_news = take_clients(nullptr);
     if (std::exchange(trouble_, why) != why)
     {
-        clients_.say_to_all(text_message(status(Level::Warning, why, kServerStatus)));
+        clients_.set_trouble(text_message(status(Level::Warning, why, kServerStatus)));
         has_news = true;
     }
     if (tell_playback() || has_news) wake_();

@@ -72,13 +72,13 @@ void Playback::run()
             controls = std::exchange(controls_, {});
         }
         for (const PlaybackControl& control : controls) obey(control, now);
+        const PlaybackState at = state(now);
+        time_ = at.time;  // before what is due then is sent
         if (const auto stepped = player_->step(now); !stepped)
         {
             std::fprintf(stderr, "plab-foxglove: %s\n", stepped.error().text().c_str());
             return;
         }
-        const PlaybackState at = state(now);
-        time_ = at.time;
         if (at.status == PlaybackStatus::Ended && !std::exchange(has_ended_, true))
         {
             const std::lock_guard lock(mutex_);

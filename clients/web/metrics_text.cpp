@@ -15,7 +15,7 @@ namespace
 
 using Labels = std::initializer_list<std::pair<const char*, std::string>>;
 
-constexpr double kNano = 1e-9;
+constexpr double kNano = 1e9;  ///< a division rounds once: 250 ns are 2.5e-07 s
 
 std::string label_text(const std::string& text)
 {
@@ -71,7 +71,7 @@ void add_server(const link::ServerInfo& s, Text& text)
 {
     text.begin("plab_server_info", "gauge", "The server; always 1.");
     text.add(1, {{"server", s.name}, {"version", s.version}, {"scene", s.scene_file}});
-    text.one("plab_process_start_time_seconds", "gauge", "When the server started, since 1970.", static_cast<double>(s.started_ns) * kNano);
+    text.one("plab_process_start_time_seconds", "gauge", "When the server started, since 1970.", static_cast<double>(s.started_ns) / kNano);
     text.one("plab_run", "gauge", "Number of the run: counts loads and resets.", static_cast<double>(s.run));
     text.one("plab_revision", "gauge", "Structural requests applied since the server started.", static_cast<double>(s.revision));
     text.one("plab_step", "gauge", "Steps of this run.", static_cast<double>(s.step));
@@ -103,7 +103,7 @@ void add_scene(const Figures& f, Text& text)
     text.one("plab_interactions", "gauge", "Interactions, solvers and other components that are no objects.",
              static_cast<double>(f.interactions));
     const link::Metrics& m = f.metrics;
-    text.one("plab_step_duration_seconds", "gauge", "Processor time of a step, median of the last steps.", m.step_ns * kNano);
+    text.one("plab_step_duration_seconds", "gauge", "Processor time of a step, median of the last steps.", m.step_ns / kNano);
     text.one("plab_contacts", "gauge", "Pairs in contact.", m.contacts);
     text.one("plab_deepest_penetration_meters", "gauge", "At the end of the last step.", m.deepest);
     text.one("plab_residual_meters_per_second", "gauge", "Left over by contact responses in the last step.", m.residual);
@@ -125,7 +125,7 @@ void add_components(const std::vector<Figures::Component>& components, Text& tex
             if (const double v = value(c); !std::isnan(v)) text.add(v, {{"component", c.id}, {"algorithm", c.algorithm}});
     };
     series("plab_component_cost_seconds", "Processor time in a step, median of the last steps.",
-           [](const auto& c) { return c.cost_ns * kNano; });
+           [](const auto& c) { return c.cost_ns / kNano; });
     series("plab_component_error", "Error as the component declares it, in its own unit; left out where none is known.",
            [](const auto& c) { return c.error; });
     series("plab_component_work_joules", "Work on the scene since the run began.", [](const auto& c) { return c.work; });

@@ -112,8 +112,12 @@ TEST_CASE("there are so many clients, and so many messages of them wait")
     for (std::size_t i = 0; i < Clients::kMostClients; ++i) all.push_back(*clients.join());
     CHECK(!clients.join());
     CHECK(content_of(clients.take(all[0])) == "hello");
+    clients.set_trouble(std::make_shared<Message>("no server"));
+    CHECK(content_of(clients.take(all[0])) == "no server");
     clients.leave(all[0]);
-    CHECK(clients.join());
+    const auto late = clients.join();
+    REQUIRE(late);
+    for (const char* expected : {"hello", "no server"}) CHECK(content_of(clients.take(*late)) == expected);
     (void)clients.arrived();
     for (std::size_t i = 0; i < Clients::kMostWaiting; ++i) CHECK(!clients.receive(all[1], "{}", false));
     CHECK(clients.receive(all[1], "{}", false));
