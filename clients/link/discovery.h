@@ -36,6 +36,7 @@ struct RawSample
     bool is_gone = false;  ///< the instance was disposed of, or has no writer any more
     std::int64_t written_ns = 0;
     std::uint64_t writer = 0;
+    std::uint64_t instance = 0;  ///< the same number for the same key; only to be compared
 };
 
 /// Reads one topic without knowing its type at compile time.

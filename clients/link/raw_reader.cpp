@@ -64,8 +64,8 @@ std::size_t RawReader::take(const std::function<void(const RawSample&)>& handle)
         const std::unique_ptr<ddsi_serdata, SerdataDeleter> data(samples[i]);
         bytes.resize(ddsi_serdata_size(data.get()));
         ddsi_serdata_to_ser(data.get(), 0, bytes.size(), bytes.data());
-        handle(
-            {bytes, infos[i].valid_data, infos[i].instance_state != DDS_IST_ALIVE, infos[i].source_timestamp, infos[i].publication_handle});
+        handle({bytes, infos[i].valid_data, infos[i].instance_state != DDS_IST_ALIVE, infos[i].source_timestamp,
+                infos[i].publication_handle, infos[i].instance_handle});
     }
     return static_cast<std::size_t>(std::max(n, 0));
 }

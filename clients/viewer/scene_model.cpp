@@ -1,10 +1,7 @@
 #include "viewer/scene_model.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <numbers>
 
 #include "plab/rotation.h"
 
@@ -12,11 +9,6 @@ namespace plab::view
 {
 namespace
 {
-
-const Vec3 kStaticColor{0.62, 0.63, 0.66};
-const Vec3 kMarkColor{0.95, 0.75, 0.2};
-
-Quat about_z(double angle) { return exp_rotation({0, 0, angle}); }
 
 std::optional<render::Form> form_of(const std::string& name)
 {
@@ -37,14 +29,6 @@ const T* find_row(const std::vector<T>& rows, std::uint32_t handle)
     return row != rows.end() && row->handle == handle ? &*row : nullptr;
 }
 
-double angle_of(const link::Object& shaft)
-{
-    double angle = 0;
-    for (const link::Parameter& p : shaft.parameters)
-        if (p.name == "angle") (void)std::from_chars(p.text.data(), p.text.data() + p.text.size(), angle);
-    return angle;
-}
-
 bool same_mesh(const render::Mesh& mesh, const link::Shape& shape)
 {
     return mesh.vertices == shape.vertices && mesh.triangles == link::triangles_of(shape);
@@ -54,39 +38,13 @@ render::Mesh mesh_of(const link::Shape& shape) { return {shape.vertices, link::t
 
 }  // namespace
 
-Vec3 color_of_id(const std::string& id)
-{
-    static constexpr std::array<Vec3, 10> kPalette{{{0.87, 0.33, 0.28},
-                                                    {0.24, 0.52, 0.78},
-                                                    {0.93, 0.69, 0.22},
-                                                    {0.36, 0.68, 0.42},
-                                                    {0.58, 0.42, 0.74},
-                                                    {0.91, 0.51, 0.24},
-                                                    {0.27, 0.68, 0.71},
-                                                    {0.84, 0.44, 0.62},
-                                                    {0.61, 0.66, 0.25},
-                                                    {0.47, 0.56, 0.69}}};
-    std::uint32_t hash = 2166136261u;  // FNV-1a
-    for (const char c : id) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
-    return kPalette[(hash ^ (hash >> 16)) % kPalette.size()];
-}
-
-Axle axle_of_inertia(double inertia)
-{
-    // A disk of radius r, length r/2 and density 1000: J = rho pi r^4 (r/2) / 2.
-    constexpr double kDensity = 1000, kThinnest = 0.05, kThickest = 0.5;
-    const double r = inertia > 0 ? std::pow(4 * inertia / (kDensity * std::numbers::pi), 0.2) : kThinnest;
-    const double radius = std::clamp(r, kThinnest, kThickest);
-    return {radius, std::clamp(radius / 4, 0.02, 0.1)};
-}
-
 State state_of_catalogue(const link::CatalogueContents& scene, const link::ServerInfo& server)
 {
     State out{server.run, server.revision, server.step, server.time, {}, {}};
     for (const auto& [id, object] : scene.objects)
     {
         if (link::is_shaft(object))
-            out.shafts.push_back({object.handle, angle_of(object)});
+            out.shafts.push_back({object.handle, link::shaft_angle(object)});
         else if (object.motion != "static")
             out.bodies.push_back({object.handle, {object.position, object.orientation}});
     }
@@ -145,16 +103,14 @@ void SceneModel::add_parts(const link::Object& object, const Vec3& color, std::v
 void SceneModel::add_prop(const link::Object& object)
 {
     const bool is_static = !link::is_shaft(object) && object.motion == "static";
-    const Vec3 color = link::color_of(object).value_or(is_static ? kStaticColor : color_of_id(object.component_id));
+    const Vec3 color = link::shown_color(object);
     Prop prop{object.component_id, object.handle, object.run, link::is_shaft(object), is_static, {object.position, object.orientation}, {}};
     add_parts(object, color, prop.parts);
     if (link::is_shaft(object) && object.shapes.empty())
     {
-        const Axle axle = axle_of_inertia(object.mass);
+        const link::Axle axle = link::axle_of_inertia(object.mass);
         prop.parts.push_back({render::Form::Cylinder, {}, {axle.radius, axle.radius, axle.half_length}, color, 0});
-        // A rotating cylinder looks like a resting one: a mark across both faces and the rim shows its rotation.
-        const Vec3 mark{0.22 * axle.radius, 0.08 * axle.radius, 1.12 * axle.half_length};
-        prop.parts.push_back({render::Form::Box, {{0.82 * axle.radius, 0, 0}, {}}, mark, kMarkColor, 0});
+        prop.parts.push_back({render::Form::Box, {axle.mark_position, {}}, axle.mark_size, link::kMarkColor, 0});
     }
     props_.push_back(std::move(prop));
 }
@@ -168,7 +124,7 @@ std::optional<Pose> SceneModel::pose_of(const Prop& prop, const State& state) co
     {
         const Shaft* const shaft = find_row(state.shafts, prop.handle);
         if (shaft == nullptr) return {};
-        return Pose{prop.X_WB.p, prop.X_WB.q * about_z(shaft->angle)};
+        return Pose{prop.X_WB.p, prop.X_WB.q * link::shaft_rotation(shaft->angle)};
     }
     const Body* const body = find_row(state.bodies, prop.handle);
     if (body == nullptr) return {};

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "link/appearance.h"
 #include "link/catalogue.h"
 #include "render/render.h"
 #include "viewer/captions.h"
@@ -69,16 +70,5 @@ private:
 
 /// Poses from the catalogue, for a server that is paused and sends no states.
 State state_of_catalogue(const link::CatalogueContents& scene, const link::ServerInfo& server);
-
-/// Colour of an object that specifies none: one of a small palette, always the same for one id.
-Vec3 color_of_id(const std::string& id);
-
-/// Radius and half length of the cylinder that represents a shaft without shapes: a solid disk of its inertia (kg m^2), within
-/// visible bounds.
-struct Axle
-{
-    double radius = 0, half_length = 0;  ///< m
-};
-Axle axle_of_inertia(double inertia);
 
 }  // namespace plab::view

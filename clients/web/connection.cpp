@@ -40,12 +40,12 @@ struct Batch
 }  // namespace
 
 Result<std::unique_ptr<Connection>> Connection::open(const link::Session& session, const link::SessionOptions& options, Pages& pages,
-                                                     const link::Stop& stop)
+                                                     NewestFigures& figures, const link::Stop& stop)
 {
     constexpr link::Seconds kLongest(5);
     auto caller = link::Caller::make(session, kLongest, stop);
     if (!caller) return caller.errors();
-    std::unique_ptr<Connection> out(new Connection(session, pages, caller.take()));
+    std::unique_ptr<Connection> out(new Connection(session, pages, figures, caller.take()));
     out->options_ = options, out->options_.server = session.server();
     auto catalogue = link::Catalogue::open(session, kParts);
     if (!catalogue) return catalogue.errors();
@@ -77,6 +77,7 @@ bool Connection::step()
     take_catalogue();
     take_frames();
     take_metrics();
+    note_figures();
     take_events();
     requests_.update();
     preview_.update();
@@ -87,6 +88,7 @@ bool Connection::step()
 
 void Connection::close()
 {
+    figures_.set(nullptr);
     requests_.give_up("the server has gone; whether it did this is unknown");
     push({{"type", "gone"}, {"reason", "The server has gone. Waiting for it to come back."}});
 }
@@ -211,6 +213,16 @@ void Connection::take_metrics()
     metrics_time_ = metrics->time, metrics_run_ = metrics->run;
     history_.add_metrics(*metrics);
     if (pages_.count() > 0) push(metrics_message(*metrics, watched()));
+}
+
+/// Figures are read every few seconds: once a second is new enough.
+void Connection::note_figures()
+{
+    constexpr std::chrono::seconds kBetween(1);
+    const auto moment = std::chrono::steady_clock::now();
+    if (moment - noted_at_ < kBetween || !catalogue_->now().server) return;
+    noted_at_ = moment;
+    figures_.set(std::make_shared<const Figures>(figures_of(catalogue_->now())));
 }
 
 void Connection::take_events()

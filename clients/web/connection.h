@@ -19,7 +19,7 @@ class Connection
 public:
     /// Waits for the whole catalogue. The session must outlive it.
     static Result<std::unique_ptr<Connection>> open(const link::Session& session, const link::SessionOptions& options, Pages& pages,
-                                                    const link::Stop& stop);
+                                                    NewestFigures& figures, const link::Stop& stop);
 
     /// Waits for what the server sends, a few milliseconds, and passes it on; true if pages got something.
     bool step();
@@ -29,8 +29,8 @@ public:
     void close();
 
 private:
-    Connection(const link::Session& session, Pages& pages, link::Caller caller)
-        : session_(session), pages_(pages), requests_(std::move(caller)), hands_(session, requests_)
+    Connection(const link::Session& session, Pages& pages, NewestFigures& figures, link::Caller caller)
+        : session_(session), pages_(pages), figures_(figures), requests_(std::move(caller)), hands_(session, requests_)
     {
     }
 
@@ -42,6 +42,7 @@ private:
     void take_frames();
     void take_catalogue();
     void take_metrics();
+    void note_figures();
     void take_events();
     void send_details();
     void begin_pages();
@@ -52,14 +53,15 @@ private:
 
     const link::Session& session_;
     Pages& pages_;
-    Requests requests_;
+    NewestFigures& figures_;
+    link::Requests requests_;
     Hands hands_;
     link::SessionOptions options_;  ///< with the server's name
     Preview preview_;
     std::optional<link::Catalogue> catalogue_;
     link::CatalogueContents sent_;  ///< what the pages know
     std::uint64_t version_ = 0;
-    std::chrono::steady_clock::time_point compared_at_{};
+    std::chrono::steady_clock::time_point compared_at_{}, noted_at_{};
     std::int64_t started_ns_ = 0;
     double metrics_time_ = -1;
     std::uint64_t metrics_run_ = 0;

@@ -1,76 +1,47 @@
 #include "web/feed.h"
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "link/follow.h"
 #include "link/json.h"
 #include "web/connection.h"
 
 namespace plab::web
 {
-namespace
-{
-
-constexpr link::Seconds kLook(0.5);
-constexpr std::chrono::milliseconds kPause(100);
-
-}  // namespace
-
-Feed::Feed(link::SessionOptions options, Pages& pages, std::function<void()> wake, link::Stop stop)
-    : options_(std::move(options)), pages_(pages), wake_(std::move(wake)), stop_(std::move(stop)), thread_([this] { run(); })
+Feed::Feed(link::SessionOptions options, Pages& pages, NewestFigures& figures, std::function<void()> wake, link::Stop stop)
+    : options_(std::move(options)),
+      pages_(pages),
+      figures_(figures),
+      wake_(std::move(wake)),
+      stop_(std::move(stop)),
+      thread_([this] { run(); })
 {
 }
 
 void Feed::run()
 {
-    while (!stop_())
-    {
-        follow();
-        wait_for_server();
-        if (!stop_()) std::this_thread::sleep_for(kPause);
-    }
+    link::follow_servers(
+        options_, stop_,
+        {[this](const std::string& why) { wait_for_server(why); }, [this](const link::Session& session) { return serve(session); }});
     wake_();
 }
 
-void Feed::follow()
+Result<void> Feed::serve(const link::Session& session)
 {
-    auto session = link::Session::join(options_);
-    if (!session)
-    {
-        why_not_ = session.error().text();
-        return;
-    }
-    const auto stop = [this]
-    {
-        wait_for_server();
-        return stop_();
-    };
-    while (true)
-    {
-        if (stop_()) return;
-        auto found = session->find_server(options_, kLook, stop);
-        if (found) break;
-        why_not_ = "There is no server to show: " + found.error().text() + ". Waiting for it.";
-        wait_for_server();
-    }
-    auto connection = Connection::open(*session, options_, pages_, stop_);
-    if (!connection)
-    {
-        why_not_ = "The server does not answer: " + connection.error().text() + ". Trying again.";
-        return;
-    }
+    auto connection = Connection::open(session, options_, pages_, figures_, stop_);
+    if (!connection) return connection.errors();
     wake_();
     while (!stop_() && !(*connection)->is_over())
         if ((*connection)->step()) wake_();
-    why_not_ = "The server has gone. Waiting for it to come back.";
     (*connection)->close();
     wake_();
+    return {};
 }
 
-void Feed::wait_for_server()
+void Feed::wait_for_server(const std::string& why)
 {
-    const auto whole = [this] { return std::make_shared<Message>(link::line_of({{"type", "gone"}, {"reason", why_not_}})); };
+    const auto whole = [&] { return std::make_shared<Message>(link::line_of({{"type", "gone"}, {"reason", why}})); };
     bool has_news = !pages_.begin(whole).empty();
     for (const Arrived& arrived : pages_.arrived())
     {

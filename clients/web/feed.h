@@ -15,23 +15,23 @@ class Feed
 {
 public:
     /// `wake`: called after something was put into `pages`. `stop`: asked several times a second; ends the thread.
-    Feed(link::SessionOptions options, Pages& pages, std::function<void()> wake, link::Stop stop);
+    Feed(link::SessionOptions options, Pages& pages, NewestFigures& figures, std::function<void()> wake, link::Stop stop);
     ~Feed() = default;
     Feed(const Feed&) = delete;
     Feed& operator=(const Feed&) = delete;
 
 private:
     void run();
-    /// One server, from when it is found until it has gone.
-    void follow();
+    /// One server until it has gone.
+    Result<void> serve(const link::Session& session);
     /// Answers pages while there is no server.
-    void wait_for_server();
+    void wait_for_server(const std::string& why);
 
     link::SessionOptions options_;
     Pages& pages_;
+    NewestFigures& figures_;
     std::function<void()> wake_;
     link::Stop stop_;
-    std::string why_not_ = "No server is found yet. Waiting for one.";
     std::jthread thread_;  ///< last: it uses all of the above
 };
 

@@ -31,7 +31,7 @@ Result<PageFiles> PageFiles::load(const std::string& folder)
         std::string bytes = text_of(folder + "/" + name);
         if (!bytes.empty())
         {
-            out.files_[name] = {type, std::move(bytes)};
+            out.files_[name] = std::make_shared<const websocket::File>(websocket::File{type, std::move(bytes)});
             continue;
         }
         std::string why = text_of(folder + "/not_built.txt");
@@ -41,10 +41,10 @@ Result<PageFiles> PageFiles::load(const std::string& folder)
     return out;
 }
 
-const PageFile* PageFiles::find(const std::string& name) const
+std::shared_ptr<const websocket::File> PageFiles::find(const std::string& name) const
 {
     const auto at = files_.find(name.empty() ? "index.html" : name);
-    return at == files_.end() ? nullptr : &at->second;
+    return at == files_.end() ? nullptr : at->second;
 }
 
 std::string page_folder()

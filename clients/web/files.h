@@ -5,15 +5,10 @@
 #include <string>
 
 #include "plab/result.h"
+#include "websocket/server.h"
 
 namespace plab::web
 {
-
-struct PageFile
-{
-    std::string type;  ///< "text/javascript; charset=utf-8"
-    std::string bytes;
-};
 
 class PageFiles
 {
@@ -21,10 +16,10 @@ public:
     /// index.html, page.js and page.css of a folder. An error says why the page was not built, if it was not.
     static Result<PageFiles> load(const std::string& folder);
     /// "" is index.html; null: there is no such file.
-    const PageFile* find(const std::string& name) const;
+    std::shared_ptr<const websocket::File> find(const std::string& name) const;
 
 private:
-    std::map<std::string, PageFile> files_;
+    std::map<std::string, std::shared_ptr<const websocket::File>> files_;
 };
 
 /// Where the page is: share/plab/web beside the program's folder, or that of the build.

@@ -1,13 +1,11 @@
 /// plab-web: a page for browsers that shows and steers a running scene.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cstdio>
 
 #include "program/interruption.h"
 #include "web/feed.h"
-#include "web/http_server.h"
 #include "web/options.h"
+#include "web/page_service.h"
+#include "websocket/address_file.h"
 
 using namespace plab;
 
@@ -20,36 +18,26 @@ int fail(const Error& error)
     return 1;
 }
 
-/// Only its owner may read it: the address is the right to do everything.
-Result<void> write_address(const std::string& file, const std::string& url)
-{
-    (void)unlink(file.c_str());
-    constexpr int kMode = 0600;
-    const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
-    const std::string line = url + "\n";
-    const bool is_written = fd >= 0 && write(fd, line.data(), line.size()) == static_cast<ssize_t>(line.size());
-    if (fd >= 0) (void)close(fd);
-    if (!is_written) return reason("cannot write '" + file + "'");
-    return {};
-}
-
 int serve(const web::WebOptions& options)
 {
     const auto files = web::PageFiles::load(options.page.empty() ? web::page_folder() : options.page);
     if (!files) return fail(files.error());
     web::Pages pages;
-    const auto server = web::HttpServer::listen(options.address, options.port, {options.hosts.begin(), options.hosts.end()}, *files, pages);
+    web::NewestFigures figures;
+    web::PageService service(*files, pages, figures);
+    const auto server =
+        websocket::Server::listen(web::page_server(options.address, options.port, {options.hosts.begin(), options.hosts.end()}), service);
     if (!server) return fail(server.error());
-    if (!options.address_file.empty())
-        if (const auto written = write_address(options.address_file, (*server)->url()); !written) return fail(written.error());
-    std::printf("plab-web: %s\n", (*server)->url().c_str());
+    const std::string url = (*server)->url("http");
+    const auto address = websocket::AddressFile::write(options.address_file, url);
+    if (!address) return fail(address.error());
+    std::printf("plab-web: %s\n", url.c_str());
     std::fflush(stdout);
     {
         const web::Feed feed(
-            options.link, pages, [&] { (*server)->wake(); }, &program::is_interrupted);
+            options.link, pages, figures, [&] { (*server)->wake(); }, &program::is_interrupted);
         while (!program::is_interrupted()) (*server)->step();
     }
-    if (!options.address_file.empty()) (void)unlink(options.address_file.c_str());
     return program::code_of_interruption();
 }
 

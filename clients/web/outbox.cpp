@@ -1,23 +1,9 @@
 #include "web/outbox.h"
 
-#include <cstring>
 #include <utility>
 
 namespace plab::web
 {
-
-Message::Message(std::string_view text) : bytes_(kFront + text.size())
-{
-    if (!text.empty()) std::memcpy(content(), text.data(), text.size());
-}
-
-Message Message::binary(std::size_t size)
-{
-    Message out;
-    out.bytes_.resize(kFront + size);
-    out.is_binary_ = true;
-    return out;
-}
 
 void Outbox::add(MessagePtr message)
 {

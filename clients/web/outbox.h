@@ -9,33 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "websocket/message.h"
+
 namespace plab::web
 {
 
-/// One message of the socket, made once for all pages.
-class Message
-{
-public:
-    /// Bytes before the content that whoever sends it may use.
-    static constexpr std::size_t kFront = 32;
-
-    explicit Message(std::string_view text);
-    /// Of `size` bytes, all zero.
-    static Message binary(std::size_t size);
-
-    bool is_binary() const { return is_binary_; }
-    std::size_t size() const { return bytes_.size() - kFront; }
-    /// The content; the kFront bytes before it may be written.
-    unsigned char* content() { return bytes_.data() + kFront; }
-    const unsigned char* content() const { return bytes_.data() + kFront; }
-
-private:
-    Message() = default;
-
-    std::vector<unsigned char> bytes_;
-    bool is_binary_ = false;
-};
-using MessagePtr = std::shared_ptr<Message>;
+using websocket::Message, websocket::MessagePtr;
 
 /// The poses of one moment: a delta, and the key frame that it needs; or a key frame alone.
 struct Poses

@@ -16,7 +16,11 @@ std::optional<PageId> Pages::join()
 void Pages::leave(PageId page)
 {
     const std::lock_guard lock(mutex_);
-    if (pages_.erase(page) > 0) arrived_.push_back({page, {}, true});
+    const auto at = pages_.find(page);
+    if (at == pages_.end()) return;
+    of_gone_.replaced += at->second.poses_replaced(), of_gone_.times_behind += at->second.times_behind();
+    pages_.erase(at);
+    arrived_.push_back({page, {}, true});
 }
 
 bool Pages::receive(PageId page, std::string text)
@@ -57,6 +61,15 @@ std::size_t Pages::count() const
 {
     const std::lock_guard lock(mutex_);
     return pages_.size();
+}
+
+PageFigures Pages::figures() const
+{
+    const std::lock_guard lock(mutex_);
+    PageFigures out = of_gone_;
+    out.pages = pages_.size();
+    for (const auto& [id, outbox] : pages_) out.replaced += outbox.poses_replaced(), out.times_behind += outbox.times_behind();
+    return out;
 }
 
 void Pages::push(const MessagePtr& message)

@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "web/metrics_text.h"
 #include "web/outbox.h"
+#include "websocket/server.h"
 
 namespace plab::web
 {
 
-using PageId = std::uint64_t;
+using PageId = websocket::ConnectionId;
 
 struct Arrived
 {
@@ -41,6 +43,7 @@ public:
     // For the thread that talks to the server.
     std::vector<Arrived> arrived();
     std::size_t count() const;
+    PageFigures figures() const;
     void push(const MessagePtr& message);  ///< to all that are current
     void push_to(PageId page, const MessagePtr& message);
     void put(const Poses& poses);
@@ -55,6 +58,7 @@ private:
     std::vector<Arrived> arrived_;
     Poses newest_;  ///< for late joiners
     PageId last_ = 0;
+    PageFigures of_gone_;  ///< what pages that are closed have counted
 };
 
 }  // namespace plab::web

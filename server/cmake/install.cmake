@@ -1,5 +1,5 @@
 # What `cmake --install BUILD --prefix PREFIX` puts where, in components: "server" (plabd, its clients, plugins and scenes), "viewer"
-# (what needs OSMesa besides), "web" (plab-web and its page), "study" (plab-study), "doc" (these documents) and "sdk" (what plugins and clients are built with
+# (what needs OSMesa besides), "web" (plab-web and its page, plab-foxglove), "study" (plab-study), "doc" (these documents) and "sdk" (what plugins and clients are built with
 # elsewhere). plabd finds its plugins in ../lib/plab as seen from its own folder, and the CMake package and pkg-config's files look from
 # theirs, so PREFIX may be moved. The folders are the same under every PREFIX for that reason, /usr among them. Included last: it needs
 # all targets.
@@ -29,7 +29,7 @@ install(TARGETS plabd plab-bus plabctl plab-log RUNTIME DESTINATION bin COMPONEN
 install(TARGETS plab_bus plab_record LIBRARY DESTINATION lib/plab COMPONENT server)
 install(DIRECTORY scenes DESTINATION share/plab COMPONENT server PATTERN "*.md" EXCLUDE PATTERN exact EXCLUDE)
 install(TARGETS plab-view RUNTIME DESTINATION bin COMPONENT viewer)
-install(TARGETS plab-web RUNTIME DESTINATION bin COMPONENT web)
+install(TARGETS plab-web plab-foxglove RUNTIME DESTINATION bin COMPONENT web)
 # Not there without npm: plab-web then says so.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/plab/web DESTINATION share/plab COMPONENT web)
 install(TARGETS plab-study RUNTIME DESTINATION bin COMPONENT study)
@@ -107,6 +107,7 @@ foreach(program plabd plab-bus plabctl plab-log)
 endforeach()
 plab_install_help(plab-view viewer)
 plab_install_help(plab-web web)
+plab_install_help(plab-foxglove web)
 plab_install_help(plab-study study)
 plab_install_help(plab-manifest sdk)
 if(TARGET plab-conformance)

@@ -1,5 +1,5 @@
 # Debian packages, for `cpack` in the build folder: plab (server, clients, plab-study, documents), plab-view (what needs OSMesa besides),
-# plab-web (plab-web and its page) and plab-dev (the SDK). Their dependencies are the libraries that the files in them load, as dpkg-shlibdeps finds them. The packages'
+# plab-web (plab-web and its page, plab-foxglove) and plab-dev (the SDK). Their dependencies are the libraries that the files in them load, as dpkg-shlibdeps finds them. The packages'
 # programs are stripped; the debug information is in packages of its own, plab-dbgsym and so on. Included last: it needs install.cmake.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME plab)

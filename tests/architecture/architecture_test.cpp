@@ -128,7 +128,7 @@ TEST_CASE("headers that take long to compile are parsed where they are needed on
         const std::size_t folder = file.path.find('/', file.path.find('/') + 1);
         ++files_with_parser[file.path.substr(0, folder)];
     }
-    CHECK(files_with_parser.size() == 7);  // plabctl, plab-log, plab-view, plab-web, plabd, plab-study, and what all of them share
+    CHECK(files_with_parser.size() == 8);  // plabctl, plab-log, plab-view, plab-web, plab-foxglove, plabd, plab-study, and what all of them share
     for (const auto& [folder, files] : files_with_parser)
     {
         CAPTURE(folder);

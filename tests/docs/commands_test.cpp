@@ -61,6 +61,9 @@ constexpr Special kSpecial[] = {
      "if [ -e build/share/plab/web/page.js ]; then timeout --preserve-status -k 5 -s INT 2 plab-web --write-address a.txt; [ $? = 130 ]; "
      "fi",
      "until Ctrl-C; without npm there is no page"},
+    {"plab-foxglove --file", How::Instead, "timeout --preserve-status -k 5 -s INT 2 plab-foxglove --port 0 --file run.mcap; [ $? = 130 ]",
+     "until Ctrl-C"},
+    {"plab-foxglove", How::Instead, "timeout --preserve-status -k 5 -s INT 2 plab-foxglove --port 0; [ $? = 130 ]", "until Ctrl-C"},
     {"plabctl topics rate plab/states", How::Follow, "", "until Ctrl-C"},
     {"plabctl watch events --json -n 1", How::Beside, "sleep 1; plabctl swap gears --to Constraint/AngularVelocity/Impulse",
      "waits for an event"},
@@ -315,8 +318,8 @@ void run_block(const ShownBlock& block, std::size_t number, std::set<std::string
     if (!is_run) return;
     const fs::path folder = folder_for(block, number);
     const bool has_its_own_server = mentions(block, "plabd scenes/") && !mentions(block, "--no-bus");
-    const bool needs_server =
-        mentions(block, "plabctl ") || mentions(block, "plab-log") || mentions(block, "plab-view") || mentions(block, "plab-web");
+    const bool needs_server = mentions(block, "plabctl ") || mentions(block, "plab-log") || mentions(block, "plab-view") ||
+                              mentions(block, "plab-web") || mentions(block, "plab-foxglove");
     std::unique_ptr<Lab> lab;
     if (needs_server && !has_its_own_server) lab = std::make_unique<Lab>(folder);
     const Outcome done = shell(folder, script, Milliseconds(60000));

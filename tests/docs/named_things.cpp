@@ -200,7 +200,7 @@ std::string missing(const NamedThing& thing, const Declared& declared)
 
 std::vector<std::string> options_in(const std::string& text)
 {
-    static const std::regex begins("(--|(plabctl|plabd|plab-log|plab-view|plab-web|plab-study|plab-hello) ).*");
+    static const std::regex begins("(--|(plabctl|plabd|plab-log|plab-view|plab-web|plab-foxglove|plab-study|plab-hello) ).*");
     static const std::regex option("(^|[ \\[|,])(--[a-z][a-z0-9-]*)");
     std::vector<std::string> out;
     if (!std::regex_match(text, begins)) return out;

@@ -161,7 +161,7 @@ TEST_CASE("commands and options of programs that documents name exist")
     const std::string overview = help_of("plabctl");
     REQUIRE(overview.size() > 100);
     std::string helps = overview;
-    for (const char* name : {"plabd", "plab-log", "plab-view", "plab-web", "plab-study"}) helps += help_of(name);
+    for (const char* name : {"plabd", "plab-log", "plab-view", "plab-web", "plab-foxglove", "plab-study"}) helps += help_of(name);
     // Commands begin lines of the overview. Of a word that is no command plabctl prints the overview again.
     std::set<std::string> commands;
     static const std::regex first_word("^ +([a-z]+)( .*)?$");

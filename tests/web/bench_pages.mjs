@@ -1,19 +1,13 @@
 // What many pages cost: bench_pages.mjs BIN SCENES [BODIES]. Not a test: timings are no claims. Pages are stood for by sockets that
 // acknowledge what they get at once, or (stopped) never; what a browser needs to draw is not in it.
-import { readFileSync, writeFileSync } from 'node:fs';
+import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import WebSocket from 'ws';
-import { Lab, manyBodies, sleep, until } from './lab.mjs';
+import { cpu, Lab, manyBodies, memory, sleep, until } from './lab.mjs';
 
-const kSeconds = 6, kTicks = 100; // clock ticks of /proc per second
+const kSeconds = 6;
 const [bin, , count = '1000'] = process.argv.slice(2);
 const lab = new Lab(bin);
-
-function cpu(pid) {
-  const words = readFileSync(`/proc/${pid}/stat`, 'utf8').split(') ')[1].split(' ');
-  return (Number(words[11]) + Number(words[12])) / kTicks;
-}
-const memory = (pid) => Number(readFileSync(`/proc/${pid}/status`, 'utf8').match(/VmRSS:\s+(\d+)/)[1]) / 1024;
 
 function open(url, isStopped, counts) {
   const socket = new WebSocket(`${url.replace('http', 'ws')}socket`, 'plab-web-1', { origin: new URL(url).origin });

@@ -19,7 +19,7 @@ chromium=$(command -v chromium) || skip "no chromium here (Debian's package chro
 command -v node >/dev/null || skip "no node here (Debian's package nodejs)"
 command -v npm >/dev/null || skip "no npm here (Debian's package npm)"
 
-cp "$here"/*.mjs "$here/package.json" "$here/package-lock.json" "$work"
+cp "$here"/*.mjs "$here/../support/programs.mjs" "$here/package.json" "$here/package-lock.json" "$work"
 if ! cmp --quiet "$here/package-lock.json" "$work/node_modules/.installed"; then
     (cd "$work" && timeout 200 npm ci --ignore-scripts --no-audit --no-fund) >"$work/npm.log" 2>&1 ||
         { tail -n 5 "$work/npm.log"; skip "npm could not fetch its packages; $work/npm.log has the details"; }

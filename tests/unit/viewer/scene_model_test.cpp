@@ -131,9 +131,9 @@ TEST_CASE("the radius of an axle depends on its inertia, within bounds")
 {
     // A disk of radius 0.1 m, length 0.05 m, density 1000: J = m r^2 / 2.
     const double mass = 1000 * std::numbers::pi * 0.1 * 0.1 * 0.05;
-    CHECK(axle_of_inertia(mass * 0.1 * 0.1 / 2).radius == near(0.1));
-    CHECK(axle_of_inertia(0).radius == 0.05);
-    CHECK(axle_of_inertia(1e6).radius == 0.5);
+    CHECK(link::axle_of_inertia(mass * 0.1 * 0.1 / 2).radius == near(0.1));
+    CHECK(link::axle_of_inertia(0).radius == 0.05);
+    CHECK(link::axle_of_inertia(1e6).radius == 0.5);
 }
 
 TEST_CASE("objects that the catalogue or the state does not have yet are left out until it has them")
@@ -242,8 +242,8 @@ TEST_CASE("an object without a colour gets one from its id; a given colour is ke
     snapshot.objects["ball"].color = Vec3{0.1, 0.2, 0.3};
     SceneModel model = model_of(snapshot);
     CHECK(find_form(model.draw(at(0)), render::Form::Sphere)->color == Vec3{0.1, 0.2, 0.3});
-    CHECK(find_form(model.draw(at(0)), render::Form::Cylinder)->color == color_of_id("wheel"));
-    CHECK(color_of_id("wheel") == color_of_id("wheel"));
+    CHECK(find_form(model.draw(at(0)), render::Form::Cylinder)->color == link::color_of_id("wheel"));
+    CHECK(link::color_of_id("wheel") == link::color_of_id("wheel"));
 }
 
 TEST_CASE("the view: a named camera, the front one, everything; and the effect of the options")

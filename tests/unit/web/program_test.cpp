@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "prometheus.h"
 #include "support/process.h"
 
 namespace plab::test
@@ -131,6 +132,25 @@ TEST_CASE("plab-web refuses foreign hosts and origins, on the page and on the so
     CHECK(web.open_socket("/" + std::string(32, '0') + "/socket", host + origin).find("101") == std::string::npos);
     CHECK(web.open_socket("/socket", host + origin).find("101") == std::string::npos);
     CHECK(web.open_socket(web.page(), host + origin).find("101") == std::string::npos);
+}
+
+TEST_CASE("figures for Prometheus are read without the token on this machine, by no other site")
+{
+    Web web;
+    const std::string host = "Host: " + web.host() + "\r\n";
+    for (const std::string& path : {std::string("/metrics"), web.page("metrics")})
+    {
+        const std::string answer = web.get(path, host);
+        REQUIRE(answer.starts_with("HTTP/1.1 200 OK"));
+        CHECK(answer.find("content-type: text/plain; version=0.0.4; charset=utf-8") != std::string::npos);
+        prometheus::Reader reader;
+        const auto families = reader.read(answer.substr(answer.find("\r\n\r\n") + 4));
+        CHECK_MESSAGE(reader.error().empty(), reader.error());
+        CHECK(families.at("plab_up").series.at(0).value == 0);  // no server is there
+    }
+    CHECK(web.status("/metrics", "Host: evil.example\r\n").starts_with("HTTP/1.1 403"));
+    CHECK(web.status("/metrics", host + "Origin: http://evil.example\r\n").starts_with("HTTP/1.1 403"));
+    CHECK(web.open_socket("/metrics", host + "Origin: http://" + web.host() + "\r\n").find("101") == std::string::npos);
 }
 
 TEST_CASE("only its owner can read the address, which goes with the program")

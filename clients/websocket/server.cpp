@@ -1,34 +1,32 @@
-#include "web/http_server.h"
+#include "websocket/server.h"
 
 #include <libwebsockets.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
-#include "web/translate.h"
-
-namespace plab::web
+namespace plab::websocket
 {
 
-static_assert(Message::kFront >= LWS_PRE, "libwebsockets writes its head before the content");
+static_assert(Message::kFront >= LWS_PRE + Outgoing::kMostHead, "libwebsockets writes its head before the content");
 
 /// What libwebsockets keeps for one connection, zero at first.
 struct Visit
 {
-    const PageFile* file;  ///< being sent
+    std::shared_ptr<const File>* file;  ///< being sent
     std::size_t sent;
-    std::string* text;  ///< of a refusal being sent, or of a message that arrives in pieces
-    PageId page;        ///< 0: no socket
+    std::string* text;        ///< of a message that arrives in pieces
+    ConnectionId connection;  ///< 0: no socket
 };
 
-struct HttpServer::State
+struct Server::State
 {
-    const PageFiles* files = nullptr;
-    Pages* pages = nullptr;
-    std::string address;
+    ServerOptions options;
+    Service* service = nullptr;
     std::optional<Access> access;
-    std::array<lws_protocols, 3> protocols{};
+    std::vector<lws_protocols> protocols;  ///< HTTP, those of the socket, and an empty one
     lws_context* context = nullptr;
     lws_vhost* vhost = nullptr;
 };
@@ -37,9 +35,8 @@ namespace
 {
 
 constexpr std::size_t kPiece = 32u << 10;  ///< bytes of a file that are handed over at a time
-constexpr std::string_view kSocket = "socket";
 
-HttpServer::State& state_of(lws* wsi) { return *static_cast<HttpServer::State*>(lws_context_user(lws_get_context(wsi))); }
+Server::State& state_of(lws* wsi) { return *static_cast<Server::State*>(lws_context_user(lws_get_context(wsi))); }
 
 std::string header(lws* wsi, lws_token_indexes name)
 {
@@ -86,35 +83,38 @@ private:
     bool ok_ = false;
 };
 
-int refuse(lws* wsi, Visit& visit, const Refusal& refusal)
+int send(lws* wsi, Visit& visit, int status, std::shared_ptr<const File> file)
 {
-    delete visit.text;
-    visit.text = new std::string("plab-web: " + refusal.sentence + "\n");
-    visit.file = nullptr, visit.sent = 0;
-    if (!Head(wsi, refusal.status, "text/plain; charset=utf-8", visit.text->size()).send()) return -1;
+    delete visit.file;
+    visit.file = new std::shared_ptr<const File>(std::move(file));
+    visit.sent = 0;
+    if (!Head(wsi, status, (*visit.file)->type, (*visit.file)->bytes.size()).send()) return -1;
     lws_callback_on_writable(wsi);
     return 0;
 }
 
+int refuse(lws* wsi, Visit& visit, const Refusal& refusal)
+{
+    const std::string text = state_of(wsi).options.access.program + ": " + refusal.sentence + "\n";
+    return send(wsi, visit, refusal.status, std::make_shared<const File>(File{"text/plain; charset=utf-8", text}));
+}
+
 int answer(lws* wsi, Visit& visit)
 {
-    HttpServer::State& state = state_of(wsi);
+    Server::State& state = state_of(wsi);
     const RequestHead head = head_of(wsi);
     if (head.path.empty()) return refuse(wsi, visit, {405, "Only GET is answered."});
     if (const auto refusal = state.access->check_request(head)) return refuse(wsi, visit, *refusal);
-    visit.file = state.files->find(state.access->below_token(head.path));
-    visit.sent = 0;
-    if (visit.file == nullptr) return refuse(wsi, visit, {404, "The page has no such file."});
-    if (!Head(wsi, 200, visit.file->type, visit.file->bytes.size()).send()) return -1;
-    lws_callback_on_writable(wsi);
-    return 0;
+    const HttpAnswer answer = state.service->get(state.access->below_token(head.path));
+    if (const auto* refusal = std::get_if<Refusal>(&answer)) return refuse(wsi, visit, *refusal);
+    return send(wsi, visit, 200, std::get<std::shared_ptr<const File>>(answer));
 }
 
 /// The next piece of what is being sent.
 int send_piece(lws* wsi, Visit& visit)
 {
-    const std::string* const bytes = visit.file != nullptr ? &visit.file->bytes : visit.text;
-    if (bytes == nullptr) return 0;
+    if (visit.file == nullptr) return 0;
+    const std::string* const bytes = &(*visit.file)->bytes;
     const std::size_t count = std::min(kPiece, bytes->size() - visit.sent);
     const bool is_last = visit.sent + count == bytes->size();
     std::vector<unsigned char> piece(LWS_PRE + count);
@@ -126,15 +126,15 @@ int send_piece(lws* wsi, Visit& visit)
         lws_callback_on_writable(wsi);
         return 0;
     }
-    visit.file = nullptr;
+    delete std::exchange(visit.file, nullptr);
     return lws_http_transaction_completed(wsi) != 0 ? -1 : 0;
 }
 
 void forget(Visit* visit)
 {
     if (visit == nullptr) return;
-    delete visit->text;
-    visit->text = nullptr, visit->file = nullptr;
+    delete std::exchange(visit->text, nullptr);
+    delete std::exchange(visit->file, nullptr);
 }
 
 int on_http(lws* wsi, lws_callback_reasons why, void* user, void* in, std::size_t length)
@@ -152,7 +152,8 @@ int on_http(lws* wsi, lws_callback_reasons why, void* user, void* in, std::size_
         case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
             return -1;  // a socket that does not name its protocol
         case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
-            lws_callback_on_writable_all_protocol(lws_get_context(wsi), &state_of(wsi).protocols[1]);
+            for (std::size_t i = 1; i + 1 < state_of(wsi).protocols.size(); ++i)
+                lws_callback_on_writable_all_protocol(lws_get_context(wsi), &state_of(wsi).protocols[i]);
             return 0;
         default:
             return lws_callback_http_dummy(wsi, why, user, in, length);
@@ -161,11 +162,21 @@ int on_http(lws* wsi, lws_callback_reasons why, void* user, void* in, std::size_
 
 // ---- The socket -----------------------------------------------------------------------------------------------------
 
+/// An address without its last '/' is the same one.
+std::string below_token(const Server::State& state, std::string path)
+{
+    if (!path.ends_with('/')) path += '/';
+    std::string out = state.access->below_token(path);
+    if (!out.empty()) out.pop_back();
+    return out;
+}
+
 bool may_open(lws* wsi)
 {
-    HttpServer::State& state = state_of(wsi);
-    const RequestHead head = head_of(wsi);
-    return !state.access->check_socket(head) && state.access->below_token(head.path) == kSocket;
+    Server::State& state = state_of(wsi);
+    RequestHead head = head_of(wsi);
+    if (!head.path.ends_with('/')) head.path += '/';
+    return !state.access->check_socket(head) && below_token(state, head.path) == state.options.socket_path;
 }
 
 int close_with(lws* wsi, lws_close_status status, const char* sentence)
@@ -176,32 +187,33 @@ int close_with(lws* wsi, lws_close_status status, const char* sentence)
 
 int receive(lws* wsi, Visit& visit, const void* in, std::size_t length)
 {
-    HttpServer::State& state = state_of(wsi);
+    Server::State& state = state_of(wsi);
     if (lws_is_first_fragment(wsi) && visit.text != nullptr) visit.text->clear();
     if (visit.text == nullptr) visit.text = new std::string;
-    if (visit.text->size() + length > kMostText) return close_with(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "the message is too long");
+    if (visit.text->size() + length > state.options.most_received)
+        return close_with(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "the message is too long");
     visit.text->append(static_cast<const char*>(in), length);
     if (!lws_is_final_fragment(wsi) || lws_remaining_packet_payload(wsi) > 0) return 0;
-    // One byte: poses were drawn.
-    if (visit.text->size() == 1)
-    {
-        state.pages->acknowledge(visit.page);
-        if (state.pages->has_any(visit.page)) lws_callback_on_writable(wsi);
-    }
-    else if (!state.pages->receive(visit.page, *visit.text))
-        return close_with(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too many messages wait");
+    const auto why_not = state.service->receive(visit.connection, *visit.text, lws_frame_is_binary(wsi) != 0);
+    if (why_not) return close_with(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, why_not->c_str());
+    if (state.service->has_any(visit.connection)) lws_callback_on_writable(wsi);
     visit.text->clear();
     return 0;
 }
 
 int send_message(lws* wsi, const Visit& visit)
 {
-    HttpServer::State& state = state_of(wsi);
-    const MessagePtr message = state.pages->take(visit.page);
-    if (message == nullptr) return 0;
-    const auto kind = message->is_binary() ? LWS_WRITE_BINARY : LWS_WRITE_TEXT;
-    if (lws_write(wsi, message->content(), message->size(), kind) < static_cast<int>(message->size())) return -1;
-    if (state.pages->has_any(visit.page)) lws_callback_on_writable(wsi);
+    Server::State& state = state_of(wsi);
+    const auto out = state.service->take(visit.connection);
+    if (!out) return 0;
+    if (out->message == nullptr) return close_with(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too much waits for this client");
+    const auto kind = out->message->is_binary() ? LWS_WRITE_BINARY : LWS_WRITE_TEXT;
+    // Other connections write their heads to the same bytes, one after the other.
+    unsigned char* const begin = out->message->content() - out->head_size;
+    const std::size_t size = out->head_size + out->message->size();
+    std::copy_n(out->head.begin(), out->head_size, begin);
+    if (lws_write(wsi, begin, size, kind) < static_cast<int>(size)) return -1;
+    if (state.service->has_any(visit.connection)) lws_callback_on_writable(wsi);
     return 0;
 }
 
@@ -215,9 +227,10 @@ int on_socket(lws* wsi, lws_callback_reasons why, void* user, void* in, std::siz
         case LWS_CALLBACK_ESTABLISHED:
         {
             *visit = {};
-            const auto page = state_of(wsi).pages->join();
-            if (!page) return close_with(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too many pages are open");
-            visit->page = *page;
+            const auto connection = state_of(wsi).service->join();
+            if (!connection) return close_with(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too many sockets are open");
+            visit->connection = *connection;
+            if (state_of(wsi).service->has_any(*connection)) lws_callback_on_writable(wsi);
             return 0;
         }
         case LWS_CALLBACK_RECEIVE:
@@ -225,7 +238,7 @@ int on_socket(lws* wsi, lws_callback_reasons why, void* user, void* in, std::siz
         case LWS_CALLBACK_SERVER_WRITEABLE:
             return send_message(wsi, *visit);
         case LWS_CALLBACK_CLOSED:
-            if (visit->page != 0) state_of(wsi).pages->leave(visit->page);
+            if (visit->connection != 0) state_of(wsi).service->leave(visit->connection);
             forget(visit);
             return 0;
         default:
@@ -243,50 +256,56 @@ void keep_log(int, const char* line) { log_text() = line; }
 
 }  // namespace
 
-HttpServer::HttpServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-HttpServer::~HttpServer()
+Server::~Server()
 {
     if (state_->context != nullptr) lws_context_destroy(state_->context);
 }
 
-Result<std::unique_ptr<HttpServer>> HttpServer::listen(const std::string& address, int port, std::set<std::string> hosts,
-                                                       const PageFiles& files, Pages& pages)
+bool is_loopback(const std::string& address) { return address.starts_with("127."); }
+
+Result<std::unique_ptr<Server>> Server::listen(ServerOptions options, Service& service)
 {
-    std::unique_ptr<HttpServer> out(new HttpServer(std::make_unique<State>()));
+    std::unique_ptr<Server> out(new Server(std::make_unique<State>()));
     State& state = *out->state_;
-    state.files = &files, state.pages = &pages, state.address = address;
-    state.protocols[0] = {"http", &on_http, sizeof(Visit), 0, 0, nullptr, 0};
-    state.protocols[1] = {"plab-web-1", &on_socket, sizeof(Visit), 4096, 0, nullptr, 0};
+    state.options = std::move(options), state.service = &service;
+    state.protocols.push_back({"http", &on_http, sizeof(Visit), 0, 0, nullptr, 0});
+    for (const std::string& name : state.options.protocols)
+        state.protocols.push_back({name.c_str(), &on_socket, sizeof(Visit), 4096, 0, nullptr, 0});
+    state.protocols.push_back({});
+    const std::string& address = state.options.address;
     lws_set_log_level(LLL_ERR, &keep_log);
     lws_context_creation_info info{};
-    info.port = port;
-    info.iface = state.address.c_str();
+    info.port = state.options.port;
+    info.iface = address.c_str();
     info.protocols = state.protocols.data();
     info.gid = static_cast<gid_t>(-1), info.uid = static_cast<uid_t>(-1);
     info.user = &state;
     info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_IPV6;
-    info.ka_time = 30, info.ka_probes = 3, info.ka_interval = 10;  // s: a page whose machine is gone is forgotten
+    info.ka_time = 30, info.ka_probes = 3, info.ka_interval = 10;  // s: a client whose machine is gone is forgotten
     state.context = lws_create_context(&info);
     if (state.context == nullptr) return reason("cannot start libwebsockets: " + log_text());
     state.vhost = lws_create_vhost(state.context, &info);
     if (state.vhost == nullptr)
-        return reason("cannot listen on " + address + ", port " + std::to_string(port) +
+        return reason("cannot listen on " + address + ", port " + std::to_string(state.options.port) +
                       ": the address is not of this machine, or the port is taken");
-    hosts.insert({address});
-    if (address.starts_with("127.")) hosts.insert("localhost");
-    state.access.emplace(make_token(), hosts, lws_get_vhost_listen_port(state.vhost));
+    AccessRules rules = state.options.access;
+    rules.hosts.insert(address);
+    if (is_loopback(address)) rules.hosts.insert("localhost");
+    state.access.emplace(std::move(rules), lws_get_vhost_listen_port(state.vhost));
     return out;
 }
 
-std::string HttpServer::url() const
+std::string Server::url(const std::string& scheme) const
 {
-    return "http://" + state_->address + ":" + std::to_string(lws_get_vhost_listen_port(state_->vhost)) + "/" + state_->access->token() +
-           "/";
+    const std::string& token = state_->access->token();
+    return scheme + "://" + state_->options.address + ":" + std::to_string(lws_get_vhost_listen_port(state_->vhost)) + "/" + token +
+           (token.empty() ? "" : "/");
 }
 
-void HttpServer::step() { (void)lws_service(state_->context, 0); }
+void Server::step() { (void)lws_service(state_->context, 0); }
 
-void HttpServer::wake() { lws_cancel_service(state_->context); }
+void Server::wake() { lws_cancel_service(state_->context); }
 
-}  // namespace plab::web
+}  // namespace plab::websocket

@@ -1,15 +1,16 @@
-#include "web/access.h"
+#include "websocket/access.h"
 
 #include <doctest/doctest.h>
 
-using namespace plab::web;
+using namespace plab::websocket;
 
 namespace
 {
 
 const Access& access()
 {
-    static const Access made("0123456789abcdef0123456789abcdef", {"127.0.0.1", "localhost"}, 8080);
+    static const Access made(
+        AccessRules{"plab-web", "0123456789abcdef0123456789abcdef", {"127.0.0.1", "localhost"}, {}, {"/metrics"}, false}, 8080);
     return made;
 }
 
@@ -77,4 +78,35 @@ TEST_CASE("what is below the token is a name of the bundle, never a path")
     CHECK(access().below_token(kPage).empty());
     CHECK(access().below_token(std::string(kPage) + "page.js") == "page.js");
     CHECK(access().below_token(std::string(kPage) + "../../etc/passwd") == "../../etc/passwd");  // no name that the bundle has
+}
+
+TEST_CASE("a path that is open needs no token, but still the right host and no foreign page")
+{
+    CHECK(status_of(access().check_request(head("/metrics"))) == 200);
+    CHECK(access().below_token("/metrics") == "metrics");
+    CHECK(access().below_token(std::string(kPage) + "metrics") == "metrics");
+    CHECK(status_of(access().check_request(head("/metrics/"))) == 403);
+    CHECK(status_of(access().check_request(head("/metrics", "evil.example:8080"))) == 403);
+    CHECK(status_of(access().check_request(head("/metrics", "127.0.0.1:8080", "http://evil.example"))) == 403);
+}
+
+TEST_CASE("without a token, the origin says which pages may open the socket; programs send none")
+{
+    const Access open(AccessRules{"plab-foxglove", "", {"localhost"}, {"https://app.example", "http://localhost:*"}, {}, true}, 8765);
+    const auto status = [&](const std::string& origin) { return status_of(open.check_socket(head("/", "localhost:8765", origin))); };
+    for (const char* origin : {"", "https://app.example", "HTTPS://App.Example", "http://localhost:3000", "http://localhost"})
+    {
+        INFO(origin);
+        CHECK(status(origin) == 200);
+    }
+    for (const char* origin :
+         {"null", "http://app.example", "https://app.example.evil.example", "https://localhost:3000", "http://localhost.evil.example:3000",
+          "http://localhost:3000.evil.example", "http://localhost:x", "https://app.example:8443", "http://localhost:30:40"})
+    {
+        INFO(origin);
+        CHECK(status(origin) == 403);
+    }
+    CHECK(status_of(open.check_socket(head("/", "evil.example:8765"))) == 403);
+    CHECK(open.below_token("/").empty());
+    CHECK(open.below_token("/x") == "x");
 }
