@@ -16,8 +16,6 @@ constexpr std::size_t kMostEntries = 200;
 
 constexpr link::Parts kParts = link::kEverything;
 
-std::shared_ptr<Message> message_of(const Json& json) { return std::make_shared<Message>(link::line_of(json)); }
-
 /// Entries of a batch of samples, and how many of them were left out.
 struct Batch
 {
@@ -39,13 +37,13 @@ struct Batch
 
 }  // namespace
 
-Result<std::unique_ptr<Connection>> Connection::open(const link::Session& session, const link::SessionOptions& options, Pages& pages,
-                                                     const link::Stop& stop)
+Result<std::unique_ptr<Connection>> Connection::open(const link::Session& session, const link::SessionOptions& options, Audience& pages,
+                                                     const JobHandler& jobs, const link::Stop& stop)
 {
     constexpr link::Seconds kLongest(5);
     auto caller = link::Caller::make(session, kLongest, stop);
     if (!caller) return caller.errors();
-    std::unique_ptr<Connection> out(new Connection(session, pages, caller.take()));
+    std::unique_ptr<Connection> out(new Connection(session, pages, jobs, caller.take()));
     out->options_ = options, out->options_.server = session.server();
     auto catalogue = link::Catalogue::open(session, kParts);
     if (!catalogue) return catalogue.errors();
@@ -142,6 +140,8 @@ void Connection::handle(const Arrived& arrived)
     const PageId page = arrived.page;
     if (const auto* asked = std::get_if<Ask>(&*said))
         ask(page, *asked);
+    else if (const auto* job = std::get_if<JobAsk>(&*said))
+        jobs_(page, *job, options_.server);
     else if (auto* watch = std::get_if<Watch>(&*said))
     {
         watched_[page] = watch->components;

@@ -8,6 +8,7 @@
 #include "link/frame_reader.h"
 #include "web/hands.h"
 #include "web/history.h"
+#include "web/job_ask.h"
 #include "web/pose_encoder.h"
 #include "web/preview.h"
 
@@ -18,8 +19,8 @@ class Connection
 {
 public:
     /// Waits for the whole catalogue. The session must outlive it.
-    static Result<std::unique_ptr<Connection>> open(const link::Session& session, const link::SessionOptions& options, Pages& pages,
-                                                    const link::Stop& stop);
+    static Result<std::unique_ptr<Connection>> open(const link::Session& session, const link::SessionOptions& options, Audience& pages,
+                                                    const JobHandler& jobs, const link::Stop& stop);
 
     /// Waits for what the server sends, a few milliseconds, and passes it on; true if pages got something.
     bool step();
@@ -29,8 +30,8 @@ public:
     void close();
 
 private:
-    Connection(const link::Session& session, Pages& pages, link::Caller caller)
-        : session_(session), pages_(pages), requests_(std::move(caller)), hands_(session, requests_)
+    Connection(const link::Session& session, Audience& pages, JobHandler jobs, link::Caller caller)
+        : session_(session), pages_(pages), jobs_(std::move(jobs)), requests_(std::move(caller)), hands_(session, requests_)
     {
     }
 
@@ -51,7 +52,8 @@ private:
     std::set<std::string> watched() const;
 
     const link::Session& session_;
-    Pages& pages_;
+    Audience& pages_;
+    JobHandler jobs_;
     Requests requests_;
     Hands hands_;
     link::SessionOptions options_;  ///< with the server's name

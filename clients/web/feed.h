@@ -6,16 +6,25 @@
 #include <thread>
 
 #include "link/session.h"
+#include "web/job_ask.h"
 #include "web/pages.h"
 
 namespace plab::web
 {
 
+struct FeedHooks
+{
+    std::function<void()> wake;  ///< called after something was put into the pages
+    link::Stop stop;             ///< asked several times a second; true ends the thread
+    JobHandler jobs;
+    /// True: plab-web has started servers of its own, so "the only one" is that of before.
+    std::function<bool()> has_servers;
+};
+
 class Feed
 {
 public:
-    /// `wake`: called after something was put into `pages`. `stop`: asked several times a second; ends the thread.
-    Feed(link::SessionOptions options, Pages& pages, std::function<void()> wake, link::Stop stop);
+    Feed(link::SessionOptions options, Audience& pages, FeedHooks hooks);
     ~Feed() = default;
     Feed(const Feed&) = delete;
     Feed& operator=(const Feed&) = delete;
@@ -24,13 +33,15 @@ private:
     void run();
     /// One server, from when it is found until it has gone.
     void follow();
+    /// True: from now on only the server of before is looked for, by joining anew.
+    bool keep_server();
     /// Answers pages while there is no server.
     void wait_for_server();
 
     link::SessionOptions options_;
-    Pages& pages_;
-    std::function<void()> wake_;
-    link::Stop stop_;
+    Audience& pages_;
+    FeedHooks hooks_;
+    std::string last_server_;
     std::string why_not_ = "No server is found yet. Waiting for one.";
     std::jthread thread_;  ///< last: it uses all of the above
 };

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "program/interruption.h"
-#include "web/feed.h"
+#include "web/desk.h"
 #include "web/http_server.h"
 #include "web/options.h"
 
@@ -37,6 +37,14 @@ int serve(const web::WebOptions& options)
 {
     const auto files = web::PageFiles::load(options.page.empty() ? web::page_folder() : options.page);
     if (!files) return fail(files.error());
+    std::optional<web::Recordings> recordings;
+    if (!options.recordings.empty())
+    {
+        constexpr double kMegabyte = 1e6;
+        auto folder = web::Recordings::open(options.recordings, static_cast<std::uint64_t>(options.recordings_limit * kMegabyte));
+        if (!folder) return fail(folder.error());
+        recordings.emplace(folder.take());
+    }
     web::Pages pages;
     const auto server = web::HttpServer::listen(options.address, options.port, {options.hosts.begin(), options.hosts.end()}, *files, pages);
     if (!server) return fail(server.error());
@@ -45,8 +53,8 @@ int serve(const web::WebOptions& options)
     std::printf("plab-web: %s\n", (*server)->url().c_str());
     std::fflush(stdout);
     {
-        const web::Feed feed(
-            options.link, pages, [&] { (*server)->wake(); }, &program::is_interrupted);
+        const web::Desk desk(
+            options.link, std::move(recordings), pages, [&] { (*server)->wake(); }, &program::is_interrupted);
         while (!program::is_interrupted()) (*server)->step();
     }
     if (!options.address_file.empty()) (void)unlink(options.address_file.c_str());

@@ -1,6 +1,6 @@
 // Servers, plab-web and a browser for the tests of the page. Everything that is started here ends with end().
 import { spawn } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import puppeteer from 'puppeteer-core';
@@ -59,6 +59,20 @@ export class Lab {
     return JSON.parse(child.text);
   }
 
+  // A program until it has ended: its exit code and all that it printed.
+  async run(program, ...args) {
+    const child = this.start(program, ...args);
+    return { code: await child.ended, text: child.text };
+  }
+
+  statusOf(pid) {
+    try {
+      return readText(`/proc/${pid}/status`);
+    } catch {
+      return 'State:\tZ (gone)';
+    }
+  }
+
   async launch(chromium) {
     this.browser = await puppeteer.launch({
       executablePath: chromium, headless: true, pipe: true, userDataDir: join(this.folder, 'profile'),
@@ -97,6 +111,20 @@ export class Lab {
     for (const child of this.children) child.kill('SIGKILL');
     rmSync(this.folder, { recursive: true, force: true, maxRetries: 5 });
   }
+}
+
+// The processes that a process has started, and theirs.
+export function processesUnder(pid) {
+  const all = readdirSync('/proc').filter((name) => /^\d+$/.test(name)).flatMap((name) => {
+    try {
+      const [, state, parent] = /^\d+ \(.*\) (\S) (\d+)/s.exec(readText(`/proc/${name}/stat`));
+      return [{ pid: Number(name), parent: Number(parent), state, command: readText(`/proc/${name}/cmdline`).replaceAll('\0', ' ') }];
+    } catch {
+      return []; // it has ended meanwhile
+    }
+  });
+  const under = (parent) => all.filter((one) => one.parent === parent).flatMap((one) => [one, ...under(one.pid)]);
+  return under(pid);
 }
 
 // Where an object is in the picture, in pixels of the page.

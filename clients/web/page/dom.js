@@ -44,6 +44,12 @@ export function duration(ns) {
   return ns < 1e9 ? `${number(ns / 1e6, 3)} ms` : `${number(ns / 1e9, 3)} s`;
 }
 
+// Bytes as people read them.
+export function size(bytes) {
+  if (bytes < 1e5) return `${number(bytes / 1e3, 2)} kB`;
+  return bytes < 1e9 ? `${number(bytes / 1e6, 3)} MB` : `${number(bytes / 1e9, 3)} GB`;
+}
+
 export const seconds = (value) => `${(value ?? 0).toFixed(3)} s`;
 
 // "Constraint/AngularVelocity/Graph" is "Graph".

@@ -1,6 +1,7 @@
 // The page of plab-web: puts its parts together.
 import { Details } from './details.js';
 import { byId, duration, h, number, seconds } from './dom.js';
+import { Jobs } from './jobs.js';
 import { Model } from './model.js';
 import { Plots } from './plots.js';
 import { Poses } from './poses.js';
@@ -41,7 +42,7 @@ const socket = new Socket({
       view.placed = null;
       return;
     }
-    model.take(message);
+    if (!jobs.take(message)) model.take(message);
   },
   poses: (buffer) => {
     const moment = view.take(buffer);
@@ -51,7 +52,10 @@ const socket = new Socket({
   },
   state: (state) => {
     if (state === 'lost') model.setState('lost', 'The connection to plab-web is lost. Trying to connect again; if plab-web was started anew, open the address that it printed then.');
-    else sendWatch();
+    else {
+      sendWatch();
+      jobs.begin();
+    }
   },
 });
 
@@ -87,7 +91,16 @@ const plots = new Plots(model, quantities, (components) => {
   sendWatch();
 });
 const tree = new Tree(model);
+const jobs = new Jobs(model, socket, {
+  say, showTab: (name) => showTab(name),
+  looks() {
+    poses.clear();
+    view.placed = null;
+    model.select(null);
+  },
+});
 const timeline = new Timeline(model, {
+  seek: (time) => jobs.ask('seek', jobs.shown, time),
   rewind: (time) => ask(`Went back to ${seconds(time)}`, { verb: 'rewind', argument: String(time) }),
   keep: (name) => ask(`Kept as ${name}`, { verb: 'snapshot', target: name }),
   restore: (name) => ask(`Returned to ${name}`, { verb: 'restore', target: name }),
@@ -113,7 +126,7 @@ const details = new Details(model, {
 // ---- Bar ----
 
 const isPaused = () => model.server?.paused ?? false;
-const togglePause = () => ask(isPaused() ? 'Goes on' : 'Paused', { verb: isPaused() ? 'resume' : 'pause' });
+const togglePause = () => (jobs.isPlayback ? jobs.do(isPaused() ? 'resume' : 'pause', jobs.shown) : ask(isPaused() ? 'Goes on' : 'Paused', { verb: isPaused() ? 'resume' : 'pause' }));
 const stepOnce = () => ask(null, { verb: 'step', argument: byId('steps').value || '1' }).then((reply) => reply.outcome !== 'done' && tellReply('', reply));
 const reset = () => ask('Begins anew', { verb: 'reset' });
 
@@ -132,7 +145,7 @@ function setMode(mode) {
 byId('pause').onclick = togglePause;
 byId('step').onclick = stepOnce;
 byId('reset').onclick = reset;
-byId('rate').onchange = (event) => ask(`The rate is ${event.target.value}`, { verb: 'rate', argument: event.target.value });
+byId('rate').onchange = (event) => (jobs.isPlayback ? jobs.do('rate', jobs.shown, event.target.value === 'real' ? 1 : Number(event.target.value)) : ask(`The rate is ${event.target.value}`, { verb: 'rate', argument: event.target.value }));
 byId('follow').onclick = toggleFollow;
 byId('fit').onclick = () => view.fitAll();
 byId('grab').onclick = () => setMode('grab');
@@ -235,5 +248,5 @@ document.addEventListener('keydown', (event) => {
 });
 
 // What can be measured of the page, for tests.
-globalThis.plab = { model, poses, view, socket, plots };
+globalThis.plab = { model, poses, view, socket, plots, jobs };
 showState();
