@@ -187,7 +187,7 @@ void Connection::take_catalogue()
     if (now.server && now.server->step == server_step_ && sent_.server && *now.server == *sent_.server) return;
     if (!now.server) return;
     server_step_ = now.server->step;
-    sent_.server = now.server;
+    sent_.server = now.server, whole_ = nullptr;
     push(server_message(*now.server));
 }
 

@@ -84,7 +84,11 @@ export class Details {
       ...this.row('error', error ? `${number(row?.error)} ${error.unit}` : none ? `not known: ${none.text}` : number(row?.error), `${thing.id}.error`),
       ...this.row('work done', `${number(row?.work)} J`, `${thing.id}.work`),
     ];
-    if (thing.levels?.level !== undefined) rows.push(...this.row('level', `${thing.levels.level} of ${thing.levels.levels ?? '?'}`));
+    const { levels } = thing;
+    if (levels?.level !== undefined) {
+      rows.push(...this.row('level of detail', `${Number(levels.level) + 1} of ${levels.levels ?? '?'}, chosen by ${levels.governor ?? 'a governor'}`));
+      if (levels.level_reason) rows.push(...this.row('because', `${levels.level_reason}, since ${number(Number(levels.level_since))} s`));
+    }
     for (const output of outputs) if (output.kind !== 'account') rows.push(...this.row(output.name, `${shortText(output.text)} ${output.unit}`, `${thing.id}.${output.name}`));
     this.numbers.replaceChildren(...rows);
   }

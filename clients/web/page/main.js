@@ -2,6 +2,7 @@
 import { Details } from './details.js';
 import { byId, duration, h, number, seconds } from './dom.js';
 import { Jobs } from './jobs.js';
+import { Levels } from './levels.js';
 import { Model } from './model.js';
 import { Plots } from './plots.js';
 import { Poses } from './poses.js';
@@ -91,6 +92,14 @@ const plots = new Plots(model, quantities, (components) => {
   sendWatch();
 });
 const tree = new Tree(model);
+const levels = new Levels(model, {
+  select: (id) => model.select(id),
+  search(text) {
+    byId('filter').value = text;
+    byId('filter').dispatchEvent(new Event('input'));
+    if (innerWidth < 800) showTab('tree');
+  },
+});
 const jobs = new Jobs(model, socket, {
   say, showTab: (name) => showTab(name),
   looks() {
@@ -182,8 +191,14 @@ model.on('server', (server) => {
   byId('server').textContent = `${server.name}, run ${server.run}`;
   byId('pause').textContent = server.paused ? '▶ Go on' : '❚❚ Pause';
   if (document.activeElement !== byId('rate')) byId('rate').value = server.rate_asked === 0 ? 'max' : server.rate_asked === 1 ? 'real' : String(server.rate_asked);
-  byId('overload').textContent = server.overload ? `Too slow: ${server.overload}` : '';
+  byId('overload').textContent = server.overload ? 'Too slow' : '';
+  byId('overload').title = overloadText(server);
 });
+
+function overloadText({ overload }) {
+  if (!overload) return '';
+  return overload === 'slip' ? 'The steps take longer than the time that they simulate: the scene is slower than was asked for.' : `The steps take too long; the server does this about it: ${overload}`;
+}
 model.on('trouble', (text) => say(text, true));
 model.on('state', showState);
 function showState() {
@@ -195,6 +210,7 @@ function showState() {
 setInterval(() => {
   // plabd says that it is there at least once a second.
   if (model.state.kind === 'there' && model.heardAt && performance.now() - model.heardAt > 3000) model.setState('silent', 'The server has said nothing for 3 s. It may be stopped or gone; waiting for it.');
+  timeline.follow(view.shownTime);
   byId('clock').textContent = seconds(view.shownTime ?? model.server?.time ?? 0);
   byId('facts').textContent = [
     isPaused() ? 'paused' : `× ${number(model.server?.rate_reached ?? 0, 3)}`, model.metrics && `step ${duration(model.metrics.step_ns)}`,
@@ -210,6 +226,7 @@ function showTab(name) {
   plots.isStale = true;
   timeline.draw();
   tree.draw();
+  levels.fill();
 }
 for (const tab of document.querySelectorAll('[data-tab]')) tab.addEventListener('click', () => showTab(tab.dataset.tab));
 showTab('plots');

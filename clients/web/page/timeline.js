@@ -50,6 +50,12 @@ export class Timeline {
     byId('severity').addEventListener('change', () => this.fillList());
   }
 
+  // plabd says where it is once a second; what is drawn says it more often. `time`: s, of what is drawn.
+  follow(time) {
+    this.drawn = time ?? 0;
+    if (!this.isDragged && !this.model.playback) this.update();
+  }
+
   // A playback follows the handle, a few times a second.
   scrub(actions) {
     this.later ??= setTimeout(() => {
@@ -61,7 +67,9 @@ export class Timeline {
   get range() {
     const { server, playback } = this.model;
     if (playback) return [playback.from, Math.max(playback.to, playback.from + 1e-9)];
-    const end = server?.time ?? 0, from = server && server.rewind_from !== null ? server.rewind_from : 0;
+    // Not that of before a reset or a rewind.
+    const isNewer = server && this.drawn > server.time && this.drawn < server.time + 2 * Math.max(1, server.rate_reached);
+    const end = isNewer ? this.drawn : server?.time ?? 0, from = server && server.rewind_from !== null ? server.rewind_from : 0;
     return [Math.min(from, end), Math.max(end, from + 1e-9)];
   }
 

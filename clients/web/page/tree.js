@@ -59,7 +59,7 @@ export class Tree {
       return h(`div.row.group${active}`, { ...common, 'aria-expanded': String(open), onclick: () => this.toggle(row.group) }, `${open ? '▾' : '▸'} ${row.group} (${row.count})`);
     }
     const { thing } = row, selected = thing.id === this.model.selected, numbers = this.model.rows.get(thing.id);
-    const level = thing.levels?.level !== undefined ? `level ${thing.levels.level}` : '';
+    const level = thing.levels?.level !== undefined ? `level ${Number(thing.levels.level) + 1}/${thing.levels.levels}` : '';
     const facts = thing.handle === undefined
       ? [shortType(thing.type), duration(numbers?.cost), numbers && numbers.error !== null ? `err ${number(numbers.error, 2)}` : '', level]
       : [thing.motion === 'static' ? 'static' : thing.kind === 'shaft' ? 'shaft' : 'body', '', '', level];
