@@ -1,5 +1,5 @@
 // What is known of the selected component: its numbers, its parameters, and the algorithms it can be exchanged for.
-import { byId, duration, h, isPressed, number, present, shortText, shortType } from './dom.js';
+import { byId, duration, h, isPressed, levelText, number, present, shortText, shortType } from './dom.js';
 import { previewCard, swapCard } from './card.js';
 
 export class Details {
@@ -86,7 +86,7 @@ export class Details {
     ];
     const { levels } = thing;
     if (levels?.level !== undefined) {
-      rows.push(...this.row('level of detail', `${Number(levels.level) + 1} of ${levels.levels ?? '?'}, chosen by ${levels.governor ?? 'a governor'}`));
+      rows.push(...this.row('level of detail', `${levelText(levels.level, levels.levels)}, chosen by ${levels.governor ?? 'a governor'}`));
       if (levels.level_reason) rows.push(...this.row('because', `${levels.level_reason}, since ${number(Number(levels.level_since))} s`));
     }
     for (const output of outputs) if (output.kind !== 'account') rows.push(...this.row(output.name, `${shortText(output.text)} ${output.unit}`, `${thing.id}.${output.name}`));

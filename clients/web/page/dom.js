@@ -52,6 +52,9 @@ export function size(bytes) {
 
 export const seconds = (value) => `${(value ?? 0).toFixed(3)} s`;
 
+// A level of detail as people count it, from the cheapest; '–': an algorithm that the ladder does not name.
+export const levelText = (level, of) => (level < 0 ? '–' : `${Number(level) + 1} of ${of ?? '?'}`);
+
 // "Constraint/AngularVelocity/Graph" is "Graph".
 export const shortType = (type) => type.slice(type.lastIndexOf('/') + 1);
 

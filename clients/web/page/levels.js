@@ -1,5 +1,5 @@
 // Levels of detail: what each governor has chosen, how many run at which level, what that costs and how large the error is.
-import { byId, duration, h, isPressed, number, shortType } from './dom.js';
+import { byId, duration, h, isPressed, levelText, number, shortType } from './dom.js';
 
 export class Levels {
   // actions: { select(id), search(text) }
@@ -23,7 +23,7 @@ export class Levels {
       h('tbody', {}, ...groups.map((group) => this.row(group)))));
   }
 
-  // One for each governor and level, the cheapest level first; people count it as the first.
+  // One for each governor and level, the cheapest level first.
   groups() {
     const groups = new Map();
     for (const thing of this.model.interactions.values()) {
@@ -42,7 +42,7 @@ export class Levels {
 
   row(group) {
     const link = (text, id) => h('button.link', { onclick: () => this.actions.select(id) }, text);
-    return h('tr', {}, h('th', { scope: 'row' }, group.governor ? link(group.governor, group.governor) : '–'), h('td', {}, `${group.level + 1} of ${group.of}`),
+    return h('tr', {}, h('th', { scope: 'row' }, group.governor ? link(group.governor, group.governor) : '–'), h('td', {}, levelText(group.level, group.of)),
       h('td', { title: group.type }, group.text || shortType(group.type)), h('td', {}, String(group.count)), h('td', {}, duration(group.cost)),
       h('td', {}, group.worst ? h('span', {}, `${number(group.worst.error, 3)}, `, link(group.worst.id, group.worst.id)) : 'not known'),
       h('td', {}, h('button', { 'aria-label': `Show ${group.type} in the tree`, onclick: () => this.actions.search(group.type) }, 'Show them')));
