@@ -39,7 +39,7 @@ try {
     const servers = [server.pid, ...processesUnder(server.pid).map((one) => one.pid)];
     const recorder = processesUnder(web).find((one) => one.command.includes(' record '))?.pid;
     const size = () => (isOn ? statSync(join(folder, 'bench.mcap')).size : 0);
-    const all = () => [cpu(web), servers.reduce((sum, pid) => sum + cpu(pid), 0), recorder ? cpu(recorder) : 0, size() / 1e4];
+    const all = () => [cpu(web), servers.reduce((sum, pid) => sum + cpu(pid), 0), recorder ? cpu(recorder) : 0, size() / 1e6];
     const before = all(), begin = performance.now();
     await sleep(1000 * kSeconds);
     const seconds = (performance.now() - begin) / 1000, now = all();
