@@ -13,6 +13,7 @@ constexpr std::chrono::milliseconds kPause(100);
 /// One server, from when it is found until it has gone; returns why there is none any more.
 std::string follow_one(const SessionOptions& options, const Stop& stop, const FollowHandler& handler, std::string why)
 {
+    const std::string name = options.server;
     auto session = Session::join(options);
     if (!session) return session.error().text();
     const auto stop_or_wait = [&]
@@ -22,7 +23,7 @@ std::string follow_one(const SessionOptions& options, const Stop& stop, const Fo
     };
     while (true)
     {
-        if (stop()) return why;
+        if (stop() || options.server != name) return why;
         const auto found = session->find_server(options, kLook, stop_or_wait);
         if (found) break;
         why = "There is no server to show: " + found.error().text() + ". Waiting for it.";

@@ -16,7 +16,7 @@ struct FollowHandler
     std::function<Result<void>(const Session& session)> serve;
 };
 
-/// Returns when `stop` does.
+/// Returns when `stop` does. The handler may change the server's name in `options` while there is none: then that one is looked for.
 void follow_servers(const SessionOptions& options, const Stop& stop, const FollowHandler& handler);
 
 }  // namespace plab::link

@@ -16,8 +16,6 @@ constexpr std::size_t kMostEntries = 200;
 
 constexpr link::Parts kParts = link::kEverything;
 
-std::shared_ptr<Message> message_of(const Json& json) { return std::make_shared<Message>(link::line_of(json)); }
-
 /// Entries of a batch of samples, and how many of them were left out.
 struct Batch
 {
@@ -39,13 +37,13 @@ struct Batch
 
 }  // namespace
 
-Result<std::unique_ptr<Connection>> Connection::open(const link::Session& session, const link::SessionOptions& options, Pages& pages,
-                                                     NewestFigures& figures, const link::Stop& stop)
+Result<std::unique_ptr<Connection>> Connection::open(const link::Session& session, const link::SessionOptions& options, Audience& pages,
+                                                     const FeedHooks& hooks)
 {
     constexpr link::Seconds kLongest(5);
     auto caller = link::Caller::make(session, kLongest, stop);
     if (!caller) return caller.errors();
-    std::unique_ptr<Connection> out(new Connection(session, pages, figures, caller.take()));
+    std::unique_ptr<Connection> out(new Connection(session, pages, hooks, caller.take()));
     out->options_ = options, out->options_.server = session.server();
     auto catalogue = link::Catalogue::open(session, kParts);
     if (!catalogue) return catalogue.errors();
@@ -88,7 +86,7 @@ bool Connection::step()
 
 void Connection::close()
 {
-    figures_.set(nullptr);
+    if (hooks_.figures != nullptr) hooks_.figures->set(nullptr);
     requests_.give_up("the server has gone; whether it did this is unknown");
     push({{"type", "gone"}, {"reason", "The server has gone. Waiting for it to come back."}});
 }
@@ -144,6 +142,8 @@ void Connection::handle(const Arrived& arrived)
     const PageId page = arrived.page;
     if (const auto* asked = std::get_if<Ask>(&*said))
         ask(page, *asked);
+    else if (const auto* job = std::get_if<JobAsk>(&*said))
+        hooks_.jobs(page, *job, options_.server);
     else if (auto* watch = std::get_if<Watch>(&*said))
     {
         watched_[page] = watch->components;
@@ -189,7 +189,7 @@ void Connection::take_catalogue()
     if (now.server && now.server->step == server_step_ && sent_.server && *now.server == *sent_.server) return;
     if (!now.server) return;
     server_step_ = now.server->step;
-    sent_.server = now.server;
+    sent_.server = now.server, whole_ = nullptr;
     push(server_message(*now.server));
 }
 
@@ -222,7 +222,7 @@ void Connection::note_figures()
     const auto moment = std::chrono::steady_clock::now();
     if (moment - noted_at_ < kBetween || !catalogue_->now().server) return;
     noted_at_ = moment;
-    figures_.set(std::make_shared<const Figures>(figures_of(catalogue_->now())));
+    if (hooks_.figures != nullptr) hooks_.figures->set(std::make_shared<const Figures>(figures_of(catalogue_->now())));
 }
 
 void Connection::take_events()

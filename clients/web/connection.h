@@ -8,18 +8,29 @@
 #include "link/frame_reader.h"
 #include "web/hands.h"
 #include "web/history.h"
+#include "web/job_ask.h"
 #include "web/pose_encoder.h"
 #include "web/preview.h"
 
 namespace plab::web
 {
 
+struct FeedHooks
+{
+    std::function<void()> wake;  ///< called after something was put into the pages
+    link::Stop stop;             ///< asked several times a second; true ends the thread
+    JobHandler jobs;
+    /// True: plab-web has started servers of its own, so "the only one" is that of before.
+    std::function<bool()> has_servers;
+    NewestFigures* figures = nullptr;  ///< for Prometheus; null: nobody asks for those of this server
+};
+
 class Connection
 {
 public:
     /// Waits for the whole catalogue. The session must outlive it.
-    static Result<std::unique_ptr<Connection>> open(const link::Session& session, const link::SessionOptions& options, Pages& pages,
-                                                    NewestFigures& figures, const link::Stop& stop);
+    static Result<std::unique_ptr<Connection>> open(const link::Session& session, const link::SessionOptions& options, Audience& pages,
+                                                    const FeedHooks& hooks);
 
     /// Waits for what the server sends, a few milliseconds, and passes it on; true if pages got something.
     bool step();
@@ -29,8 +40,8 @@ public:
     void close();
 
 private:
-    Connection(const link::Session& session, Pages& pages, NewestFigures& figures, link::Caller caller)
-        : session_(session), pages_(pages), figures_(figures), requests_(std::move(caller)), hands_(session, requests_)
+    Connection(const link::Session& session, Audience& pages, FeedHooks hooks, link::Caller caller)
+        : session_(session), pages_(pages), hooks_(std::move(hooks)), requests_(std::move(caller)), hands_(session, requests_)
     {
     }
 
@@ -52,8 +63,8 @@ private:
     std::set<std::string> watched() const;
 
     const link::Session& session_;
-    Pages& pages_;
-    NewestFigures& figures_;
+    Audience& pages_;
+    FeedHooks hooks_;
     link::Requests requests_;
     Hands hands_;
     link::SessionOptions options_;  ///< with the server's name

@@ -2,11 +2,9 @@
 /// has gone.
 #pragma once
 
-#include <functional>
 #include <thread>
 
-#include "link/session.h"
-#include "web/pages.h"
+#include "web/connection.h"
 
 namespace plab::web
 {
@@ -14,8 +12,7 @@ namespace plab::web
 class Feed
 {
 public:
-    /// `wake`: called after something was put into `pages`. `stop`: asked several times a second; ends the thread.
-    Feed(link::SessionOptions options, Pages& pages, NewestFigures& figures, std::function<void()> wake, link::Stop stop);
+    Feed(link::SessionOptions options, Audience& pages, FeedHooks hooks);
     ~Feed() = default;
     Feed(const Feed&) = delete;
     Feed& operator=(const Feed&) = delete;
@@ -24,14 +21,15 @@ private:
     void run();
     /// One server until it has gone.
     Result<void> serve(const link::Session& session);
+    /// From now on only the server of before is looked for, if there are others that plab-web has started.
+    void keep_server();
     /// Answers pages while there is no server.
     void wait_for_server(const std::string& why);
 
     link::SessionOptions options_;
-    Pages& pages_;
-    NewestFigures& figures_;
-    std::function<void()> wake_;
-    link::Stop stop_;
+    Audience& pages_;
+    FeedHooks hooks_;
+    std::string last_server_;
     std::jthread thread_;  ///< last: it uses all of the above
 };
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "program/interruption.h"
-#include "web/feed.h"
+#include "web/desk.h"
 #include "web/options.h"
 #include "web/page_service.h"
 #include "websocket/address_file.h"
@@ -22,6 +22,14 @@ int serve(const web::WebOptions& options)
 {
     const auto files = web::PageFiles::load(options.page.empty() ? web::page_folder() : options.page);
     if (!files) return fail(files.error());
+    std::optional<web::Recordings> recordings;
+    if (!options.recordings.empty())
+    {
+        constexpr double kMegabyte = 1e6;
+        auto folder = web::Recordings::open(options.recordings, static_cast<std::uint64_t>(options.recordings_limit * kMegabyte));
+        if (!folder) return fail(folder.error());
+        recordings.emplace(folder.take());
+    }
     web::Pages pages;
     web::NewestFigures figures;
     web::PageService service(*files, pages, figures);
@@ -34,8 +42,8 @@ int serve(const web::WebOptions& options)
     std::printf("plab-web: %s\n", url.c_str());
     std::fflush(stdout);
     {
-        const web::Feed feed(
-            options.link, pages, figures, [&] { (*server)->wake(); }, &program::is_interrupted);
+        const web::Desk desk(
+            options.link, std::move(recordings), pages, figures, [&] { (*server)->wake(); }, &program::is_interrupted);
         while (!program::is_interrupted()) (*server)->step();
     }
     return program::code_of_interruption();

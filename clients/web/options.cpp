@@ -12,6 +12,7 @@ namespace
 constexpr const char* kExamples = R"(Examples:
   plab-web                                    print an address; open it in a browser on this machine
   plab-web --server lab --port 8080
+  plab-web --recordings runs                  pages may record, and play what is in the folder
   plab-web --listen 192.0.2.7 --host lab.example    for other machines: whoever has the address may do everything
 
 The address has a random token, which is new with each start. It stays valid when the server ends: the page waits for it to come back.
@@ -31,6 +32,12 @@ void add_options(CLI::App& app, WebOptions& options)
     app.add_option("--page", options.page, "folder of the page; default: the one that was built with this program")->type_name("DIR");
     app.add_option("--write-address", options.address_file, "write the page's address to a file that only its owner can read")
         ->type_name("FILE");
+    app.add_option("--recordings", options.recordings, "folder to which pages may record, and from which they play; default: they may not")
+        ->type_name("DIR");
+    app.add_option("--recordings-limit", options.recordings_limit, "MB that all recordings there may have; a recording ends at it")
+        ->check(CLI::Range(1.0, 1e9))
+        ->type_name("MB")
+        ->capture_default_str();
     app.add_option("--server", options.link.server, "name of the server; without it, the only one (PLAB_SERVER)")->type_name("NAME");
     app.add_option("--domain", options.link.domain.id, "DDS domain (PLAB_DOMAIN)")->check(CLI::Range(0, 232));
     app.add_option("--interface", options.link.domain.network_interface,

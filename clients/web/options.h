@@ -19,6 +19,8 @@ struct WebOptions
     std::vector<std::string> hosts;     ///< more names by which browsers reach it
     std::string page;                   ///< folder of the page; empty: the one that was built
     std::string address_file;           ///< where the page's address is written too; empty: nowhere
+    std::string recordings;             ///< folder of recordings that pages make; empty: they make none
+    double recordings_limit = 1000;     ///< MB, of all of them
 };
 
 /// Empty: `options` is filled.

@@ -19,6 +19,14 @@ void Outbox::begin(MessagePtr whole)
     key_sent_ = 0;
 }
 
+void Outbox::begin_anew(MessagePtr first)
+{
+    begin(std::move(first));
+    poses_ = {};
+    unacknowledged_ = 0;
+    is_current_ = false;
+}
+
 void Outbox::push(MessagePtr message)
 {
     if (!is_current_) return;

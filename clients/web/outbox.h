@@ -32,6 +32,8 @@ public:
 
     /// The page has the whole scene once this is sent: what was left out is made good.
     void begin(MessagePtr whole);
+    /// The page looks at another server: what waits is dropped, and the page gets `first` and then the whole scene of that one.
+    void begin_anew(MessagePtr first);
     /// Ignored while the page has not got the whole scene.
     void push(MessagePtr message);
     /// The newest replaces the one that waits.

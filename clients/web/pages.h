@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "web/metrics_text.h"
@@ -25,6 +26,7 @@ struct Arrived
     bool has_left = false;
 };
 
+/// Each page looks at one server: at first at the one of this program, which is called "" here.
 class Pages
 {
 public:
@@ -40,12 +42,52 @@ public:
     MessagePtr take(PageId page);
     bool has_any(PageId page) const;
 
-    // For the thread that talks to the server.
+    // For any thread.
+    void push_to_all(const MessagePtr& message);  ///< to all that are current
+    void push_to(PageId page, const MessagePtr& message);
+    /// From now on the page looks at that server; `first` is the first message that it gets then.
+    void look(PageId page, const std::string& server, const MessagePtr& first);
+    /// How many pages look at which server.
+    std::map<std::string, std::size_t> looked_at() const;
+    PageFigures figures() const;
+
+private:
+    friend class Audience;
+    struct Page
+    {
+        Outbox outbox;
+        std::string server;
+    };
+    /// Of one server.
+    struct Group
+    {
+        std::vector<Arrived> arrived;
+        Poses newest;  ///< for late joiners
+    };
+
+    mutable std::mutex mutex_;
+    std::map<PageId, Page> pages_;
+    std::map<std::string, Group> groups_;
+    std::size_t waiting_ = 0;  ///< texts of all groups
+    PageId last_ = 0;
+    PageFigures of_gone_;  ///< what pages that are closed have counted
+};
+
+/// The pages that look at one server, for the thread that talks to it.
+class Audience
+{
+public:
+    /// The pages must outlive it.
+    explicit Audience(Pages& pages, std::string server = {}) : pages_(pages), server_(std::move(server)) {}
+    /// What its pages say from now on is for whoever comes next.
+    ~Audience();
+    Audience(const Audience&) = delete;
+    Audience& operator=(const Audience&) = delete;
+
     std::vector<Arrived> arrived();
     std::size_t count() const;
-    PageFigures figures() const;
     void push(const MessagePtr& message);  ///< to all that are current
-    void push_to(PageId page, const MessagePtr& message);
+    void push_to(PageId page, const MessagePtr& message) { pages_.push_to(page, message); }
     void put(const Poses& poses);
     /// Poses of before are of another server.
     void forget_poses();
@@ -53,12 +95,8 @@ public:
     std::vector<PageId> begin(const std::function<MessagePtr()>& whole);
 
 private:
-    mutable std::mutex mutex_;
-    std::map<PageId, Outbox> pages_;
-    std::vector<Arrived> arrived_;
-    Poses newest_;  ///< for late joiners
-    PageId last_ = 0;
-    PageFigures of_gone_;  ///< what pages that are closed have counted
+    Pages& pages_;
+    std::string server_;
 };
 
 }  // namespace plab::web

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <chrono>
-#include <cstdio>
 #include <functional>
-#include <memory>
+#include <optional>
 
+#include "program/child.h"
 #include "web/translate.h"
 
 namespace plab::web
@@ -16,25 +16,13 @@ class Preview
 public:
     using Then = std::function<void(const Result<Json>&)>;
 
-    Preview() = default;
-    Preview(const Preview&) = delete;
-    Preview& operator=(const Preview&) = delete;
-    /// Ends it.
-    ~Preview();
-
     /// `then` gets what plabctl prints, or what it complains about; by update(), or at once if it cannot be started.
     void start(const link::SessionOptions& server, const PreviewAsk& ask, Then then);
     void update();
 
 private:
-    struct Closer
-    {
-        void operator()(std::FILE* file) const { (void)std::fclose(file); }
-    };
-    using File = std::unique_ptr<std::FILE, Closer>;
-
-    int process_ = 0;  ///< 0: none runs
-    File output_, complaints_;
+    std::optional<program::Child> child_;  ///< nothing: none runs
+    std::string printed_;
     std::chrono::steady_clock::time_point end_;
     Then then_;
 };

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "link/json.h"
+
 namespace plab::web
 {
 namespace
@@ -234,7 +236,20 @@ Result<Said> parse_preview(Members& members)
     return Said{std::move(out)};
 }
 
+/// Whether a name names something is for whoever does it; here it is only kept short.
+Result<Said> parse_job(Members& members)
+{
+    constexpr std::size_t kMostName = 200;
+    JobAsk out{members.whole("id"), members.text("verb"), members.text("name"), members.number("value", 0)};
+    if (out.verb.empty()) members.wrong("verb", "what is to be done");
+    if (out.name.size() > kMostName) members.wrong("name", "at most " + std::to_string(kMostName) + " bytes long");
+    if (!members.error().empty()) return reason(members.error());
+    return Said{std::move(out)};
+}
+
 }  // namespace
+
+MessagePtr message_of(const Json& json) { return std::make_shared<Message>(link::line_of(json)); }
 
 Json scene_message(const link::CatalogueContents& now)
 {
@@ -316,7 +331,8 @@ Result<Said> parse_said(const std::string& text)
     if (type == "watch") return parse_watch(members);
     if (type == "grab" || type == "move" || type == "release") return parse_hand(type, members);
     if (type == "preview") return parse_preview(members);
-    return reason("'type' must be request, watch, grab, move, release or preview");
+    if (type == "job") return parse_job(members);
+    return reason("'type' must be request, watch, grab, move, release, preview or job");
 }
 
 }  // namespace plab::web

@@ -11,12 +11,16 @@
 #include "idl/json/json.h"
 #include "link/caller.h"
 #include "link/catalogue.h"
+#include "web/job_ask.h"
+#include "web/outbox.h"
 
 namespace plab::web
 {
 
 using wire::Json;
 
+/// As text, for pages.
+MessagePtr message_of(const Json& json);
 /// The whole scene, without the parameters of each component: these are sent for those that are looked at.
 Json scene_message(const link::CatalogueContents& now);
 /// What differs from `before`; nothing: no difference that the page shows.
@@ -63,7 +67,7 @@ struct PreviewAsk
     std::string component, type;
     double seconds = 1;  ///< simulated
 };
-using Said = std::variant<Ask, Watch, Grab, MoveHand, Release, PreviewAsk>;
+using Said = std::variant<Ask, Watch, Grab, MoveHand, Release, PreviewAsk, JobAsk>;
 
 inline constexpr std::size_t kMostText = 256u << 10;  ///< bytes of a message from a page
 inline constexpr std::size_t kMostWatched = 16;       ///< components of a page

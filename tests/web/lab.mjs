@@ -1,7 +1,8 @@
 // Servers, plab-web and a browser for the tests of the page. Everything that is started here ends with end().
+import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import puppeteer from 'puppeteer-core';
-import { Programs, until } from './programs.mjs';
+import { Programs, readText, until } from './programs.mjs';
 
 export { cpu, manyBodies, memory, readText, sleep, until } from './programs.mjs';
 
@@ -16,6 +17,20 @@ export class Lab extends Programs {
     await until('plab-web prints its address', () => /http:\/\/\S+/.test(this.webProcess.text));
     this.url = this.webProcess.text.match(/http:\/\/\S+/)[0];
     return this.url;
+  }
+
+  // A program until it has ended: its exit code and all that it printed.
+  async run(program, ...args) {
+    const child = this.start(program, ...args);
+    return { code: await child.ended, text: child.text };
+  }
+
+  statusOf(pid) {
+    try {
+      return readText(`/proc/${pid}/status`);
+    } catch {
+      return 'State:\tZ (gone)';
+    }
   }
 
   async launch(chromium) {
@@ -53,6 +68,20 @@ export class Lab extends Programs {
     await this.browser?.close();
     await super.end();
   }
+}
+
+// The processes that a process has started, and theirs.
+export function processesUnder(pid) {
+  const all = readdirSync('/proc').filter((name) => /^\d+$/.test(name)).flatMap((name) => {
+    try {
+      const [, state, parent] = /^\d+ \(.*\) (\S) (\d+)/s.exec(readText(`/proc/${name}/stat`));
+      return [{ pid: Number(name), parent: Number(parent), state, command: readText(`/proc/${name}/cmdline`).replaceAll('\0', ' ') }];
+    } catch {
+      return []; // it has ended meanwhile
+    }
+  });
+  const under = (parent) => all.filter((one) => one.parent === parent).flatMap((one) => [one, ...under(one.pid)]);
+  return under(pid);
 }
 
 // Where an object is in the picture, in pixels of the page.

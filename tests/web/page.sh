@@ -12,7 +12,7 @@ script=$1 bin=$2 page=$3 scenes=$4
 mkdir -p "$5/pictures"
 work=$(realpath "$5")
 
-skip() { echo "web_page: skipped: $*"; exit 77; }
+skip() { echo "web: skipped: $*"; exit 77; }
 
 [[ -e $page/page.js ]] || skip "the page was not built: $(cat "$page/not_built.txt" 2>/dev/null || echo "no $page/page.js")"
 chromium=$(command -v chromium) || skip "no chromium here (Debian's package chromium)"

@@ -249,4 +249,18 @@ test('a page that is opened before the server waits for it', async () => {
   await early.close();
 });
 
+test('who runs at which level of detail is listed, with its cost', async () => {
+  server.kill('SIGTERM');
+  await server.ended;
+  server = await lab.server(join(scenes, 'levels', 'budget.xml'), '--rate', 'real');
+  await until('the governor has chosen', () => page.evaluate(() => !document.querySelector('[data-tab=levels]').hidden), 30000);
+  await page.click('[data-tab=levels]');
+  const rows = await until('levels are listed', () => page.$$eval('#levels tbody tr', (all) => all.map((row) => [...row.children].map((cell) => cell.textContent))).then((all) => all.length > 0 && all));
+  const listed = await lab.control('levels');
+  const total = rows.reduce((sum, row) => sum + Number(row[3]), 0);
+  assert.equal(total, listed.levels.length, `${JSON.stringify(rows)} against ${JSON.stringify(listed).slice(0, 400)}`);
+  for (const row of rows) assert.match(row[1], /^[1-9] of [1-9]$/);
+  await page.click('[data-tab=plots]');
+});
+
 test('no page had an error', () => assert.deepEqual(lab.troubles, []));

@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <thread>
 
 extern char** environ;
@@ -72,7 +71,7 @@ private:
 
 std::vector<std::string> plabd_with(const std::vector<std::string>& arguments)
 {
-    std::vector<std::string> command{plabd_program()};
+    std::vector<std::string> command{program::program_beside("plabd")};
     command.insert(command.end(), arguments.begin(), arguments.end());
     return command;
 }
@@ -81,12 +80,9 @@ int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 +
 
 }  // namespace
 
-std::string plabd_program()
+Result<program::Child> start_attached_server(const std::vector<std::string>& arguments)
 {
-    std::error_code error;
-    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-    const std::filesystem::path beside = self.parent_path() / "plabd";
-    return !error && std::filesystem::exists(beside, error) ? beside.string() : "plabd";
+    return program::Child::start(plabd_with(arguments), program::Streams::Shared);
 }
 
 Result<int> start_server(const std::vector<std::string>& arguments, const std::string& log)

@@ -8,12 +8,13 @@
 
 #include "link/session.h"
 #include "plab/result.h"
+#include "program/child.h"
 
 namespace plab::cli
 {
 
-/// plabd beside this program, or the one that PATH finds.
-std::string plabd_program();
+/// plabd beside this program, or the one that PATH finds: a server that ends with this program, and logs to its standard error.
+Result<program::Child> start_attached_server(const std::vector<std::string>& arguments);
 
 /// Starts an independent server: a session of its own, no terminal, its log in `log`. Returns the process id.
 Result<int> start_server(const std::vector<std::string>& arguments, const std::string& log);

@@ -1,7 +1,10 @@
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
 
 #include "control/console/json.h"
 #include "control/console/table.h"
@@ -190,12 +193,13 @@ struct BranchOptions
 {
     std::string name, log;
     std::vector<std::string> arguments;
-    bool paused = false;
+    bool paused = false, attached = false;
 };
 
-/// Until the new server appears on the bus, or has ended.
-Exit await_server(Context& c, int process, const BranchOptions& o)
+/// Until the new server appears on the bus, or has ended with a code.
+Exit await_server(Context& c, int process, const BranchOptions& o, const std::function<std::optional<int>()>& ended)
 {
+    const std::string see = o.log.empty() ? "" : "; see " + o.log;
     const auto end = link::moment_after(c.timeout(kStart));
     for (;;)
     {
@@ -206,36 +210,65 @@ Exit await_server(Context& c, int process, const BranchOptions& o)
                     print(c.console, Json{{"server", s.name}, {"process", s.process}, {"step", s.step}, {"time", s.time}, {"log", o.log}});
                 else
                     c.console.out("server '" + s.name + "' continues from step " + std::to_string(s.step) +
-                                  ", t = " + exact_number(s.time) + " s; process " + std::to_string(process) + ", log " + o.log + "\n");
+                                  ", t = " + exact_number(s.time) + " s; process " + std::to_string(process) +
+                                  (o.log.empty() ? "; Ctrl-C ends it" : ", log " + o.log) + "\n");
                 return Exit::Done;
             }
-        if (const Life life = life_of(process); !life.runs)
-            return c.fail(Exit::Failed, "the branch ended with code " + std::to_string(life.code) + "; see " + o.log);
+        if (const auto code = ended()) return c.fail(Exit::Failed, "the branch ended with code " + std::to_string(*code) + see);
         if (c.stopped()) return Exit::Interrupted;
-        if (Clock::now() >= end) return c.fail(Exit::NoServer, "the branch did not appear on the bus; see " + o.log);
+        if (Clock::now() >= end) return c.fail(Exit::NoServer, "the branch did not appear on the bus" + see);
     }
+}
+
+Exit run_detached(Context& c, const BranchOptions& o, const std::vector<std::string>& arguments)
+{
+    auto process = start_server(arguments, o.log);
+    if (!process) return c.fail(Exit::Failed, process.errors());
+    const auto ended = [&]() -> std::optional<int>
+    {
+        const Life life = life_of(*process);
+        return life.runs ? std::nullopt : std::optional(life.code);
+    };
+    return await_server(c, *process, o, ended);
+}
+
+/// Until the branch has ended, or this program is to end: then the branch does so too. `snapshot` is not needed once it is there.
+Exit run_attached(Context& c, const BranchOptions& o, const std::vector<std::string>& arguments, std::optional<TemporaryFile> snapshot)
+{
+    constexpr std::chrono::milliseconds kNap(50);
+    auto server = start_attached_server(arguments);
+    if (!server) return c.fail(Exit::Failed, server.errors());
+    if (const Exit e = await_server(c, server->process(), o, [&] { return server->exit_code(); }); e != Exit::Done) return e;
+    (void)c.console.flush();
+    snapshot.reset();
+    while (!server->exit_code())
+    {
+        if (c.stopped()) return Exit::Interrupted;
+        std::this_thread::sleep_for(kNap);
+    }
+    return *server->exit_code() == 0 ? Exit::Done
+                                     : c.fail(Exit::Failed, "the branch ended with code " + std::to_string(*server->exit_code()));
 }
 
 Exit run_branch(Context& c, BranchOptions o)
 {
     if (!wire::is_server_name(o.name))
         return c.fail(Exit::Usage, "'" + o.name + "' is not a valid server name: use 1 to 64 letters, digits, '.', '_' or '-'");
+    if (o.attached && !o.log.empty()) return c.fail(Exit::Usage, "--attached logs to standard error: leave out --log");
     if (const Exit e = c.connect(); e != Exit::Done) return e;
     auto snapshot = present(c);
     if (!snapshot) return c.fail(Exit::NoServer, snapshot.errors());
     auto file = TemporaryFile::write(snapshot->data.data(), snapshot->data.size());
     if (!file) return c.fail(Exit::Failed, file.errors());
-    if (o.log.empty()) o.log = "plabd-" + o.name + ".log";
+    if (o.log.empty() && !o.attached) o.log = "plabd-" + o.name + ".log";
     std::vector<std::string> arguments{"--load", file->path(), "--name", o.name};
     arguments.insert(arguments.end(), {"--domain", std::to_string(c.settings.link.domain.id)});
     if (const std::string& network = c.settings.link.domain.network_interface; !network.empty())
         arguments.insert(arguments.end(), {"--interface", network});
     if (o.paused) arguments.emplace_back("--paused");
     arguments.insert(arguments.end(), o.arguments.begin(), o.arguments.end());
-    auto process = start_server(arguments, o.log);
-    if (!process) return c.fail(Exit::Failed, process.errors());
     // The snapshot's file is removed when the branch has appeared, or has ended.
-    return await_server(c, *process, o);
+    return o.attached ? run_attached(c, o, arguments, file.take()) : run_detached(c, o, arguments);
 }
 
 void add_branch(const Command& app, Context& context)
@@ -248,6 +281,7 @@ void add_branch(const Command& app, Context& context)
                                         [o](Context& c) { return run_branch(c, *o); });
     command.add_option("name", o->name, "of the new server").required().type_name("NAME");
     command.add_flag("--paused", o->paused, "pause it before its first step");
+    command.add_flag("--attached", o->attached, "stay, and end it with this command: at Ctrl-C, or if this command is killed");
     command.add_option("--log", o->log, "where its log goes; default: plabd-NAME.log").type_name("FILE");
     command.add_option("--plabd", o->arguments, "one more argument for plabd (may be repeated)").repeated().type_name("ARGUMENT");
 }

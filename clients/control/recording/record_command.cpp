@@ -19,6 +19,7 @@ constexpr const char* kRecordExamples =
     "  plabctl record                                 until Ctrl-C, to lab_2026-11-22_14-05-09.mcap\n"
     "  plabctl record -o run.mcap --until 10          until 10 simulated seconds\n"
     "  plabctl record -o run.mcap -d 60               for a minute\n"
+    "  plabctl record -o run.mcap --max-size 100      until the file has 100 MB\n"
     "  plabctl record --state-rate 10 --compression lz4\n"
     "  plabctl record --topics plab/events plab/collisions plab/states\n"
     "Play it: plabctl play FILE. What is in it: plabctl info FILE.\n";
@@ -29,6 +30,7 @@ struct RecordOptions
 {
     recorder::RecorderOptions recorder;
     std::string compression = "zstd";
+    std::optional<double> max_megabytes;  ///< of the file: the recording ends there
 };
 
 std::string name_with_time(const std::string& server)
@@ -72,12 +74,16 @@ private:
     bool is_reported_ = false;
 };
 
-recorder::State follow(const Context& c, recorder::Recorder& recorder, const std::string& file)
+recorder::State follow(const Context& c, recorder::Recorder& recorder, const RecordOptions& o)
 {
+    const std::string& file = o.recorder.writer.file;
+    constexpr double kMegabyte = 1e6;
     const auto begin = std::chrono::steady_clock::now();
     const auto is_over = [&]
     {
-        if (c.settings.count && recorder.progress().messages >= *c.settings.count) return true;
+        const recorder::Progress p = recorder.progress();
+        if (c.settings.count && p.messages >= *c.settings.count) return true;
+        if (o.max_megabytes && static_cast<double>(p.bytes) >= *o.max_megabytes * kMegabyte) return true;
         return c.settings.duration && link::Seconds(std::chrono::steady_clock::now() - begin).count() >= *c.settings.duration;
     };
     program::Progress line(c.progress_to(), std::chrono::milliseconds(0));
@@ -144,7 +150,7 @@ Exit run_record(Context& c, RecordOptions o)
     o.recorder.writer.compression = *recording::parse_compression(o.compression);
     auto recorder = recorder::Recorder::open(c.session(), servers.front(), o.recorder);
     if (!recorder) return c.fail(Exit::Failed, recorder.errors());
-    const recorder::State state = follow(c, **recorder, file);
+    const recorder::State state = follow(c, **recorder, o);
     const auto closed = (*recorder)->close();
     if (state == recorder::State::Gone) c.console.say("plabctl: server '" + c.session().server() + "' has gone");
     if (state == recorder::State::Restarted)
@@ -175,6 +181,9 @@ void add_record_command(const Command& app, Context& context)
     command.add_flag("--overwrite", o->recorder.writer.overwrite, "replace an existing file");
     command.add_option("--topics", o->recorder.topics, "record only these topics; default: all but plab/images").type_name("TOPIC ..");
     command.add_option("--until", o->recorder.until, "end at this simulated time").check(link::check_not_negative).type_name("SECONDS");
+    command.add_option("--max-size", o->max_megabytes, "end when the file has so many MB (a little more is written)")
+        .check(link::check_positive)
+        .type_name("MB");
     command.add_option("--compression", o->compression, "none, lz4 or zstd").one_of({"none", "lz4", "zstd"}).show_default();
     command.add_option("--state-rate", o->recorder.state_rate, "maximum number of state frames per simulated second; default: all")
         .check(link::check_positive)

@@ -1,5 +1,5 @@
 // What is known of the selected component: its numbers, its parameters, and the algorithms it can be exchanged for.
-import { byId, duration, h, isPressed, number, present, shortText, shortType } from './dom.js';
+import { byId, duration, h, isPressed, levelText, number, present, shortText, shortType } from './dom.js';
 import { previewCard, swapCard } from './card.js';
 
 export class Details {
@@ -84,7 +84,11 @@ export class Details {
       ...this.row('error', error ? `${number(row?.error)} ${error.unit}` : none ? `not known: ${none.text}` : number(row?.error), `${thing.id}.error`),
       ...this.row('work done', `${number(row?.work)} J`, `${thing.id}.work`),
     ];
-    if (thing.levels?.level !== undefined) rows.push(...this.row('level', `${thing.levels.level} of ${thing.levels.levels ?? '?'}`));
+    const { levels } = thing;
+    if (levels?.level !== undefined) {
+      rows.push(...this.row('level of detail', `${levelText(levels.level, levels.levels)}, chosen by ${levels.governor ?? 'a governor'}`));
+      if (levels.level_reason) rows.push(...this.row('because', `${levels.level_reason}, since ${number(Number(levels.level_since))} s`));
+    }
     for (const output of outputs) if (output.kind !== 'account') rows.push(...this.row(output.name, `${shortText(output.text)} ${output.unit}`, `${thing.id}.${output.name}`));
     this.numbers.replaceChildren(...rows);
   }

@@ -44,7 +44,16 @@ export function duration(ns) {
   return ns < 1e9 ? `${number(ns / 1e6, 3)} ms` : `${number(ns / 1e9, 3)} s`;
 }
 
+// Bytes as people read them.
+export function size(bytes) {
+  if (bytes < 1e5) return `${number(bytes / 1e3, 2)} kB`;
+  return bytes < 1e9 ? `${number(bytes / 1e6, 3)} MB` : `${number(bytes / 1e9, 3)} GB`;
+}
+
 export const seconds = (value) => `${(value ?? 0).toFixed(3)} s`;
+
+// A level of detail as people count it, from the cheapest; '–': an algorithm that the ladder does not name.
+export const levelText = (level, of) => (level < 0 ? '–' : `${Number(level) + 1} of ${of ?? '?'}`);
 
 // "Constraint/AngularVelocity/Graph" is "Graph".
 export const shortType = (type) => type.slice(type.lastIndexOf('/') + 1);

@@ -1,6 +1,8 @@
 // The page of plab-web: puts its parts together.
 import { Details } from './details.js';
 import { byId, duration, h, number, seconds } from './dom.js';
+import { Jobs } from './jobs.js';
+import { Levels } from './levels.js';
 import { Model } from './model.js';
 import { Plots } from './plots.js';
 import { Poses } from './poses.js';
@@ -41,7 +43,7 @@ const socket = new Socket({
       view.placed = null;
       return;
     }
-    model.take(message);
+    if (!jobs.take(message)) model.take(message);
   },
   poses: (buffer) => {
     const moment = view.take(buffer);
@@ -51,7 +53,10 @@ const socket = new Socket({
   },
   state: (state) => {
     if (state === 'lost') model.setState('lost', 'The connection to plab-web is lost. Trying to connect again; if plab-web was started anew, open the address that it printed then.');
-    else sendWatch();
+    else {
+      sendWatch();
+      jobs.begin();
+    }
   },
 });
 
@@ -87,7 +92,24 @@ const plots = new Plots(model, quantities, (components) => {
   sendWatch();
 });
 const tree = new Tree(model);
+const levels = new Levels(model, {
+  select: (id) => model.select(id),
+  search(text) {
+    byId('filter').value = text;
+    byId('filter').dispatchEvent(new Event('input'));
+    if (innerWidth < 800) showTab('tree');
+  },
+});
+const jobs = new Jobs(model, socket, {
+  say, showTab: (name) => showTab(name),
+  looks() {
+    poses.clear();
+    view.placed = null;
+    model.select(null);
+  },
+});
 const timeline = new Timeline(model, {
+  seek: (time) => jobs.ask('seek', jobs.shown, time),
   rewind: (time) => ask(`Went back to ${seconds(time)}`, { verb: 'rewind', argument: String(time) }),
   keep: (name) => ask(`Kept as ${name}`, { verb: 'snapshot', target: name }),
   restore: (name) => ask(`Returned to ${name}`, { verb: 'restore', target: name }),
@@ -113,7 +135,7 @@ const details = new Details(model, {
 // ---- Bar ----
 
 const isPaused = () => model.server?.paused ?? false;
-const togglePause = () => ask(isPaused() ? 'Goes on' : 'Paused', { verb: isPaused() ? 'resume' : 'pause' });
+const togglePause = () => (jobs.isPlayback ? jobs.do(isPaused() ? 'resume' : 'pause', jobs.shown) : ask(isPaused() ? 'Goes on' : 'Paused', { verb: isPaused() ? 'resume' : 'pause' }));
 const stepOnce = () => ask(null, { verb: 'step', argument: byId('steps').value || '1' }).then((reply) => reply.outcome !== 'done' && tellReply('', reply));
 const reset = () => ask('Begins anew', { verb: 'reset' });
 
@@ -132,7 +154,7 @@ function setMode(mode) {
 byId('pause').onclick = togglePause;
 byId('step').onclick = stepOnce;
 byId('reset').onclick = reset;
-byId('rate').onchange = (event) => ask(`The rate is ${event.target.value}`, { verb: 'rate', argument: event.target.value });
+byId('rate').onchange = (event) => (jobs.isPlayback ? jobs.do('rate', jobs.shown, event.target.value === 'real' ? 1 : Number(event.target.value)) : ask(`The rate is ${event.target.value}`, { verb: 'rate', argument: event.target.value }));
 byId('follow').onclick = toggleFollow;
 byId('fit').onclick = () => view.fitAll();
 byId('grab').onclick = () => setMode('grab');
@@ -169,8 +191,14 @@ model.on('server', (server) => {
   byId('server').textContent = `${server.name}, run ${server.run}`;
   byId('pause').textContent = server.paused ? '▶ Go on' : '❚❚ Pause';
   if (document.activeElement !== byId('rate')) byId('rate').value = server.rate_asked === 0 ? 'max' : server.rate_asked === 1 ? 'real' : String(server.rate_asked);
-  byId('overload').textContent = server.overload ? `Too slow: ${server.overload}` : '';
+  byId('overload').textContent = server.overload ? 'Too slow' : '';
+  byId('overload').title = overloadText(server);
 });
+
+function overloadText({ overload }) {
+  if (!overload) return '';
+  return overload === 'slip' ? 'The steps take longer than the time that they simulate: the scene is slower than was asked for.' : `The steps take too long; the server does this about it: ${overload}`;
+}
 model.on('trouble', (text) => say(text, true));
 model.on('state', showState);
 function showState() {
@@ -182,6 +210,7 @@ function showState() {
 setInterval(() => {
   // plabd says that it is there at least once a second.
   if (model.state.kind === 'there' && model.heardAt && performance.now() - model.heardAt > 3000) model.setState('silent', 'The server has said nothing for 3 s. It may be stopped or gone; waiting for it.');
+  timeline.follow(view.shownTime);
   byId('clock').textContent = seconds(view.shownTime ?? model.server?.time ?? 0);
   byId('facts').textContent = [
     isPaused() ? 'paused' : `× ${number(model.server?.rate_reached ?? 0, 3)}`, model.metrics && `step ${duration(model.metrics.step_ns)}`,
@@ -197,6 +226,7 @@ function showTab(name) {
   plots.isStale = true;
   timeline.draw();
   tree.draw();
+  levels.fill();
 }
 for (const tab of document.querySelectorAll('[data-tab]')) tab.addEventListener('click', () => showTab(tab.dataset.tab));
 showTab('plots');
@@ -235,5 +265,5 @@ document.addEventListener('keydown', (event) => {
 });
 
 // What can be measured of the page, for tests.
-globalThis.plab = { model, poses, view, socket, plots };
+globalThis.plab = { model, poses, view, socket, plots, jobs };
 showState();

@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import { vector } from './dom.js';
 
-const kMostContacts = 512, kMostArrows = 48, kMostJoints = 4000;
+const kMostContacts = 512, kFewContacts = 48, kMostArrows = 48, kMostJoints = 4000;
 const kFade = 600; // ms for which an impulse is seen
 
 export class Marks {
@@ -124,6 +124,8 @@ export class Marks {
   }
 
   updateContacts(radius) {
+    // Many are small, so that one sees between them what touches.
+    radius *= Math.min(1, Math.sqrt(kFewContacts / Math.max(1, this.contacts.size)));
     const matrix = new THREE.Matrix4();
     let i = 0;
     if (this.show.contacts)

@@ -4,6 +4,7 @@ export class Model {
   constructor() {
     this.listeners = new Map();
     this.server = null;
+    this.playback = null; // { from, to, at, rate, paused }: where the recording is that is played
     this.scene = null;
     this.objects = new Map();
     this.shapes = new Map();
@@ -62,7 +63,7 @@ export class Model {
 
   takeScene(message) {
     // What was before is no past of another server.
-    if (this.server && message.server && this.server.started_ns !== message.server.started_ns) {
+    if (message.server && this.server?.started_ns !== message.server.started_ns) {
       this.events = [];
       this.energy = [];
       this.metrics = null;

@@ -31,8 +31,7 @@ export class Socket {
     };
     this.ws.onclose = () => {
       this.handlers.state('lost');
-      for (const settle of this.waiting.values()) settle({ outcome: 'unanswered', reasons: ['The connection to plab-web was lost; whether this was done is unknown.'] });
-      this.waiting.clear();
+      this.giveUp('The connection to plab-web was lost; whether this was done is unknown.');
       setTimeout(() => this.open(), this.pause);
       this.pause = Math.min(2 * this.pause, kLongestPause);
     };
@@ -51,6 +50,12 @@ export class Socket {
     const id = ++this.lastId;
     this.send({ ...object, id });
     return new Promise((resolve) => this.waiting.set(id, resolve));
+  }
+
+  // No replies will come to what was asked so far.
+  giveUp(reason) {
+    for (const settle of this.waiting.values()) settle({ outcome: 'unanswered', reasons: [reason] });
+    this.waiting.clear();
   }
 
   request(...operations) { return this.ask({ type: 'request', operations }); }

@@ -1,6 +1,7 @@
 // The line of time: what can be reached by a rewind, events on it, and a handle that goes back.
 import { byId, h, seconds } from './dom.js';
 
+const kScrub = 80; // ms between moments that are asked for while the handle is dragged
 const kColorOf = { failure: '#d43d2a', warning: '#d98200', swap: '#7b5cff', collision: '#ff3b6b', other: '#7a8896' };
 
 function kindOf(event) {
@@ -11,7 +12,7 @@ function kindOf(event) {
 }
 
 export class Timeline {
-  // actions: { rewind(time), keep(name), restore(name) }
+  // actions: { rewind(time), seek(time), keep(name), restore(name) }; of a playback the line is that of the recording, and seek() moves on it
   constructor(model, actions) {
     this.model = model;
     this.canvas = byId('ticks');
@@ -21,10 +22,16 @@ export class Timeline {
     this.input.addEventListener('input', () => {
       this.isDragged = true;
       this.describe(Number(this.input.value));
+      if (this.model.playback) this.scrub(actions);
     });
     this.input.addEventListener('change', () => {
+      const time = Number(this.input.value);
+      clearTimeout(this.later);
+      this.later = null;
+      if (this.model.playback) this.model.playback = { ...this.model.playback, at: time }; // until the playback says so itself
       this.isDragged = false;
-      actions.rewind(Number(this.input.value));
+      if (this.model.playback) actions.seek(time);
+      else actions.rewind(time);
     });
     byId('keep').addEventListener('click', () => {
       const taken = new Set((model.server?.snapshots ?? []).map((kept) => kept.name));
@@ -36,28 +43,46 @@ export class Timeline {
       if (event.target.value) actions.restore(event.target.value);
       event.target.value = '';
     });
-    model.on('server', () => this.update());
+    for (const topic of ['server', 'playback']) model.on(topic, () => this.update());
     model.on('events', () => this.fillList());
     for (const topic of ['begin', 'run']) model.on(topic, () => this.fillList());
     new ResizeObserver(() => this.draw()).observe(this.canvas);
     byId('severity').addEventListener('change', () => this.fillList());
   }
 
+  // plabd says where it is once a second; what is drawn says it more often. `time`: s, of what is drawn.
+  follow(time) {
+    this.drawn = time ?? 0;
+    if (!this.isDragged && !this.model.playback) this.update();
+  }
+
+  // A playback follows the handle, a few times a second.
+  scrub(actions) {
+    this.later ??= setTimeout(() => {
+      this.later = null;
+      actions.seek(Number(this.input.value));
+    }, kScrub);
+  }
+
   get range() {
-    const { server } = this.model;
-    const end = server?.time ?? 0, from = server && server.rewind_from !== null ? server.rewind_from : 0;
+    const { server, playback } = this.model;
+    if (playback) return [playback.from, Math.max(playback.to, playback.from + 1e-9)];
+    // Not that of before a reset or a rewind.
+    const isNewer = server && this.drawn > server.time && this.drawn < server.time + 2 * Math.max(1, server.rate_reached);
+    const end = isNewer ? this.drawn : server?.time ?? 0, from = server && server.rewind_from !== null ? server.rewind_from : 0;
     return [Math.min(from, end), Math.max(end, from + 1e-9)];
   }
 
   update() {
-    const [from, to] = this.range, canRewind = this.model.server?.rewind_from !== null;
+    const { playback, server } = this.model, [from, to] = this.range, canMove = playback !== null || server?.rewind_from !== null;
     this.input.min = from;
     this.input.max = to;
-    this.input.step = this.model.server?.dt ?? 'any';
-    this.input.disabled = !canRewind;
-    if (!this.isDragged) this.input.value = to;
-    this.fillKept(this.model.server?.snapshots ?? []);
-    this.describe(this.isDragged ? Number(this.input.value) : to);
+    this.input.step = playback ? 'any' : server?.dt ?? 'any';
+    this.input.disabled = !canMove;
+    this.input.setAttribute('aria-label', playback ? 'Time of the recording' : 'Time: go back to');
+    if (!this.isDragged) this.input.value = playback ? playback.at : to;
+    this.fillKept(server?.snapshots ?? []);
+    this.describe(this.isDragged ? Number(this.input.value) : playback ? playback.at : to);
     this.draw();
   }
 
@@ -71,7 +96,8 @@ export class Timeline {
 
   describe(time) {
     this.input.setAttribute('aria-valuetext', `${time.toFixed(2)} seconds`);
-    byId('time-text').textContent = this.isDragged ? `back to ${seconds(time)}` : `${seconds(this.range[0])} to ${seconds(time)}`;
+    const { playback } = this.model;
+    byId('time-text').textContent = playback ? `${seconds(time - playback.from)} of ${seconds(playback.to - playback.from)}` : this.isDragged ? `back to ${seconds(time)}` : `${seconds(this.range[0])} to ${seconds(time)}`;
   }
 
   draw() {
@@ -81,12 +107,14 @@ export class Timeline {
     if (this.canvas.height !== height) this.canvas.height = height;
     const paint = this.canvas.getContext('2d'), [from, to] = this.range;
     paint.clearRect(0, 0, width, height);
+    // The line of a recording has its own zero.
+    const { playback, server } = this.model, shift = playback ? playback.at - (server?.time ?? 0) : 0;
     for (const event of this.model.events) {
-      if (event.time < from || event.isUndone) continue;
+      if (event.time + shift < from || event.isUndone) continue;
       const kind = kindOf(event);
       paint.fillStyle = kColorOf[kind];
       const tall = kind === 'other' ? 0.35 : kind === 'collision' ? 0.6 : 1;
-      paint.fillRect(((event.time - from) / (to - from)) * (width - 2 * scale), height * (1 - tall), 1.5 * scale, height * tall);
+      paint.fillRect(((event.time + shift - from) / (to - from)) * (width - 2 * scale), height * (1 - tall), 1.5 * scale, height * tall);
     }
   }
 

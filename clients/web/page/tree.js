@@ -1,5 +1,5 @@
 // The tree of objects and interactions. Only the rows that are seen exist, so ten thousand cost as much as twenty.
-import { byId, duration, h, isPressed, number, shortType } from './dom.js';
+import { byId, duration, h, isPressed, levelText, number, shortType } from './dom.js';
 
 const kHeight = 26; // px of a row
 
@@ -59,7 +59,7 @@ export class Tree {
       return h(`div.row.group${active}`, { ...common, 'aria-expanded': String(open), onclick: () => this.toggle(row.group) }, `${open ? '▾' : '▸'} ${row.group} (${row.count})`);
     }
     const { thing } = row, selected = thing.id === this.model.selected, numbers = this.model.rows.get(thing.id);
-    const level = thing.levels?.level !== undefined ? `level ${thing.levels.level}` : '';
+    const level = thing.levels?.level !== undefined ? `level ${levelText(thing.levels.level, thing.levels.levels)}` : '';
     const facts = thing.handle === undefined
       ? [shortType(thing.type), duration(numbers?.cost), numbers && numbers.error !== null ? `err ${number(numbers.error, 2)}` : '', level]
       : [thing.motion === 'static' ? 'static' : thing.kind === 'shaft' ? 'shaft' : 'body', '', '', level];

@@ -110,15 +110,16 @@ TEST_CASE("a scene that is larger than the bound is sent all the same, if nothin
 TEST_CASE("pages are bounded, and so is what they say")
 {
     Pages pages;
+    Audience audience(pages);
     for (std::size_t i = 0; i < Pages::kMostPages; ++i) REQUIRE(pages.join());
     CHECK_FALSE(pages.join());
     for (std::size_t i = 0; i < Pages::kMostWaiting; ++i) REQUIRE(pages.receive(1, "x"));
     CHECK_FALSE(pages.receive(1, "x"));
-    CHECK(pages.arrived().size() == Pages::kMostWaiting);
+    CHECK(audience.arrived().size() == Pages::kMostWaiting);
     CHECK(pages.receive(1, "x"));
     pages.leave(7);
     CHECK(pages.join());
-    const auto arrived = pages.arrived();
+    const auto arrived = audience.arrived();
     REQUIRE(arrived.size() == 2);
     CHECK(arrived[1].has_left);
     CHECK(arrived[1].page == 7);
@@ -127,12 +128,57 @@ TEST_CASE("pages are bounded, and so is what they say")
 TEST_CASE("a late joiner gets the scene and the newest poses, although none come")
 {
     Pages pages;
-    pages.put(poses(5, "d", true));
+    Audience audience(pages);
+    audience.put(poses(5, "d", true));
     const auto page = pages.join();
     REQUIRE(page);
-    CHECK(pages.begin([] { return text("all"); }).size() == 1);
+    CHECK(audience.begin([] { return text("all"); }).size() == 1);
     CHECK(content_of(pages.take(*page)) == "all");
     CHECK(content_of(pages.take(*page)) == "key5");
     CHECK(content_of(pages.take(*page)) == "d");
-    CHECK(pages.begin([] { return text("all"); }).empty());
+    CHECK(audience.begin([] { return text("all"); }).empty());
+}
+
+TEST_CASE("a page sees the server that it looks at, and nothing of the one before")
+{
+    Pages pages;
+    Audience home(pages), other(pages, "other");
+    const auto page = pages.join(), second = pages.join();
+    REQUIRE((page && second));
+    (void)home.begin([] { return text("home"); });
+    home.put(poses(5, "d", true));
+    home.push(text("old"));
+    other.put(poses(7, "e", true));
+    pages.look(*page, "other", text("looking"));
+    home.push(text("for those at home"));
+    CHECK(content_of(pages.take(*page)) == "looking");
+    CHECK(pages.take(*page) == nullptr);
+    CHECK(other.begin([] { return text("other"); }).size() == 1);
+    CHECK(content_of(pages.take(*page)) == "other");
+    CHECK(content_of(pages.take(*page)) == "key7");
+    CHECK(content_of(pages.take(*second)) == "home");
+    CHECK(content_of(pages.take(*second)) == "old");
+    CHECK(home.count() == 1);
+    CHECK(pages.looked_at() == std::map<std::string, std::size_t>{{"", 1}, {"other", 1}});
+    // Whoever talks to the server before learns that the page has left, and gets nothing of it any more.
+    const auto left = home.arrived();
+    REQUIRE(left.size() == 1);
+    CHECK((left[0].has_left && left[0].page == *page));
+    REQUIRE(pages.receive(*page, "hello"));
+    CHECK(home.arrived().empty());
+    REQUIRE(other.arrived().size() == 1);
+}
+
+TEST_CASE("what pages say to a server that nobody reads any more makes room for others")
+{
+    Pages pages;
+    const auto page = pages.join();
+    REQUIRE(page);
+    {
+        Audience gone(pages, "gone");
+        pages.look(*page, "gone", text("looking"));
+        for (std::size_t i = 0; i < Pages::kMostWaiting; ++i) REQUIRE(pages.receive(*page, "x"));
+        CHECK_FALSE(pages.receive(*page, "x"));
+    }
+    CHECK(pages.receive(*page, "x"));
 }

@@ -59,7 +59,7 @@ TEST_CASE("what cannot be understood is refused with a reason, and nothing of it
     CHECK(error_of("[]") == "the message is no JSON object");
     CHECK(error_of("{\"type\":") == "the message is no JSON object");
     CHECK(error_of(std::string(100000, '[')) == "the message is no JSON object");
-    CHECK(error_of("{}") == "'type' must be request, watch, grab, move, release or preview");
+    CHECK(error_of("{}") == "'type' must be request, watch, grab, move, release, preview or job");
     CHECK(error_of(R"({"type":"request","id":1})") == "'operations' must be a list of at least one");
     CHECK(error_of(R"({"type":"request","id":-1,"operations":[{"verb":"pause"}]})") == "'id' must be a whole number");
     CHECK(error_of(R"({"type":"request","id":1,"operations":["pause"]})") == "an operation must be an object");
@@ -72,6 +72,10 @@ TEST_CASE("what cannot be understood is refused with a reason, and nothing of it
     CHECK(error_of(R"({"type":"preview","component":"--help","with":"T"})") == "'component' must be the id of a component");
     CHECK(error_of(R"({"type":"preview","component":"gears","with":"-x"})") == "'with' must be the name of a type");
     CHECK(error_of(R"({"type":"preview","component":"gears","with":"T","seconds":1e9})") == "'seconds' must be more than 0 and at most 60");
+    CHECK(error_of(R"({"type":"job","id":1})") == "'verb' must be what is to be done");
+    CHECK(error_of(R"({"type":"job","id":1,"verb":"seek","value":"x"})") == "'value' must be a number");
+    CHECK(error_of(R"({"type":"job","id":1,"verb":"play","name":")" + std::string(201, 'x') + "\"}") ==
+          "'name' must be at most 200 bytes long");
     std::string many = R"({"type":"watch","components":[)";
     for (std::size_t i = 0; i <= kMostWatched; ++i) many += (i > 0 ? "," : "") + std::string("\"x\"");
     CHECK(error_of(many + "]}") == "'components' must be a list of at most 16");

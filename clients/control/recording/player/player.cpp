@@ -34,11 +34,20 @@ std::string seconds_text(std::uint64_t time)
     return out + " s";
 }
 
+/// When there is something to see; the start of the recording if there never is.
+std::uint64_t first_state(const recording::McapReader& reader, std::uint64_t start)
+{
+    recording::Cursor states = reader.messages({{wire::topic_of<plab_v2_Frame>().name}});
+    const auto first = states.next();
+    return first && *first ? (*first)->message.log_time : start;
+}
+
 /// The requested part of the recording.
 Result<Span> choose_span(const recording::McapReader& reader, const PlaybackOptions& options)
 {
     const Span all = span_of(reader.index());
     Span out = all;
+    if (options.from_first_state && !options.from) out.from = all.within(first_state(reader, all.from));
     for (const auto& [seconds, option, end] : {std::tuple(&options.from, "--from", &out.from), std::tuple(&options.to, "--to", &out.to)})
     {
         if (!*seconds) continue;

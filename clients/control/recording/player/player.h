@@ -28,6 +28,7 @@ struct PlaybackOptions
     double rate = 1;
     bool paused = false;
     bool loop = false;
+    bool from_first_state = false;  ///< where `from` is empty: a recorder begins before the first state reaches it
     std::uint32_t readers = 0;  ///< starts when this many readers of the states are connected
     wire::DomainOptions domain = {};
 };
@@ -47,6 +48,8 @@ public:
     Result<void> step(Clock::time_point now);
     /// Waits until there is something to do, a request has arrived, or `latest`.
     void wait(Clock::time_point latest);
+    /// False: it waits for readers.
+    bool has_begun() const { return has_begun_; }
     /// Everything has been sent, and it does not loop.
     bool is_over() const { return is_over_; }
     /// Number of readers that read the complete states of this playback.
