@@ -139,6 +139,28 @@ bool ComponentType::takes_part(Phase phase) const
     return std::any_of(info.commands.begin(), info.commands.end(), [&](const CommandInfo& c) { return c.phase == phase; });
 }
 
+bool ComponentType::only_advances() const
+{
+    const auto advances = [](const CommandInfo& c)
+    { return c.phase == Phase::Advance || c.phase == Phase::Measure || c.phase == Phase::Prepare; };
+    return info.facet == Facet::Component && schema.roles().empty() && takes_part(Phase::Advance) &&
+           std::all_of(info.commands.begin(), info.commands.end(), advances);
+}
+
+bool ComponentType::concerns_contacts() const
+{
+    if (only_advances()) return false;
+    const auto of_contacts = [](const CommandInfo& c)
+    {
+        return c.phase == Phase::Choose || c.phase == Phase::Touch || c.phase == Phase::Solve || c.phase == Phase::Detect ||
+               c.phase == Phase::Gap || c.phase == Phase::Locate || c.phase == Phase::Respond;
+    };
+    const auto is_object = [](Facet f) { return f == Facet::Body || f == Facet::Shaft || f == Facet::Quantities; };
+    const auto names_objects = [&](const Role& r) { return std::any_of(r.facets.begin(), r.facets.end(), is_object); };
+    const bool acts = std::any_of(schema.roles().begin(), schema.roles().end(), names_objects);
+    return info.facet != Facet::Component || !acts || std::any_of(info.commands.begin(), info.commands.end(), of_contacts);
+}
+
 std::string ComponentType::why_not_exchangeable(const ComponentType& other) const
 {
     constexpr std::string_view facets[] = {"a component", "a body", "a shaft", "a shape", "quantities"};

@@ -25,6 +25,11 @@ struct ComponentType
     int find_command(std::string_view name) const;
     /// Whether a component of this type does any work in `phase`.
     bool takes_part(Phase phase) const;
+    /// Whether all that a component of this type does is to advance those that name it: it is a solver, and names nobody itself.
+    bool only_advances() const;
+    /// Whether contacts may depend on a component of this type. They do not on solvers, nor on forces, joints, couplings and scripts, which
+    /// act on objects otherwise.
+    bool concerns_contacts() const;
     /// Why a component of this type cannot replace one of `other`; empty if it can.
     std::string why_not_exchangeable(const ComponentType& other) const;
 };

@@ -120,6 +120,7 @@ void World::load_cells(const Image& image, Errors& errors)
 
 void World::load_host(const Image& image)
 {
+    ++revisions_.others, ++revisions_.contacts;
     const Renumbering now(image, *this);
     image.for_each(
         [&](std::uint32_t, const Component& old, const Layout&)

@@ -49,7 +49,7 @@ void World::describe(const model::SceneSettings& settings, const std::string& fi
 
 void World::sort_by_id()
 {
-    ++order_number_;
+    ++revisions_.order;
     in_id_order_.clear();
     rank_.assign(components().size(), kNoIndex);
     // std::map iterates in byte-wise order of ids, which is the order that every phase, hash and listing uses.
@@ -287,6 +287,7 @@ Result<void> World::exchange(std::uint32_t component, const model::ComponentSpec
     const HostRow host_before(host_, old.facet, old.host_index);
     const Materials materials_before = host_.materials;
 
+    count_change(table.type());
     Component next = old;
     next.table = *table_index;
     next.row = table.add(component, old.host_index);
@@ -354,6 +355,7 @@ void World::load_fields(unsigned kinds, ByteReader& in)
 
 void World::restore(const Backup& b)
 {
+    ++revisions_.others, ++revisions_.contacts;
     const bool same_structure = directory_.same_as(b.directory) && scene_.same_as(b.scene);
     if (!same_structure) restore_structure(b);
     host_ = b.host;

@@ -14,6 +14,7 @@
 #include "model/scene.h"
 #include "model/type_registry.h"
 #include "world/host_tables.h"
+#include "world/revisions.h"
 #include "world/shared.h"
 #include "world/table.h"
 #include "world/undo_log.h"
@@ -82,8 +83,8 @@ public:
 
     /// From now on changes of components are noted in `log`, which has to live as long; null: nowhere. Returns the log that was in use.
     UndoLog* note_in(UndoLog* log);
-    /// Notes a component as it is, unless it has been. To be called before its values or its host row are changed from outside; prepare(),
-    /// set() and exchange() do it.
+    /// Notes a component as it is, unless it has been, and counts the change (revisions()). To be called before its values or its host row
+    /// are changed from outside; prepare(), set() and exchange() do it.
     void note(std::uint32_t component);
     /// Takes back everything in the log, and ends it. Opaque objects that Prepare makes are not covered (as in a backup).
     void take_back(const UndoLog& log);
@@ -113,8 +114,7 @@ public:
     const model::ComponentType* type_of(std::uint32_t component) const;
     /// Existing components in the order of their ids.
     const std::vector<std::uint32_t>& in_id_order() const { return in_id_order_; }
-    /// Another number whenever components were added or removed, so that ranks changed.
-    std::uint64_t order_number() const { return order_number_; }
+    const Revisions& revisions() const { return revisions_; }
     /// Position of a component in id order.
     std::uint32_t rank(std::uint32_t component) const { return rank_[component]; }
     std::uint32_t rank(Ref ref) const { return rank_[host_.component_of(ref)]; }
@@ -183,6 +183,7 @@ private:
     std::uint32_t insert(Component component);
     void erase(std::uint32_t component);
     void sort_by_id();
+    void count_change(const model::ComponentType& type);
     Result<void> run(std::uint32_t component, Phase phase);
     Result<void> measure(std::uint32_t component);
     std::uint64_t enabled_commands(const model::ComponentType& type, const model::ComponentSpec& spec) const;
@@ -197,7 +198,7 @@ private:
     HostTables host_;
     std::vector<Parked> parked_;
     UndoLog* undo_ = nullptr;
-    std::uint64_t order_number_ = 0;
+    Revisions revisions_;
 };
 
 }  // namespace plab::world

@@ -13,10 +13,19 @@ UndoLog* World::note_in(UndoLog* log)
     return std::exchange(undo_, log);
 }
 
+void World::count_change(const model::ComponentType& type)
+{
+    if (type.only_advances()) return (void)++revisions_.solvers;
+    ++revisions_.others;
+    if (type.concerns_contacts()) ++revisions_.contacts;
+}
+
 void World::note(std::uint32_t i)
 {
     const Component& c = component(i);
-    if (!undo_ || c.table == kNoIndex || !undo_->noted.insert(i).second) return;
+    if (c.table == kNoIndex) return;
+    count_change(tables_[c.table]->type());
+    if (!undo_ || !undo_->noted.insert(i).second) return;
     ByteWriter cells;
     tables_[c.table]->save(c.row, kLiveKinds, cells);
     undo_->entries.push_back({i, c, cells.bytes(), {host_, c.facet, c.host_index}});
@@ -29,6 +38,7 @@ void World::take_back(const UndoLog& log)
     for (const UndoLog::Entry& e : log.entries)
     {
         const Component now = component(e.component);
+        count_change(tables_[now.table]->type());
         if (now.quarantined != e.before.quarantined || now.table != e.before.table || now.row != e.before.row)
             directory_.edit().components[e.component] = e.before;
         if (now.table == e.before.table && now.row == e.before.row) continue;
@@ -46,6 +56,7 @@ void World::restore_values(const UndoLog& log)
 {
     for (const UndoLog::Entry& e : log.entries)
     {
+        count_change(tables_[e.before.table]->type());
         ByteReader cells(e.cells);
         tables_[e.before.table]->load(e.before.row, kLiveKinds, cells);
         e.host.restore(host_);

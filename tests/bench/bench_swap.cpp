@@ -58,6 +58,7 @@ enum class Beside : std::uint8_t
     Free,
     Pile,
     Gears,
+    Springs,
 };
 
 /// n mechanisms of two shafts each.
@@ -75,9 +76,27 @@ std::string gears(int n)
     return out + "</plab>";
 }
 
+/// n weights on springs, each with a solver of its own.
+std::string springs(int n)
+{
+    std::string out = "<plab version=\"1\"><scene dt=\"1/60\"/>\n" + component("gravity", "Field/Gravity", "between=\"*\"") +
+                      component("s", "Shape/Box", "half_extents=\"0.25 0.25 0.25\"");
+    for (int i = 0; i < n; ++i)
+    {
+        const std::string k = std::to_string(i), x = std::to_string(2 * (i % 100)), y = std::to_string(2 * (i / 100));
+        out +=
+            component("engine" + k, "Solver/RungeKutta4", "") +
+            component("hook" + k, "State/Static", "position=\"" + x + " " + y + " 1\"") +
+            component("b" + k, "State/RigidBody", "shape=\"s\" mass=\"1\" solver=\"engine" + k + "\" position=\"" + x + " " + y + " 0\"") +
+            component("spring" + k, "Constraint/SpringDamper", "a=\"hook" + k + "\" b=\"b" + k + "\" length=\"1\" stiffness=\"100\"");
+    }
+    return out + "</plab>";
+}
+
 std::string scene(int n, Beside beside)
 {
     if (beside == Beside::Gears) return gears(n);
+    if (beside == Beside::Springs) return springs(n);
     const bool contact = beside == Beside::Pile;
     std::string out = "<plab version=\"1\"><scene dt=\"1/60\"/>\n" + kMechanism + component("common", "Solver/SemiImplicitEuler", "") +
                       component("gravity", "Field/Gravity", "between=\"*\"") +
@@ -101,6 +120,7 @@ struct Case
     const char* id;
     const char* types[2];
     Beside beside;
+    bool proof = true;  // governors exchange levels without one
 };
 
 const Case kCases[] = {
@@ -114,6 +134,7 @@ const Case kCases[] = {
     {"solver of all free bodies", "common", {"Solver/RungeKutta4", "Solver/SemiImplicitEuler"}, Beside::Free},
     {"field of all free bodies", "gravity", {"Field/Gravity", "Field/Gravity"}, Beside::Free},
     {"manager of the pile", "manager", {"Manager/SequentialImpulse", "Manager/SoftStep"}, Beside::Pile},
+    {"solvers of ten weights on springs, no trial", "engine1?", {"Solver/DormandPrince54", "Solver/RungeKutta4"}, Beside::Springs, false},
     {"response of the pile", "contact.response", {"Response/Rows", "Response/Rows"}, Beside::Pile},
 };
 
@@ -155,7 +176,7 @@ void measure(const Case& c, int n, int swaps)
     for (int i = 0; i < swaps; ++i)
     {
         simulation::Request request;
-        request.trial.budget = simulation::TrialChoice::Budget::Automatic;
+        request.trial.budget = c.proof ? simulation::TrialChoice::Budget::Automatic : simulation::TrialChoice::Budget::None;
         request.operations = {simulation::SwapOperation{c.id, c.types[i % 2], {}}};
         const double begin = cpu_time();
         const simulation::Reply reply = simulation.carry_out_now(request);

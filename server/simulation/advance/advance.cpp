@@ -5,12 +5,23 @@
 namespace plab::simulation
 {
 
-void Advance::rebuild()
+void Advance::rebuild(const GroupsChange& change)
+{
+    find_groups_without_solver();
+    batches_.rebuild(change);
+}
+
+void Advance::solvers_changed()
+{
+    find_groups_without_solver();
+    batches_.divide_again();
+}
+
+void Advance::find_groups_without_solver()
 {
     const auto has_no_solver = [](const Group& g)
     { return g.solver == kNoIndex && !(g.bodies.empty() && g.shafts.empty() && g.quantities.empty()); };
     some_without_solver_ = std::any_of(step_.groups.all.begin(), step_.groups.all.end(), has_no_solver);
-    batches_.rebuild();
 }
 
 void Advance::advance_all()

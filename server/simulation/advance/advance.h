@@ -17,7 +17,9 @@ public:
     }
 
     /// To be called after any structural change.
-    void rebuild();
+    void rebuild(const GroupsChange& change);
+    /// The same if nothing but solvers has changed (world::Revisions).
+    void solvers_changed();
     /// Advances all groups over the whole step. If no group has contacts, in batches on all threads.
     void advance_all();
     /// Advances groups from `from` to `to` (s since the start of the step), from their present state. Groups whose state they read are
@@ -28,6 +30,7 @@ public:
     const BatchedAdvance& batches() const { return batches_; }
 
 private:
+    void find_groups_without_solver();
     void split_by_contact(std::span<const std::uint32_t> groups);
     void collect_observed(std::span<const std::uint32_t> groups);
 

@@ -24,20 +24,12 @@ const CommandInfo* together_command(const world::World& world, std::uint32_t sol
     return found == commands.end() ? nullptr : &*found;
 }
 
-/// How clusters share systems, in the order in which they are planned. Alone comes last, so that no other cluster joins its parts.
-enum class Sharing
-{
-    Always,
-    UnlessRefused,
-    Alone,
-};
-
 struct Cluster
 {
+    std::uint32_t number = 0;
     std::span<const std::uint32_t> groups;
     std::size_t load = 0;
     std::uint32_t solver = kNoIndex;
-    Sharing sharing = Sharing::Alone;
 };
 
 /// The clusters, in the order of their first group.
@@ -46,7 +38,7 @@ std::vector<Cluster> clusters_of(const Groups& groups)
     std::vector<Cluster> out(groups.clusters);
     for (std::uint32_t c = 0; c < groups.clusters; ++c)
     {
-        out[c].groups = groups.of_cluster(c);
+        out[c].number = c, out[c].groups = groups.of_cluster(c);
         for (const std::uint32_t g : out[c].groups)
         {
             const Group& group = groups.all[g];
@@ -80,10 +72,11 @@ constexpr std::size_t kMostInPart = 128;
 /// The latest part that clusters may share, as an index: by batch, solver, and split_ (kNoIndex where sharing changes no bit).
 using SharedParts = std::map<std::tuple<const Batch*, std::uint32_t, std::uint32_t>, std::size_t>;
 
-/// Adds a cluster to the latest part of its kind, or to a new one if that is full. `split`: its value of split_.
+/// Adds a cluster to the latest part of its kind, or to a new one if that is full. `split`: its value of split_; kNoIndex: it always
+/// shares.
 void share(Batch& batch, const Cluster& cluster, std::uint32_t split, SharedParts& shared)
 {
-    const std::tuple key(&batch, cluster.solver, cluster.sharing == Sharing::Always ? kNoIndex : split);
+    const std::tuple key(&batch, cluster.solver, split);
     std::size_t& place = shared.try_emplace(key, batch.parts.size()).first->second;
     if (place < batch.parts.size() && batch.parts[place].load + cluster.load > kMostInPart) place = batch.parts.size();
     if (place == batch.parts.size()) batch.add_part(cluster.solver);
@@ -94,7 +87,50 @@ void share(Batch& batch, const Cluster& cluster, std::uint32_t split, SharedPart
 
 }  // namespace
 
-void BatchedAdvance::rebuild()
+void BatchedAdvance::rebuild(const GroupsChange& change)
+{
+    if (divides_as_before(change)) return follow(change);
+    batches_.clear();
+    divide_again();
+}
+
+/// Whether the clusters would be divided as they are: they have the same members and solvers, share systems as before, and none is split.
+bool BatchedAdvance::divides_as_before(const GroupsChange& change) const
+{
+    if (!ready_ || change.all || std::ranges::any_of(split_, [](std::uint32_t part) { return part != 0; })) return false;
+    const auto shares_as_before = [&](std::uint32_t g)
+    {
+        const std::uint32_t cluster = step_.groups.all[g].cluster;
+        return sharing_of(step_.groups.of_cluster(cluster)) == sharing_[cluster];
+    };
+    return std::ranges::all_of(change.changed, shares_as_before);
+}
+
+/// Sets up the systems of groups that have changed, and of those that cannot follow the change.
+void BatchedAdvance::follow(const GroupsChange& change)
+{
+    std::vector<std::uint8_t> changed(step_.groups.all.size(), 0);
+    for (const std::uint32_t g : change.changed) changed[g] = 1;
+    for (Batch& batch : batches_)
+    {
+        batch.scratch->fit(step_.world);
+        batch.meter.accounts().fit(step_.world.components().size(), step_.world.tables().size());
+        batch.work.assign(step_.work.size(), 0.0);
+        for (Batch::Part& part : batch.parts)
+            if (std::ranges::any_of(part.groups, [&](std::uint32_t g) { return changed[g] != 0; }) || !part.system->follow(step_.frame))
+                part.system->configure(step_.frame, part.groups);
+    }
+}
+
+BatchedAdvance::Sharing BatchedAdvance::sharing_of(std::span<const std::uint32_t> groups) const
+{
+    const auto any = [&](auto holds) { return std::ranges::any_of(groups, [&](std::uint32_t g) { return holds(step_.groups.all[g]); }); };
+    if (!any([&](const Group& g) { return motion_.goes_alone(g); })) return Sharing::Always;
+    const bool held = any([](const Group& g) { return !g.rows.empty(); });
+    return !held && together_command(step_.world, step_.groups.all[groups.front()].solver) ? Sharing::UnlessRefused : Sharing::Alone;
+}
+
+void BatchedAdvance::divide_again()
 {
     ready_ = false;
     split_.assign(step_.groups.clusters, 0);
@@ -116,21 +152,22 @@ std::uint64_t BatchedAdvance::take_evaluations()
 
 void BatchedAdvance::plan()
 {
-    // One batch for each thread, in whole clusters: a group that reads another one must share its stage times.
+    std::vector<Batch> batches;
+    divide(batches);
+    set_up(batches);
+    batches_ = std::move(batches);
+}
+
+/// One batch for each thread, in whole clusters: a group that reads another one must share its stage times.
+void BatchedAdvance::divide(std::vector<Batch>& batches)
+{
     std::vector<Cluster> clusters = clusters_of(step_.groups);
     std::size_t total = 0;
-    for (Cluster& c : clusters)
-    {
-        const auto any = [&](auto holds)
-        { return std::any_of(c.groups.begin(), c.groups.end(), [&](std::uint32_t g) { return holds(step_.groups.all[g]); }); };
-        const bool alone = any([&](const Group&g) { return motion_.goes_alone(g); }),
-                   held = any([](const Group&g) { return !g.rows.empty(); });
-        c.sharing = !alone ? Sharing::Always : !held && together_command(step_.world, c.solver) ? Sharing::UnlessRefused : Sharing::Alone;
-        total += c.load;
-    }
-    std::stable_sort(clusters.begin(), clusters.end(), [](const Cluster& a, const Cluster& b) { return a.sharing < b.sharing; });
-    batches_.clear();
-    batches_.reserve(static_cast<std::size_t>(step_.workers.threads()));  // pointers to batches must stay valid
+    sharing_.clear();
+    for (const Cluster& c : clusters) sharing_.push_back(sharing_of(c.groups)), total += c.load;
+    std::stable_sort(clusters.begin(), clusters.end(),
+                     [&](const Cluster& a, const Cluster& b) { return sharing_[a.number] < sharing_[b.number]; });
+    batches.reserve(static_cast<std::size_t>(step_.workers.threads()));  // pointers to batches must stay valid
     SharedParts shared;
     std::map<std::uint32_t, std::size_t> home;
     for (const Cluster& c : clusters)
@@ -138,37 +175,55 @@ void BatchedAdvance::plan()
         // A solver that keeps state between advances serves its clusters one after the other, in a fixed order.
         const bool keeps = c.solver != kNoIndex && !step_.world.type_of(c.solver)->info.elementwise;
         const auto known = keeps ? home.find(c.solver) : home.end();
-        Batch& batch = known != home.end() ? batches_[known->second] : lightest_batch(total);
-        if (keeps) home.emplace(c.solver, static_cast<std::size_t>(&batch - batches_.data()));
+        Batch& batch = known != home.end() ? batches[known->second] : lightest_batch(batches, total);
+        if (keeps) home.emplace(c.solver, static_cast<std::size_t>(&batch - batches.data()));
         batch.load += c.load;
-        if (c.sharing == Sharing::Alone)
+        if (sharing_[c.number] == Sharing::Alone)
             batch.add_part(c.solver).groups.assign(c.groups.begin(), c.groups.end());
         else
-            share(batch, c, split_[step_.groups.all[c.groups.front()].cluster], shared);
+            share(batch, c, sharing_[c.number] == Sharing::Always ? kNoIndex : split_[c.number], shared);
     }
+}
+
+/// Gives the parts their systems. One that the batches so far have for the same groups serves again.
+void BatchedAdvance::set_up(std::vector<Batch>& batches)
+{
+    std::vector<Batch::Part*> part_before(step_.groups.all.size(), nullptr);  // by the first of its groups: each group is in one part
     for (Batch& batch : batches_)
+        for (Batch::Part& part : batch.parts) part_before[part.groups.front()] = &part;
+    for (std::size_t b = 0; b < batches.size(); ++b)
     {
-        batch.scratch = std::make_unique<StageScratch>();
-        batch.scratch->fit(step_.world);
+        Batch& batch = batches[b];
+        if (b < batches_.size())
+            batch.scratch = std::move(batches_[b].scratch);
+        else
+            batch.scratch = std::make_unique<StageScratch>(), batch.scratch->fit(step_.world);
         batch.meter.accounts().fit(step_.world.components().size(), step_.world.tables().size());
-        batch.scratch->measure_with(batches_.size() == 1 ? step_.meter : batch.meter);
+        batch.scratch->measure_with(batches.size() == 1 ? step_.meter : batch.meter);
         batch.work.assign(step_.work.size(), 0.0);
         for (Batch::Part& part : batch.parts)
         {
             std::sort(part.groups.begin(), part.groups.end());  // once: a part may have gathered thousands of clusters
+            Batch::Part* before = part_before[part.groups.front()];
+            if (before && before->groups == part.groups)
+            {
+                part.system = std::move(before->system);
+                part.system->borrow(*batch.scratch);
+                continue;
+            }
             part.system = std::make_unique<GroupSystem>(*batch.scratch);
             part.system->configure(step_.frame, part.groups);
         }
     }
 }
 
-Batch& BatchedAdvance::lightest_batch(std::size_t total_load)
+Batch& BatchedAdvance::lightest_batch(std::vector<Batch>& batches, std::size_t total_load) const
 {
     const auto threads = static_cast<std::size_t>(step_.workers.threads());
-    for (Batch& batch : batches_)
+    for (Batch& batch : batches)
         if (batch.load * threads < total_load) return batch;
-    if (batches_.size() < threads) return batches_.emplace_back();
-    return *std::min_element(batches_.begin(), batches_.end(), [](const Batch& x, const Batch& y) { return x.load < y.load; });
+    if (batches.size() < threads) return batches.emplace_back();
+    return *std::min_element(batches.begin(), batches.end(), [](const Batch& x, const Batch& y) { return x.load < y.load; });
 }
 
 Batch::Part& Batch::add_part(std::uint32_t solver)

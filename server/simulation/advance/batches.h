@@ -46,8 +46,11 @@ class BatchedAdvance
 public:
     BatchedAdvance(StepState& step, GroupMotion& motion) : step_(step), motion_(motion) {}
 
-    /// To be called after any structural change.
-    void rebuild();
+    /// To be called after any structural change. Systems of groups that have not changed serve again.
+    void rebuild(const GroupsChange& change);
+    /// To be called if nothing but solvers has changed (world::Revisions): a system does not depend on its solver, so those of groups that
+    /// stay together serve again.
+    void divide_again();
     void advance();
     /// Number of force evaluations since the last call.
     std::uint64_t take_evaluations();
@@ -58,8 +61,21 @@ public:
     void continue_split(const std::vector<std::uint32_t>& split);
 
 private:
+    /// How a cluster shares systems with others, in the order in which clusters are divided. Alone comes last, so that no other cluster
+    /// joins its parts.
+    enum class Sharing : std::uint8_t
+    {
+        Always,
+        UnlessRefused,
+        Alone,
+    };
+    Sharing sharing_of(std::span<const std::uint32_t> groups) const;
+    bool divides_as_before(const GroupsChange& change) const;
+    void follow(const GroupsChange& change);
     void plan();
-    Batch& lightest_batch(std::size_t total_load);
+    void divide(std::vector<Batch>& batches);
+    void set_up(std::vector<Batch>& batches);
+    Batch& lightest_batch(std::vector<Batch>& batches, std::size_t total_load) const;
     void run_batch(Batch& batch, std::vector<double>& work);
     void run_batch_measured(Batch& batch);
     bool run_solver(Batch::Part& part, std::vector<double>& work, EventSink& events);
@@ -70,7 +86,8 @@ private:
     std::vector<Batch> batches_;
     bool ready_ = false;
     std::vector<std::uint32_t> split_;
-    std::int64_t waiting_ns_ = 0;  ///< time spent waiting for other threads: not counted as any component's cost
+    std::vector<Sharing> sharing_;  ///< by cluster, as it was divided last
+    std::int64_t waiting_ns_ = 0;   ///< time spent waiting for other threads: not counted as any component's cost
 };
 
 }  // namespace plab::simulation

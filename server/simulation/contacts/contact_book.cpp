@@ -85,18 +85,33 @@ double sliding_margin(const Bodies& bodies, Ref a, Ref b, const Vec3& normal, do
 Errors ContactBook::rebuild(bool sizes)
 {
     const std::vector<Detector> before = std::exchange(detectors_, find_detectors(step_.world, step_.schedule));
+    const std::optional<world::Revisions> last = std::exchange(built_from_, std::nullopt);
+    const world::Revisions now = step_.world.revisions();
     if (Errors refused = check_contacts(step_.world, detectors_); !refused.empty()) return refused;
     // A cache may be large, and most structural changes are of no concern to it.
     const bool same = std::ranges::equal(before, detectors_, keep_same_pairs);
-    if (!same || order_number_ != step_.world.order_number()) cache_.refresh(step_.world, detectors_);
-    order_number_ = step_.world.order_number();
+    if (!same || !last || last->order != now.order) cache_.refresh(step_.world, detectors_);
+    const bool no_news = last && now.keeps_contacts_since(*last);
+    keeps_found_ = same && no_news && !awake_ && !adapts();
     if (imposed_.size() != detectors_.size()) imposed_.clear();
     resting_.forget();
-    found_.clear(), runs_.clear();
-    if (sizes || !detectors_.empty()) measure_bodies();
+    if (!keeps_found_) found_.clear(), runs_.clear();
+    has_sizes_ = has_sizes_ && no_news;
+    if ((sizes || !detectors_.empty()) && !std::exchange(has_sizes_, true)) measure_bodies();
     list_participants();
     detect_among(nullptr), detect_all_once();
+    built_from_ = now;
     return {};
+}
+
+bool ContactBook::is_of_present_structure() const { return built_from_ && step_.world.revisions().keeps_contacts_since(*built_from_); }
+
+void ContactBook::take_sizes(const ContactBook& whole)
+{
+    if (!whole.has_sizes_ || !whole.is_of_present_structure()) return;
+    extents_of_body_ = whole.extents_of_body_, radius_of_body_ = whole.radius_of_body_;
+    curve_radius_of_body_ = whole.curve_radius_of_body_;
+    built_from_ = step_.world.revisions(), has_sizes_ = true;
 }
 
 void ContactBook::list_participants()
@@ -145,12 +160,13 @@ std::span<const Shortlist> ContactBook::shortlists_of(std::size_t detector, cons
 void ContactBook::query(const Detector& detector, ContactSink& sink, const IndexSet* active)
 {
     const auto index = static_cast<std::size_t>(&detector - detectors_.data());
+    if (!active || active == awake_) seen_in_[index] = step_.serial;
+    if (!active) active = part_;
     ComponentCall question(step_, *step_.world.tables()[detector.table], detector.row);
     question.arguments.contacts = &sink;
     step_.report.visited += active ? active->members().size() : step_.world.host().bodies.size();
     // A list of the active participants pays only where the detector would go through many others. Where pairs are named it need not.
     constexpr std::size_t kFew = 8;
-    if (!active || active == awake_) seen_in_[index] = step_.serial;
     if (active) question.context.active_bodies = active->flags();
     if (active && !sink.only_persistent() && kFew * active->members().size() < active->flags().size())
         question.context.shortlists = shortlists_of(index, *active);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "simulation/contacts/resting_pairs.h"
 #include "simulation/motion/step_state.h"
@@ -21,6 +22,18 @@ public:
     /// To be called after any structural change: finds detectors and sizes of bodies, and drops pairs whose detector or bodies are gone.
     /// Errors: see contact_rules.h. `sizes`: sizes of bodies are wanted even if there is no detector.
     Errors rebuild(bool sizes = true);
+    /// Whether found() survived the last rebuild, because nothing on which it depends has changed.
+    bool keeps_found() const { return keeps_found_; }
+    /// Whether nothing on which contacts may depend has changed since the last rebuild.
+    bool is_of_present_structure() const;
+    /// The state of the world was replaced, and not only its structure changed: the next rebuild drops found().
+    void forget_found() { built_from_.reset(); }
+    /// For a stepper that steps a part of a scene, before its first rebuild: takes over the sizes of bodies, unless they have changed.
+    void take_sizes(const ContactBook& whole);
+    /// The same, after a rebuild: from now on detectors look only for pairs with one of these bodies; null: for all. They must have looked
+    /// at all bodies before, and nobody else may have moved since or may move. Must outlive this object.
+    void look_among(const IndexSet* bodies) { part_ = bodies; }
+    bool looks_among_some() const { return part_ != nullptr; }
     void begin_step() { releases_.clear(), resting_.forget(); }
     /// Lets the resolutions that adapt choose how the impacts of this step are found. True if one of them chose otherwise than before: then
     /// what was detected with the former margins does not serve this step.
@@ -156,7 +169,9 @@ private:
 
     StepState& step_;
     std::vector<Detector> detectors_;
-    std::uint64_t order_number_ = 0;  ///< of the world when the cache was refreshed last
+    std::optional<world::Revisions> built_from_;  ///< of the world at the last rebuild; empty: there was none, or it failed
+    bool keeps_found_ = false;                    ///< the last rebuild left found_ as it was
+    bool has_sizes_ = false;                      ///< those of bodies are those of the revisions built_from_
     ContactCache cache_;
     RestingPairs resting_{step_.world, step_.groups, cache_, step_.report.visited};
     std::vector<FoundContact> found_;
@@ -176,6 +191,7 @@ private:
     };
     std::vector<std::vector<Participants>> participants_;  ///< by detector, then by address of the list
     std::vector<std::uint64_t> seen_in_;                   ///< by detector: the step (StepState::serial) in which it looked at all bodies
+    const IndexSet* part_ = nullptr;                       ///< see look_among()
     const IndexSet* awake_ = nullptr;
     bool has_detected_all_ = false;
     std::vector<Shortlist> shortlists_;  ///< lists keep their memory

@@ -20,7 +20,7 @@ std::uint32_t manager_role(const world::World& world, std::uint32_t component)
 
 void HeldIslands::rebuild()
 {
-    known_ = false;
+    known_ = known_ && contacts_.keeps_found();
     manager_of_group_.assign(step_.groups.all.size(), kNoIndex);
     any_ = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(), [](const Detector& d) { return d.by_rows; });
     holds_joints_ = false;

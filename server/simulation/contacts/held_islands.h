@@ -131,6 +131,8 @@ public:
     void note_state();
     /// Notes that they do not serve the next step: contacts are detected otherwise there.
     void forget_state() { known_ = false; }
+    /// Whether all bodies are as they were when contacts were detected last.
+    bool is_current() const;
     /// Takes the groups that managers advance out of `groups` (ascending). `reached`: these groups and all others of their islands;
     /// `places`: where the cache has the persistent pairs of those.
     void take(std::vector<std::uint32_t>& groups, DisjointSets& islands, std::span<const std::uint32_t> reached,
@@ -193,7 +195,6 @@ private:
     };
     using Run = HeldIsland::Run;
     std::uint32_t manager_of(const PairState& pair) const;
-    bool is_current() const;
     void collect_contacts(double from, double h, bool trial);
     void list_touching();
     void list_known();

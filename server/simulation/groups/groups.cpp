@@ -36,18 +36,31 @@ struct Participation
     bool joins = false;
 };
 
-void find_participation(const world::World& world, std::uint32_t component, Participation& p)
+/// The roles of a table's components that name objects.
+struct ObjectRoles
 {
-    p.acts_on.clear(), p.reads.clear();
-    p.joins = false;
-    for (const Role& role : world.table_of(component).schema().roles())
+    std::vector<const Role*> roles;
+    bool joins = false;
+};
+
+ObjectRoles object_roles(const world::Table& table)
+{
+    ObjectRoles out;
+    for (const Role& role : table.schema().roles())
     {
         const bool in_space = std::any_of(role.facets.begin(), role.facets.end(),
                                           [](Facet f) { return f == Facet::Body || f == Facet::Shaft || f == Facet::Quantities; });
-        if (!in_space) continue;
-        world.for_each_participant(component, role, [&](Ref ref) { (role.writes ? p.acts_on : p.reads).push_back(ref); });
-        if (role.writes && !role.independent) p.joins = true;
+        if (in_space) out.roles.push_back(&role), out.joins = out.joins || (role.writes && !role.independent);
     }
+    return out;
+}
+
+void find_participation(const world::World& world, std::uint32_t component, const ObjectRoles& of, Participation& p)
+{
+    p.acts_on.clear(), p.reads.clear();
+    p.joins = of.joins;
+    for (const Role* role : of.roles)
+        world.for_each_participant(component, *role, [&](Ref ref) { (role->writes ? p.acts_on : p.reads).push_back(ref); });
 }
 
 /// Quantities that became non-finite are quarantined and treated as static until a request sets them, just as bodies and shafts are.
@@ -58,12 +71,79 @@ Motion motion_of(const world::World& world, Ref ref)
     return ref.facet == Facet::Body ? host.bodies.motion[ref.index] : host.shafts.motion[ref.index];
 }
 
+/// Which solver each object names.
+class SolverLookup
+{
+public:
+    explicit SolverLookup(const world::World& world) : world_(world)
+    {
+        for (const auto& table : world.tables()) roles_.push_back(solver_role(*table));
+    }
+    /// Directory index; kNoIndex: it names none.
+    std::uint32_t of(Ref ref) const
+    {
+        const world::Component& c = world_.component(world_.host().component_of(ref));
+        return roles_[c.table] ? (*roles_[c.table]->one)[c.row].index : kNoIndex;
+    }
+
+private:
+    /// The role of a table's components that names their solver; null if there is none.
+    static const Role* solver_role(const world::Table& table)
+    {
+        for (const Role& role : table.schema().roles())
+            if (role.family == "Solver/" && role.one) return &role;
+        return nullptr;
+    }
+
+    const world::World& world_;
+    std::vector<const Role*> roles_;  ///< by table
+};
+
+}  // namespace
+
+/// All groups of a cluster share one solver because their stage times must agree. If members name different solvers, the one of the
+/// highest order is taken; on a tie, the first one by id.
+void choose_solvers(const world::World& world, Groups& groups)
+{
+    const SolverLookup solvers(world);
+    std::vector<std::uint32_t> best(groups.clusters, kNoIndex);
+    std::vector<std::uint8_t> mixed(groups.clusters, 0);
+    const auto better = [&](std::uint32_t a, std::uint32_t b)
+    {
+        const int pa = world.type_of(a)->info.order, pb = world.type_of(b)->info.order;
+        return pa != pb ? pa > pb : world.rank(a) < world.rank(b);
+    };
+    const auto consider = [&](const Group& group, Ref ref)
+    {
+        const std::uint32_t solver = solvers.of(ref);
+        std::uint32_t& chosen = best[group.cluster];
+        if (solver == kNoIndex || solver == chosen) return;
+        if (chosen != kNoIndex) mixed[group.cluster] = 1;
+        if (chosen == kNoIndex || better(solver, chosen)) chosen = solver;
+    };
+    for (const Group& group : groups.all)
+    {
+        for (const std::uint32_t b : group.bodies) consider(group, {Facet::Body, b});
+        for (const std::uint32_t s : group.shafts) consider(group, {Facet::Shaft, s});
+        for (const std::uint32_t q : group.quantities) consider(group, {Facet::Quantities, q});
+    }
+    for (Group& group : groups.all)
+    {
+        group.solver = best[group.cluster];
+        group.mixed_solvers = mixed[group.cluster] != 0;
+    }
+}
+
+namespace
+{
+
 class Builder
 {
 public:
     Builder(const world::World& world, const Schedule& schedule, const Selection* part, Groups& groups)
         : world_(world), schedule_(schedule), part_(part), groups_(groups)
     {
+        for (const auto& table : world.tables()) roles_.push_back(object_roles(*table));
     }
 
     void build()
@@ -74,7 +154,7 @@ public:
         make_groups();
         link_rows();
         make_clusters();
-        choose_solvers();
+        choose_solvers(world_, groups_);
     }
 
 private:
@@ -106,8 +186,9 @@ private:
     void join_members(std::uint32_t component)
     {
         Participation& p = participation_;
-        find_participation(world_, component, p);
-        if (!p.joins) return;
+        const ObjectRoles& roles = roles_[world_.component(component).table];
+        if (!roles.joins) return;
+        find_participation(world_, component, roles, p);
         std::uint32_t first = kNoIndex;
         for (const Ref ref : p.acts_on)
         {
@@ -176,7 +257,7 @@ private:
                          [&](std::uint32_t component, std::uint32_t block, Row row)
                          {
                              Participation& p = participation_;
-                             find_participation(world_, component, p);
+                             find_participation(world_, component, roles_[world_.component(component).table], p);
                              // A constraint row belongs to the group of the dynamic participants, which can follow it. If no participant
                              // is dynamic it stays with the prescribed ones, so that its violation can still be reported.
                              const bool something_moves =
@@ -240,66 +321,57 @@ private:
         for (std::uint32_t g = 0; g < groups_.all.size(); ++g) groups_.groups_by_cluster[next[groups_.all[g].cluster]++] = g;
     }
 
-    /// The role of a table's components that names their solver; null if there is none.
-    static const Role* solver_role(const world::Table& table)
-    {
-        for (const Role& role : table.schema().roles())
-            if (role.family == "Solver/" && role.one) return &role;
-        return nullptr;
-    }
-
-    std::uint32_t solver_of(Ref ref)
-    {
-        const world::Component& c = world_.component(world_.host().component_of(ref));
-        if (solver_roles_.size() < world_.tables().size())
-            for (const auto& table : world_.tables()) solver_roles_.push_back(solver_role(*table));
-        const Role* role = solver_roles_[c.table];
-        return role ? (*role->one)[c.row].index : kNoIndex;
-    }
-
-    /// All groups of a cluster share one solver because their stage times must agree. If members name different solvers, the one of the
-    /// highest order is taken; on a tie, the first one by id.
-    void choose_solvers()
-    {
-        std::vector<std::uint32_t> best(groups_.clusters, kNoIndex);
-        std::vector<std::uint8_t> mixed(groups_.clusters, 0);
-        const auto better = [&](std::uint32_t a, std::uint32_t b)
-        {
-            const int pa = world_.type_of(a)->info.order, pb = world_.type_of(b)->info.order;
-            return pa != pb ? pa > pb : world_.rank(a) < world_.rank(b);
-        };
-        const auto consider = [&](const Group& group, Ref ref)
-        {
-            const std::uint32_t solver = solver_of(ref);
-            std::uint32_t& chosen = best[group.cluster];
-            if (solver == kNoIndex || solver == chosen) return;
-            if (chosen != kNoIndex) mixed[group.cluster] = 1;
-            if (chosen == kNoIndex || better(solver, chosen)) chosen = solver;
-        };
-        for (const Group& group : groups_.all)
-        {
-            for (const std::uint32_t b : group.bodies) consider(group, {Facet::Body, b});
-            for (const std::uint32_t s : group.shafts) consider(group, {Facet::Shaft, s});
-            for (const std::uint32_t q : group.quantities) consider(group, {Facet::Quantities, q});
-        }
-        for (Group& group : groups_.all)
-        {
-            group.solver = best[group.cluster];
-            group.mixed_solvers = mixed[group.cluster] != 0;
-        }
-    }
-
     const world::World& world_;
     const Schedule& schedule_;
     const Selection* part_;
     Groups& groups_;
     std::size_t count_ = 0;  ///< of groups so far
     DisjointSets sets_;
-    Participation participation_;            ///< of the interaction that is looked at
-    std::vector<const Role*> solver_roles_;  ///< by table
+    std::vector<ObjectRoles> roles_;  ///< by table
+    Participation participation_;     ///< of the interaction that is looked at
 };
 
 }  // namespace
+
+namespace
+{
+
+/// Whether rows of a phase can be compared by the numbers of their blocks.
+bool same_blocks(const Schedule& x, const Schedule& y, Phase phase)
+{
+    const auto same = [](const Block& a, const Block& b) { return a.table == b.table && a.command == b.command; };
+    return std::ranges::equal(x.of(phase), y.of(phase), same);
+}
+
+bool same_members(const Group& x, const Group& y)
+{
+    return x.bodies == y.bodies && x.shafts == y.shafts && x.quantities == y.quantities && x.prescribed_bodies == y.prescribed_bodies &&
+           x.prescribed_shafts == y.prescribed_shafts && x.upstream == y.upstream && x.solver == y.solver && x.cluster == y.cluster;
+}
+
+}  // namespace
+
+GroupsChange compare_groups(const Groups& before, const Schedule& old, const Groups& now, const Schedule& schedule)
+{
+    GroupsChange out;
+    if (before.all.size() != now.all.size()) return out;
+    const auto comparison = [&](Phase phase)
+    {
+        return [same = same_blocks(old, schedule, phase)](const std::vector<BlockRow>& x, const std::vector<BlockRow>& y)
+        { return x == y && (same || x.empty()); };
+    };
+    const auto same_forces = comparison(Phase::Force), same_couplings = comparison(Phase::Couple), same_rows = comparison(Phase::Constrain);
+    for (std::uint32_t g = 0; g < now.all.size(); ++g)
+    {
+        const Group &x = before.all[g], &y = now.all[g];
+        if (!same_members(x, y)) return out;
+        const bool coupled = before.cluster_has_couplings[x.cluster] != 0, couples = now.cluster_has_couplings[y.cluster] != 0;
+        const bool same = same_forces(x.forces, y.forces) && same_couplings(x.couplings, y.couplings) && same_rows(x.rows, y.rows);
+        if (!same || coupled != couples) out.changed.push_back(g);
+    }
+    out.all = false;
+    return out;
+}
 
 void build_groups(const world::World& world, const Schedule& schedule, Groups& groups, const Selection* part)
 {

@@ -67,6 +67,20 @@ struct Groups
 /// Replaces `groups` by those of the present structure, in their memory. `part`: objects outside it are in no group; null: all are in.
 void build_groups(const world::World& world, const Schedule& schedule, Groups& groups, const Selection* part = nullptr);
 
+/// How the groups of a structure differ from those of the one before.
+struct GroupsChange
+{
+    /// Members, clusters or solvers differ, or ranks do, so that nothing can be said of single groups.
+    bool all = true;
+    std::vector<std::uint32_t> changed;  ///< otherwise: the groups on which other rows act than before, ascending
+};
+/// `before` are the groups of the schedule `old`, `now` those of `schedule`. Ranks and rows of objects must be the same in both.
+GroupsChange compare_groups(const Groups& before, const Schedule& old, const Groups& now, const Schedule& schedule);
+
+/// Chooses the solver of each group anew, after components that only advance others were exchanged or changed. The result is that of
+/// build_groups().
+void choose_solvers(const world::World& world, Groups& groups);
+
 /// Disjoint sets (union-find) with the lowest member as representative, so that the result does not depend on the order of joins.
 class DisjointSets
 {

@@ -25,7 +25,7 @@ struct Selection
     std::vector<std::uint32_t> components;  ///< those that are flagged, in id order
 };
 
-/// Rebuilt whenever components are added, removed, swapped or quarantined.
+/// Follows from the structure of the world (world/revisions.h).
 struct Schedule
 {
     std::array<std::vector<Block>, kPhaseCount> blocks;
@@ -40,5 +40,8 @@ bool measured_alone(const TypeInfo& type);
 
 /// Blocks in the order of type names, so that neither load order nor row numbers influence the state. `part`: null: all components.
 Schedule build_schedule(const world::World& world, const Selection* part = nullptr);
+/// Replaces the blocks of components that only advance others (ComponentType::only_advances) by those of the present structure. In phases
+/// in which none of them takes part, all blocks stay where they are.
+void rebuild_solvers(Schedule& schedule, const world::World& world, const Selection* part = nullptr);
 
 }  // namespace plab::simulation

@@ -129,6 +129,18 @@ Result<void> LevelBook::rebuild()
 {
     if (deciding_) return {};
     ++structure_;
+    const world::Revisions now = world_.revisions();
+    const bool only_solvers = built_from_ && now.only_solvers_since(*built_from_);
+    built_from_.reset();
+    if (!only_solvers)
+        if (auto found = find_watched(); !found) return found;
+    built_from_ = now;
+    return {};
+}
+
+/// An exchange of solvers leaves all of this as it is: who watches whom, and on which objects they act.
+Result<void> LevelBook::find_watched()
+{
     std::vector<Governor> before;
     before.swap(governors_);
     std::vector<std::uint32_t> watcher(world_.components().size(), kNoIndex);

@@ -113,6 +113,7 @@ private:
     class Desk;
 
     world::CommandCall call_at(Tick tick, double time, double dt, Desk& desk) const;
+    Result<void> find_watched();
     Result<void> read_governor(Governor& governor) const;
     Result<void> watch(Governor& governor, std::vector<std::uint32_t>& watcher) const;
     void find_parts();
@@ -130,6 +131,7 @@ private:
     std::vector<std::uint32_t> watcher_, changed_;  ///< governor of each component, by directory index; components
     bool deciding_ = false;                         ///< trials exchange components and put them back meanwhile
     std::uint64_t structure_ = 0;                   ///< counts the calls of rebuild()
+    std::optional<world::Revisions> built_from_;    ///< of the world at the last rebuild; empty: it failed
     std::vector<double> radius_of_shaft_;
     // Of a Desk, kept from step to step, so that a look at a scene in which nothing changes needs no memory.
     std::vector<Viewpoint> viewpoints_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "plab/number_text.h"
@@ -84,13 +85,27 @@ void CouplingWatch::rebuild(const world::World& world, const Schedule& schedule,
     find_contradictions(world, graph, directory);
 }
 
+/// The edges of the graph in the trees that a pair has a shaft of: no other can be in a loop with a pair.
+std::vector<RatioEdge> CouplingWatch::edges_beside(const ConstraintGraph& graph) const
+{
+    std::vector<const ShaftTree*> trees;
+    for (const CouplingPair& p : pairs_)
+        for (const std::uint32_t shaft : {p.driver, p.driven})
+            if (const ShaftTree* tree = graph.tree_of(shaft)) trees.push_back(tree);
+    std::sort(trees.begin(), trees.end(), std::less<>());
+    std::vector<RatioEdge> out;
+    for (const RatioEdge& e : graph.edges())
+        if (std::binary_search(trees.begin(), trees.end(), graph.tree_of(e.driver), std::less<>())) out.push_back(e);
+    return out;
+}
+
 /// The couplings of the graph are consistent with one another, so they come first; the edge that closes a contradictory loop is then one
 /// of the pairs.
 void CouplingWatch::find_contradictions(const world::World& world, const ConstraintGraph& graph, const ShaftDirectory& directory)
 {
     faults_.clear();
     if (pairs_.empty()) return;
-    std::vector<RatioEdge> edges(graph.edges().begin(), graph.edges().end());
+    std::vector<RatioEdge> edges = edges_beside(graph);
     std::vector<std::uint32_t> rank(world.components().size());
     for (std::uint32_t c = 0; c < rank.size(); ++c) rank[c] = directory.rank_of_component(c);
     for (const CouplingPair& p : pairs_)

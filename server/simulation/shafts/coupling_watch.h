@@ -49,6 +49,7 @@ private:
         std::size_t pair = 0;
     };
 
+    std::vector<RatioEdge> edges_beside(const ConstraintGraph& graph) const;
     void find_contradictions(const world::World& world, const ConstraintGraph& graph, const ShaftDirectory& directory);
     void report_fault(const Fault& fault, const Shafts& shafts, const CouplingReport& done, std::vector<std::uint8_t>& reported);
     void report_conflict(const world::World& world, const CouplingReport& done, std::vector<std::uint8_t>& reported);

@@ -38,6 +38,7 @@ std::vector<std::uint8_t> on_circles(const std::vector<OneWayDrive>& drives, std
 Errors check_drives(std::vector<OneWayDrive> drives, std::span<const std::uint32_t> root, std::span<const std::uint8_t> prescribed,
                     const ShaftDirectory& directory)
 {
+    if (drives.empty()) return {};
     std::sort(drives.begin(), drives.end(),
               [&](const OneWayDrive& a, const OneWayDrive& b)
               { return directory.rank_of_component(a.component) < directory.rank_of_component(b.component); });

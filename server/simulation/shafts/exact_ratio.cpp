@@ -104,6 +104,7 @@ ExactRatio ExactRatio::inverse() const
 
 ExactRatio operator*(const ExactRatio& a, const ExactRatio& b)
 {
+    if (a.is_one() || b.is_one()) return a.is_one() ? b : a;
     if (a.exact_ && b.exact_)
     {
         // Cancel common factors crosswise first: the product is then in lowest terms, and overflows only if the result does not fit.

@@ -41,6 +41,7 @@ private:
         double mantissa = 0.5;  // 0.5 <= |mantissa| < 1
         int exponent = 1;
     };
+    bool is_one() const { return exact_ && numerator_ == 1 && denominator_ == 1; }
     static ExactRatio rational(Int128 numerator, Int128 denominator);
     static ExactRatio inexact(double mantissa, int exponent);
     Scaled scaled() const;

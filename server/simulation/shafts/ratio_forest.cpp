@@ -49,9 +49,11 @@ private:
 
     void sort_edges()
     {
-        std::stable_sort(forest_.edges.begin(), forest_.edges.end(),
-                         [this](const RatioEdge& a, const RatioEdge& b)
-                         { return directory_.rank_of_component(a.component) < directory_.rank_of_component(b.component); });
+        const auto before = [this](const RatioEdge& a, const RatioEdge& b)
+        { return directory_.rank_of_component(a.component) < directory_.rank_of_component(b.component); };
+        // The couplings of one type come in the order of ids.
+        if (!std::is_sorted(forest_.edges.begin(), forest_.edges.end(), before))
+            std::stable_sort(forest_.edges.begin(), forest_.edges.end(), before);
     }
 
     void refuse_self_couplings()
@@ -105,17 +107,20 @@ private:
         return {links_.data() + links_of_[shaft], links_of_[shaft + 1] - links_of_[shaft]};
     }
 
+    // Shafts with links: prescribed ones first, then by rank. Ranks are small numbers that are all different, so none need be compared.
     std::vector<std::uint32_t> root_candidates() const
     {
-        std::vector<std::uint32_t> out;
+        std::vector<std::uint32_t> at_rank, out;
         for (std::uint32_t i = 0; i < prescribed_.size(); ++i)
-            if (!links(i).empty()) out.push_back(i);
-        std::sort(out.begin(), out.end(),
-                  [this](std::uint32_t a, std::uint32_t b)
-                  {
-                      if ((prescribed_[a] != 0) != (prescribed_[b] != 0)) return prescribed_[a] != 0;
-                      return directory_.rank_of_shaft(a) < directory_.rank_of_shaft(b);
-                  });
+        {
+            if (links(i).empty()) continue;
+            const std::uint32_t rank = directory_.rank_of_shaft(i);
+            if (rank >= at_rank.size()) at_rank.resize(rank + std::size_t{1}, kNoIndex);
+            at_rank[rank] = i;
+        }
+        for (const bool prescribed : {true, false})
+            for (const std::uint32_t i : at_rank)
+                if (i != kNoIndex && (prescribed_[i] != 0) == prescribed) out.push_back(i);
         return out;
     }
 

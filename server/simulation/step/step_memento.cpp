@@ -30,6 +30,7 @@ void StepMemento::restore(world::World& world, Stepper& stepper) const
     ByteReader cells(cells_.bytes());
     world.load_fields(kChanging, cells);
     motion_.restore(world.host());
+    stepper.forget_state();
     (void)stepper.rebuild();  // cannot fail: the same structure was built at the start of the step
     motion_.restore(world.host());
     stepper.contacts() = contacts_;

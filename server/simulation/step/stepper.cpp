@@ -42,6 +42,14 @@ void Stepper::search_as(const Stepper& whole, Tick tick, double start_time, doub
     book_.search_as(whole.book_);
 }
 
+bool Stepper::look_again()
+{
+    if (!book_.looks_among_some()) return false;
+    book_.detect_among(nullptr);  // also at those that fell asleep
+    book_.detect_all();
+    return true;
+}
+
 // The nodes of the step tree -------------------------------------------------------------------------------------------
 
 void Stepper::save_start()

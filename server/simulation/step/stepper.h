@@ -26,9 +26,15 @@ public:
     Stepper(world::World& world, int threads);
 
     /// From the next rebuild on only these components take part; null: all. Must outlive this object.
-    void restrict_to(const Selection* part) { part_ = part; }
-    /// To be called after any structural change and after changes of parameters: schedule, groups, constraint graph,
-    /// materials. On error (a contradictory graph) the world must be put back and rebuilt.
+    void restrict_to(const Selection* part) { part_ = part, built_from_.reset(); }
+    /// For a part of a scene: takes over from the stepper of the whole scene what does not depend on the part. To be called before the
+    /// first rebuild.
+    void take_over(const Stepper& whole) { book_.take_sizes(whole.book_); }
+    /// The state of the world was replaced, and not only its structure changed. To be called before rebuild().
+    void forget_state() { built_from_.reset(), book_.forget_found(); }
+    /// To be called after any structural change and after changes of parameters: derives schedule, groups, constraint graph and materials
+    /// as far as they may have changed (world::Revisions). The result is the same, bit for bit, as if all of it were derived. On error (a
+    /// contradictory graph) the world must be put back and rebuilt.
     Result<void> rebuild();
     /// `interruption` may abort a step, `progress` receives how far a step has got; null: none. Both must outlive this object.
     void set_interruption(const Interruption* interruption, Progress* progress) { interruption_ = interruption, progress_ = progress; }
@@ -53,6 +59,13 @@ public:
     /// before the rest of the scene is fixed; they write their outputs.
     void search_as(const Stepper& whole, Tick tick, double start_time, double step);
     bool adapts() const { return book_.adapts(); }
+    /// Whether all detectors have looked at all bodies where these are now.
+    bool has_looked_at_all() const { return hard_.has_looked_at_all(); }
+    /// For a part of a scene whose other bodies stay where they are, if has_looked_at_all() of the whole scene's stepper: detectors look
+    /// only for pairs with one of these bodies. Null: for all. Must outlive this object.
+    void look_among(const IndexSet* bodies) { book_.look_among(bodies); }
+    /// The bodies are back where they were: the detectors look at them there. False if look_among() was not called.
+    bool look_again();
     std::uint64_t state_hash() const;
 
     // What was derived from the world's structure ---------------------------------------------------------------------
@@ -120,6 +133,10 @@ public:
 
 private:
     // stepper_build.cpp
+    Errors derive_structure(bool comparable, GroupsChange& change);
+    void choose_solvers();
+    void set_up_motion();
+    std::vector<std::uint32_t> coupled_groups() const;
     void connect_materials(Errors& errors);
     void connect_graph(Errors& errors);
     Errors run_connect(const Block& block, world::CommandCall& call);
@@ -146,6 +163,8 @@ private:
     std::shared_ptr<const char> saved_mark_;  ///< RestState::mark when the start of a step was saved last
 
     const Selection* part_ = nullptr;
+    Groups groups_before_;                        ///< those of the last rebuild but one, for their memory
+    std::optional<world::Revisions> built_from_;  ///< of the world at the last rebuild; empty: everything has to be derived
     const Interruption* interruption_ = nullptr;
     Progress* progress_ = nullptr;
     ImageSink* images_ = nullptr;

@@ -1,6 +1,7 @@
 // Derives from a world's structure: schedule, groups, constraint graph and materials.
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "simulation/step/stepper.h"
 
@@ -84,30 +85,71 @@ void Stepper::connect_graph(Errors& errors)
 
 Result<void> Stepper::rebuild()
 {
-    step_.schedule = build_schedule(step_.world, part_);
+    const world::Revisions now = step_.world.revisions();
+    const bool only_solvers = built_from_ && now.only_solvers_since(*built_from_);
+    const bool no_solvers = built_from_ && now.order == built_from_->order && now.solvers == built_from_->solvers;
+    built_from_.reset();
+    GroupsChange change;
+    if (only_solvers)
+        choose_solvers();
+    else if (Errors refused = derive_structure(no_solvers, change); !refused.empty())
+        return refused;
+    if (Errors refused = book_.rebuild(part_ == nullptr); !refused.empty()) return refused;
+    if (only_solvers)
+        advance_.solvers_changed();
+    else
+        set_up_motion(), advance_.rebuild(change);
+    hard_.rebuild();
+    forces_.rebuild();
+    touches_.rebuild();
+    locator_.reset();
+    saved_mark_ = nullptr;
+    rebuild_costs();
+    render_scene_.structure_changed();
+    built_from_ = now;
+    return {};
+}
+
+/// If nothing else has changed, everything but this is still what derive_structure() would make of it.
+void Stepper::choose_solvers()
+{
+    rebuild_solvers(step_.schedule, step_.world, part_);
+    simulation::choose_solvers(step_.world, step_.groups);
+}
+
+/// `comparable`: ranks and solvers are those of the last rebuild, so its groups can be compared with the present ones.
+Errors Stepper::derive_structure(bool comparable, GroupsChange& change)
+{
+    const Schedule before = std::exchange(step_.schedule, build_schedule(step_.world, part_));
     Errors errors;
     connect_materials(errors);
     connect_graph(errors);
     if (!errors.empty()) return errors;
+    std::swap(step_.groups, groups_before_);
     build_groups(step_.world, step_.schedule, step_.groups, part_);
+    if (comparable) change = compare_groups(groups_before_, before, step_.groups, step_.schedule);
     step_.all_groups.resize(step_.groups.all.size());
     std::iota(step_.all_groups.begin(), step_.all_groups.end(), 0u);
-    if (Errors refused = book_.rebuild(part_ == nullptr); !refused.empty()) return refused;
+    return {};
+}
+
+void Stepper::set_up_motion()
+{
     const std::size_t components = step_.world.components().size();
     step_.work.resize(components, 0.0), step_.contact_energy.resize(components), step_.reported.contradictory.resize(components, 0);
     const auto& detectors = book_.detectors();
     motion_.rebuild(std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.locates; }),
                     part_ != nullptr && detectors.empty());
-    hard_.rebuild();
-    forces_.rebuild();
-    touches_.rebuild();
-    advance_.rebuild();
-    locator_.reset();
-    saved_mark_ = nullptr;
-    speed_system_.configure(step_.world, step_.schedule, step_.groups, step_.all_groups, step_.graph);
-    rebuild_costs();
-    render_scene_.structure_changed();
-    return {};
+    speed_system_.configure(step_.world, step_.schedule, step_.groups, coupled_groups(), step_.graph);
+}
+
+/// Of the others no speeds are swept.
+std::vector<std::uint32_t> Stepper::coupled_groups() const
+{
+    std::vector<std::uint32_t> out;
+    for (const std::uint32_t g : step_.all_groups)
+        if (step_.groups.cluster_has_couplings[step_.groups.all[g].cluster] != 0) out.push_back(g);
+    return out;
 }
 
 /// Nobody asks a stepper of a part of the scene for its costs.

@@ -49,6 +49,19 @@ void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_
     configure_rows();
 }
 
+bool GroupSystem::follow(const StepFrame& frame)
+{
+    frame_ = frame;
+    configuration_ = scratch_->new_configuration();
+    if (rows_) return false;  // joints are set up from values of components
+    const world::HostTables& host = frame.world->host();
+    std::size_t values = 0, roots = 0;
+    for (const std::uint32_t q : quantities_) values += host.quantities.value[q].size();
+    for (const std::uint32_t s : shafts_)
+        if (host.shafts.root[s] == s && (roots == roots_.size() || roots_[roots++] != s)) return false;
+    return values == quantity_values_ && roots == roots_.size() && follow_forces();
+}
+
 void GroupSystem::size_vectors(std::size_t body_values)
 {
     body_values_ = body_values;

@@ -87,6 +87,11 @@ public:
     void configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed = {});
     /// Sets the present step's frame after configure(); the structure of the world must be unchanged.
     void set_frame(const StepFrame& frame) { frame_ = frame; }
+    /// To be called after a change of structure that has left its groups as they were (compare_groups). False: it has to be configured
+    /// again.
+    bool follow(const StepFrame& frame);
+    /// From now on it is advanced with the arrays of another thread. The structure of the world must be unchanged since configure().
+    void borrow(StageScratch& scratch) { scratch_ = &scratch, configuration_ = scratch.new_configuration(); }
     /// Null: none. A caller that sets forces has to remove them after the advance.
     void set_extra_forces(ExtraForces* forces) { extra_ = forces; }
     /// Starts an advance from `from` to `to` (s since the start of the step) at the present state of the tables.
@@ -150,7 +155,8 @@ public:
 private:
     struct Selected
     {
-        const Block* block;
+        std::uint32_t index = 0;  ///< of the block
+        const Block* block = nullptr;
         std::vector<Row> rows;
         std::vector<Shortlist> shortlists;
     };
@@ -163,6 +169,9 @@ private:
     void activate();
     void filter_forces();
     void make_shortlists(Selected& selected);
+    template <class Visit>
+    void for_each_long_list(const Selected& selected, Visit visit) const;
+    bool follow_forces();
     void configure_rows();
     void keep_reactions();
     void size_vectors(std::size_t body_values);

@@ -1,6 +1,7 @@
 // The forces on the members of a system: which ones act, and their evaluation at a stage of the solver.
 #include <algorithm>
 #include <functional>
+#include <span>
 
 #include "simulation/costs/measured_call.h"
 #include "simulation/systems/group_system.h"
@@ -25,10 +26,9 @@ void GroupSystem::filter_forces()
     for (std::size_t i = 0; i < merged_.size();)
     {
         Selected& s = selected_[selected_count_++];
-        s.block = &blocks[merged_[i].block];
+        s.index = merged_[i].block, s.block = &blocks[s.index];
         s.rows.clear();
-        for (const std::uint32_t block = merged_[i].block; i < merged_.size() && merged_[i].block == block; ++i)
-            s.rows.push_back(merged_[i].row);
+        for (; i < merged_.size() && merged_[i].block == s.index; ++i) s.rows.push_back(merged_[i].row);
         make_shortlists(s);
     }
     uniform_ = std::all_of(selected_.begin(), selected_.begin() + static_cast<std::ptrdiff_t>(selected_count_),
@@ -36,24 +36,46 @@ void GroupSystem::filter_forces()
     for (const std::uint32_t g : groups_) uniform_ = uniform_ && frame_.groups->all[g].couplings.empty();
 }
 
-void GroupSystem::make_shortlists(Selected& selected)
+/// Calls visit(list) for each list of participants for which there is a shortlist.
+template <class Visit>
+void GroupSystem::for_each_long_list(const Selected& selected, Visit visit) const
 {
     constexpr std::size_t kLong = 16;  // for shorter lists a shortlist does not pay
-    activate();
-    selected.shortlists.clear();
     const world::Table& table = *frame_.world->tables()[selected.block->table];
     for (const Role& role : table.schema().roles())
     {
         if (!role.many || !role.independent) continue;
         for (const Row row : selected.rows)
-        {
-            const RefList& all = (*role.many)[row];
-            if (all.size() <= kLong) continue;
-            Shortlist& s = selected.shortlists.emplace_back();
-            s.all = &all;
-            scratch_->list_active(all, s.active);
-        }
+            if (const RefList& all = (*role.many)[row]; all.size() > kLong) visit(all);
     }
+}
+
+/// The blocks have moved with the schedule, and so may have the lists of participants, by whose address shortlists are found.
+bool GroupSystem::follow_forces()
+{
+    const auto& blocks = frame_.schedule->of(Phase::Force);
+    bool holds = true;
+    for (Selected& s : std::span(selected_).first(selected_count_))
+    {
+        s.block = &blocks[s.index];
+        const auto is_listed = [&](const RefList& all)
+        { return std::ranges::any_of(s.shortlists, [&](const Shortlist& l) { return l.all == &all; }); };
+        for_each_long_list(s, [&](const RefList& all) { holds = holds && is_listed(all); });
+    }
+    return holds;
+}
+
+void GroupSystem::make_shortlists(Selected& selected)
+{
+    activate();
+    selected.shortlists.clear();
+    const auto add = [&](const RefList& all)
+    {
+        Shortlist& s = selected.shortlists.emplace_back();
+        s.all = &all;
+        scratch_->list_active(all, s.active);
+    };
+    for_each_long_list(selected, add);
     const auto by_address = [](const Shortlist& a, const Shortlist& b) { return std::less<>()(a.all, b.all); };
     std::sort(selected.shortlists.begin(), selected.shortlists.end(), by_address);
 }

@@ -134,9 +134,13 @@ Result<void> Transaction::build_and_try(TrialScope& scope, bool swaps)
 {
     if (auto built = run_->live.rebuild(); !built) return model::first_of_alike(built.errors());
     report_contacts();
-    const Energies now = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);
-    energy_applied_ = now.kinetic + now.stored;
-    run_->stepper().requests_work() += now.kinetic - kinetic_before_;
+    energy_applied_ = energy_before_;
+    if (!run_->world().revisions().only_solvers_since(revisions_before_))
+    {
+        const Energies now = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);
+        energy_applied_ = now.kinetic + now.stored;
+        run_->stepper().requests_work() += now.kinetic - kinetic_before_;
+    }
     if (!request_->trial.is_wanted())
     {
         if (swaps) write_reports({});
@@ -159,6 +163,7 @@ void Transaction::run_on_scene(bool swaps)
     const Clock clock = read_clock();
     const Energies first = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);
     energy_before_ = first.kinetic + first.stored, kinetic_before_ = first.kinetic;
+    revisions_before_ = run_->world().revisions();
     TrialScope scope(run_->world());
     if (swaps && request_->trial.is_wanted()) mark_touched(scope), try_old(scope);
     apply_all();

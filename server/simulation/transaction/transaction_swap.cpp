@@ -49,6 +49,15 @@ Result<Carried> carry_over(const world::World& world, std::uint32_t component, c
     return out;
 }
 
+/// Of the fields that a swap may give.
+std::vector<std::string> names_in(const model::ComponentType& type)
+{
+    std::vector<std::string> out;
+    for (const Field& field : type.schema.fields())
+        if (carries_over(field.kind)) out.push_back(field.name);
+    return out;
+}
+
 }  // namespace
 
 void Transaction::fit_roles(model::ComponentSpec& spec, const Schema& schema, SwapReport& report) const
@@ -106,12 +115,10 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
     model::ComponentSpec spec = scene.components[scene.position_of(world.id_of(component), component)];
     spec.type = op.type;
     spec.fields.clear();
-    std::vector<std::string> names;
     Errors errors;
     for (const Field& field : type.schema.fields())
     {
         if (!carries_over(field.kind)) continue;
-        names.push_back(field.name);
         auto carried = carry_over(world, component, field, op);
         if (!carried)
         {
@@ -124,8 +131,8 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
     for (const Field& field : old.schema.fields())
         if (carries_over(field.kind) && !type.schema.find_field(field.name)) report.fields.push_back({field.name, FieldTransfer::Lost});
     for (const NamedValue& v : op.values)
-        if (std::find(names.begin(), names.end(), v.name) == names.end())
-            errors.push_back({{}, element, op.type + " has no parameter '" + v.name + "'" + model::did_you_mean(v.name, names)});
+        if (const Field* field = type.schema.find_field(v.name); !field || !carries_over(field->kind))
+            errors.push_back({{}, element, op.type + " has no parameter '" + v.name + "'" + model::did_you_mean(v.name, names_in(type))});
     if (!errors.empty()) return errors;
     fit_roles(spec, type.schema, report);
     if (auto done = make_missing(spec, type.schema, report); !done) return done.errors();

@@ -123,6 +123,25 @@ void Trial::set_up(Stepper& part) const
     part.continue_after(stepper_.frame().tick, stepper_.frame().start_time, stepper_.frame().step);
 }
 
+/// Detectors need not look at the bodies outside the scope again if they have looked at all of them, because those stay where they are.
+/// To be called before the others are fixed.
+void Trial::choose_bodies(Stepper& part, const TrialScope& scope)
+{
+    if (scope.has_everything() || !stepper_.has_looked_at_all()) return;
+    const Bodies& bodies = world_.host().bodies;
+    moving_.begin(bodies.size());
+    for (const std::uint32_t b : scope.bodies())
+        if (bodies.dynamic(b)) moving_.add(b);
+    part.look_among(&moving_);
+}
+
+/// Puts everything back after a step, also for the detectors, which are those of the scene.
+void Trial::end_step(Stepper& part)
+{
+    put_back();
+    if (part.look_again()) load_cells();
+}
+
 /// How impacts are found may depend on all bodies of a detection, so it is chosen before the others are fixed.
 void Trial::choose_search(Stepper& part)
 {
@@ -151,7 +170,9 @@ void Trial::apply_changes(void* self, std::vector<ParameterChange>& changes)
         else if (type_of(before) != FieldType::None)
             (void)set_field(trial.world_, i, change.name, before, trial.prepared_);
     }
-    if (structure) (void)trial.part_->rebuild();
+    if (!structure) return;
+    trial.part_->look_among(nullptr);  // shapes may have changed
+    (void)trial.part_->rebuild();
 }
 
 /// Adds moving objects outside the scope that touched an object in it during the step. Returns false if there were none.
@@ -241,7 +262,7 @@ Spread Trial::measure(Stepper& part, const Interruption& deadline, std::uint64_t
         const std::uint64_t end = now_ns();
         longest = std::max(longest, end - begin), begin = end;
     }
-    put_back();
+    end_step(part);
     return spread_of(ns);
 }
 
@@ -256,15 +277,17 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         scope.choose_components();
         keep_cells(scope), keep_contacts(scope);
         host_.save(world_.host(), scope);
-        host_.fix_others(world_.host());
         Stepper part(world_, 1);
+        part.take_over(stepper_);
+        choose_bodies(part, scope);
+        host_.fix_others(world_.host());
         part.restrict_to(scope.has_everything() ? nullptr : &scope.components());
         part.set_interruption(&deadline, &progress);
         part.on_changes(&Trial::apply_changes, this);
         part_ = &part, selection_ = &scope.components();
         bool grown = false, tried = false;
         if (auto built = part.rebuild(); !built)
-            out.failure = built.error().text();
+            out.failure = built.error().text(), part.look_among(nullptr);
         else
         {
             // The stepper may have written values that it derives from the structure.
@@ -274,7 +297,7 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
             out = once(part, scope, components, deadline);
             tried = !out.given_up;
         }
-        put_back();  // before the scope grows: from here on nothing is fixed
+        end_step(part);  // before the scope grows: from here on nothing is fixed
         if (tried) grown = grow(scope, part);
         if (tried && !grown && out.failure.empty()) out.cost = measure(part, deadline, until_ns);
         part_ = nullptr;

@@ -58,9 +58,11 @@ public:
 private:
     void set_up(Stepper& part) const;
     void choose_search(Stepper& part);
+    void choose_bodies(Stepper& part, const TrialScope& scope);
     void keep_contacts(const TrialScope& scope);
     void keep_cells(const TrialScope& scope);
     void put_back();
+    void end_step(Stepper& part);
     void put_back_moved();
     void load_cells();
     void prepare_again();
@@ -78,6 +80,7 @@ private:
     std::vector<std::uint32_t> kept_;  ///< components, in id order
     ByteWriter cells_;                 ///< their values
     std::set<std::uint32_t> prepared_;
+    IndexSet moving_;                       ///< dynamic bodies of the scope
     std::uint64_t first_ns_ = 0;            ///< duration of the first step
     Stepper* part_ = nullptr;               ///< the stepper in use during a trial
     const Selection* selection_ = nullptr;  ///< its components

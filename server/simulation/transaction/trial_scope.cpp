@@ -79,7 +79,7 @@ void TrialScope::add_object(Ref object)
 void TrialScope::add(std::uint32_t component)
 {
     fit();
-    std::fill(visited_.begin(), visited_.end(), std::uint8_t{0});
+    ++visit_;
     visit(component);
 }
 
@@ -114,7 +114,7 @@ bool TrialScope::mark_participants(std::uint32_t component)
 void TrialScope::visit(std::uint32_t component)
 {
     const world::Component& c = world_->component(component);
-    if (c.table == kNoIndex || std::exchange(visited_[component], 1) != 0) return;
+    if (c.table == kNoIndex || std::exchange(visited_[component], visit_) == visit_) return;
     if (is_object(c.facet)) return add_object(c.ref(component));
     if (mark_participants(component)) return;
     for (const std::uint32_t referrer : world_->referrers(component)) visit(referrer);

@@ -67,8 +67,9 @@ private:
     bool everything_ = false;
     std::vector<std::uint8_t> bodies_, shafts_, quantities_;  ///< by host row
     std::vector<Ref> marked_;                                 ///< the same, in the order in which they were found
-    std::vector<std::uint32_t> fixed_;   ///< static bodies that are changed, so that bodies resting on them are in the scope
-    std::vector<std::uint8_t> visited_;  ///< by directory index
+    std::vector<std::uint32_t> fixed_;    ///< static bodies that are changed, so that bodies resting on them are in the scope
+    std::vector<std::uint32_t> visited_;  ///< by directory index: the last visit_
+    std::uint32_t visit_ = 0;             ///< counts the calls of add() for components
     Selection selection_;
     std::vector<std::uint32_t> body_rows_, shaft_rows_, quantities_rows_, other_body_rows_, other_shaft_rows_;
 };

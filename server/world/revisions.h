@@ -1,0 +1,36 @@
+/// How often a world has changed, by what follows from the change.
+///
+/// Much is derived from the components of a world: which commands run when, which objects are integrated together, who refers to whom.
+/// Whoever keeps something derived also keeps the revisions from which it was derived, and derives again only what follows from counts
+/// that have grown since. Motion, and what the commands of a step write, is no change in this sense.
+///
+///   | count    | of                                                            | what follows                                              |
+///   |----------|---------------------------------------------------------------|-----------------------------------------------------------|
+///   | order    | additions and removals                                        | everything, because ranks change                          |
+///   | solvers  | changes of components that only advance others                | who advances a group, and which groups share a system; not |
+///   |          | (ComponentType::only_advances)                                | the groups, the graph, and the systems themselves         |
+///   | others   | changes of all other components: type, values, participants,  | everything but ranks                                      |
+///   |          | quarantine                                                    |                                                           |
+///   | contacts | those of them on which contacts may depend                    | sizes of bodies, and the contacts of the present state    |
+///   |          | (ComponentType::concerns_contacts)                            |                                                           |
+#pragma once
+
+#include <cstdint>
+
+namespace plab::world
+{
+
+struct Revisions
+{
+    std::uint64_t order = 0, solvers = 0, others = 0, contacts = 0;
+
+    /// Whether nothing but solvers has changed since `before`, and these have.
+    bool only_solvers_since(const Revisions& before) const
+    {
+        return order == before.order && others == before.others && solvers != before.solvers;
+    }
+    /// Whether nothing on which contacts may depend has changed since.
+    bool keeps_contacts_since(const Revisions& before) const { return order == before.order && contacts == before.contacts; }
+};
+
+}  // namespace plab::world
