@@ -52,7 +52,7 @@ private:
 
     const link::Session& session_;
     Pages& pages_;
-    Requests requests_;
+    link::Requests requests_;
     Hands hands_;
     link::SessionOptions options_;  ///< with the server's name
     Preview preview_;

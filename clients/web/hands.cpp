@@ -14,7 +14,7 @@ std::string text_of(const Vec3& v) { return link::number_text(v.x) + " " + link:
 
 }  // namespace
 
-void Hands::grab(PageId page, const Grab& grab, Requests::Then then)
+void Hands::grab(PageId page, const Grab& grab, link::Requests::Then then)
 {
     if (hands_.contains(page)) return then(reason("this page holds something already: let go first"));
     if (hands_.size() >= kMost) return then(reason("other pages hold " + std::to_string(kMost) + " bodies; more hands are not given"));

@@ -7,7 +7,7 @@
 
 #include "link/person.h"
 #include "web/pages.h"
-#include "web/requests.h"
+#include "link/requests.h"
 #include "web/translate.h"
 
 namespace plab::web
@@ -18,10 +18,10 @@ class Hands
 public:
     static constexpr std::size_t kMost = 8;
 
-    Hands(const link::Session& session, Requests& requests) : session_(session), requests_(requests) {}
+    Hands(const link::Session& session, link::Requests& requests) : session_(session), requests_(requests) {}
 
     /// The page's reply is that of the request that adds the hand.
-    void grab(PageId page, const Grab& grab, Requests::Then then);
+    void grab(PageId page, const Grab& grab, link::Requests::Then then);
     void move(PageId page, const Vec3& position);
     void release(PageId page);
 
@@ -37,7 +37,7 @@ private:
     void remove(const Hand& hand);
 
     const link::Session& session_;
-    Requests& requests_;
+    link::Requests& requests_;
     std::map<PageId, Hand> hands_;
     std::uint64_t last_ = 0;
 };

@@ -94,6 +94,9 @@ struct DaemonOptions
     std::uint32_t domain = 0;       ///< DDS domain
     std::string network_interface;  ///< empty: this host only
     double states_per_second = 60;  ///< of real time; 0: each step
+    bool ros = false;               ///< is a node of ROS 2, too
+    std::string ros_namespace;      ///< "", or with '/' in front
+    double ros_rate = 60;           ///< messages of a topic per second of real time, at most
     bool paused = false;            ///< waits at step 0
 };
 

@@ -1,4 +1,4 @@
-/// Requests of pages that wait for the server's reply. None of them blocks: each is sent again until it is answered, which the server
+/// Requests that wait for the server's reply. None of them blocks: each is sent again until it is answered, which the server
 /// carries out once.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 #include "link/caller.h"
 
-namespace plab::web
+namespace plab::link
 {
 
 class Requests
@@ -16,12 +16,12 @@ class Requests
 public:
     static constexpr std::size_t kMost = 128;
     /// The reply, or why there is none.
-    using Then = std::function<void(const Result<link::Reply>&)>;
+    using Then = std::function<void(const Result<Reply>&)>;
 
-    explicit Requests(link::Caller caller) : caller_(std::move(caller)) {}
+    explicit Requests(Caller caller) : caller_(std::move(caller)) {}
 
     /// `then` is called by update(), or at once if it cannot be sent.
-    void send(link::Request request, Then then);
+    void send(Request request, Then then);
     /// Hands out replies, sends again what was not answered, and gives up what takes too long.
     void update();
     /// There will be no replies.
@@ -31,14 +31,14 @@ private:
     using Clock = std::chrono::steady_clock;
     struct Waiting
     {
-        link::Request request;
+        Request request;
         Then then;
         Clock::time_point next, end;
         std::chrono::milliseconds between{20};
     };
 
-    link::Caller caller_;
+    Caller caller_;
     std::map<std::uint64_t, Waiting> waiting_;
 };
 
-}  // namespace plab::web
+}  // namespace plab::link

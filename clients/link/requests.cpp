@@ -1,10 +1,10 @@
-#include "web/requests.h"
+#include "link/requests.h"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-namespace plab::web
+namespace plab::link
 {
 namespace
 {
@@ -14,7 +14,7 @@ constexpr std::chrono::seconds kPatience(30);
 
 }  // namespace
 
-void Requests::send(link::Request request, Then then)
+void Requests::send(Request request, Then then)
 {
     if (waiting_.size() >= kMost) return then(reason("too many requests wait for their replies; try again"));
     const auto number = caller_.send(request);
@@ -27,9 +27,9 @@ void Requests::send(link::Request request, Then then)
 
 void Requests::update()
 {
-    std::vector<std::pair<Then, Result<link::Reply>>> done;
+    std::vector<std::pair<Then, Result<Reply>>> done;
     caller_.take(
-        [&](std::uint64_t number, link::Reply reply)
+        [&](std::uint64_t number, Reply reply)
         {
             const auto at = waiting_.find(number);
             if (at == waiting_.end()) return;
@@ -63,4 +63,4 @@ void Requests::give_up(const std::string& why)
     for (auto& [number, waiting] : std::exchange(waiting_, {})) waiting.then(reason(why));
 }
 
-}  // namespace plab::web
+}  // namespace plab::link
