@@ -62,8 +62,9 @@ Result<std::unique_ptr<Connection>> Connection::open(const link::Session& sessio
     out->follow_catalogue();
     desk.attach_to(out->requests_set_), desk.attach_to(out->everything_set_);
     Connection* const self = out.get();
-    desk.begin({&*out->catalogue_, &out->scene_, &out->names_, [self] { return self->newest_frame(); }, [self] { self->follow_catalogue(); }},
-               out->requests_);
+    desk.begin(
+        {&*out->catalogue_, &out->scene_, &out->names_, [self] { return self->newest_frame(); }, [self] { self->follow_catalogue(); }},
+        out->requests_);
     return out;
 }
 

@@ -84,9 +84,9 @@ private:
     MarkerMessage markers_;
     ContactMessage contacts_;
     Paced clock_, transforms_, joint_states_;
-    Budget scene_budget_{1};             ///< markers and static transforms change once a second at most
-    std::uint64_t marker_print_ = 0;     ///< of the markers that were sent
-    Clock::time_point scene_again_{};    ///< when newcomers get them once more
+    Budget scene_budget_{1};           ///< markers and static transforms change once a second at most
+    std::uint64_t marker_print_ = 0;   ///< of the markers that were sent
+    Clock::time_point scene_again_{};  ///< when newcomers get them once more
     bool is_scene_new_ = true;
 };
 

@@ -29,7 +29,8 @@ void ContactMessage::fill(const plab_v2_CollisionInfo& from, double dt, const Sc
     auto& wrench = make_sequence(to.wrenches, 1, memory_)[0];
     wrench.header = {time_of(from.time), wire::text(kWorldFrame)};
     wrench.body_1_name.data = to.collision1.name, wrench.body_2_name.data = to.collision2.name;
-    wrench.body_1_id.data = static_cast<std::uint32_t>(to.collision1.id), wrench.body_2_id.data = static_cast<std::uint32_t>(to.collision2.id);
+    wrench.body_1_id.data = static_cast<std::uint32_t>(to.collision1.id),
+    wrench.body_2_id.data = static_cast<std::uint32_t>(to.collision2.id);
     // The mean force over the step that has the same effect as the impulse.
     const Vec3 force = dt > 0 ? impulse / dt : Vec3{};
     wrench.body_1_wrench.force = vector_of(-force), wrench.body_2_wrench.force = vector_of(force);

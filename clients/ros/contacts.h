@@ -10,8 +10,8 @@ namespace plab::ros
 class ContactMessage
 {
 public:
-    /// Contacts that began, bounced, came to rest or ended in one step of `dt` seconds. A contact that ended has no positions. Valid until the
-    /// next one.
+    /// Contacts that began, bounced, came to rest or ended in one step of `dt` seconds. A contact that ended has no positions. Valid until
+    /// the next one.
     const msg::Contacts& of(const plab_v2_Collisions& collisions, double dt, const SceneFrames& frames);
 
 private:

@@ -156,7 +156,8 @@ bool EntityFilter::fits_bounds(const link::Object& object, const link::Catalogue
 {
     if (!box_ && !ball_) return true;
     for (const std::string& id : object.shapes)
-        if (const auto shape = scene.shapes.find(id); shape != scene.shapes.end() && shape->second.form == "plane") return true;  // without end
+        if (const auto shape = scene.shapes.find(id); shape != scene.shapes.end() && shape->second.form == "plane")
+            return true;  // without end
     // Without a shape of its own size, it is where its origin is.
     const Box box = moved(box_of(object, scene).value_or(Box{}), pose);
     return box_ ? overlap(box, *box_) : overlap(box, ball_->first, ball_->second);

@@ -149,8 +149,7 @@ std::optional<JointMessage::Coordinate> JointMessage::between(Joint& joint, doub
 {
     Pose X_a = joint.a.pose, X_b = joint.b.pose;
     Vec3 v_a, w_a, v_b, w_b;
-    for (const auto& [side, X, v, w] :
-         {std::tuple(&joint.a, &X_a, &v_a, &w_a), std::tuple(&joint.b, &X_b, &v_b, &w_b)})
+    for (const auto& [side, X, v, w] : {std::tuple(&joint.a, &X_a, &v_a, &w_a), std::tuple(&joint.b, &X_b, &v_b, &w_b)})
     {
         if (!side->handle) continue;
         const auto at = bodies_.find(*side->handle);

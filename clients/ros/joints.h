@@ -51,7 +51,7 @@ private:
         std::string name;
         Kind kind = Kind::Hinge;
         Side a, b;
-        double travelled = 0;       ///< m, of a slider when its points were read
+        double travelled = 0;                   ///< m, of a slider when its points were read
         double angle = 0, time = 0, speed = 0;  ///< of a hinge in the last frame
         std::vector<Drive> drives;
     };

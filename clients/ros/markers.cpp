@@ -65,8 +65,7 @@ void MarkerMessage::add_shape(const SceneFrame& frame, const link::Shape& shape,
     else if (shape.form == "capsule")
     {
         add(frame, kCylinder, X_BS, {2 * size.x, 2 * size.x, 2 * size.z}, color);
-        for (const double end : {-size.z, size.z})
-            add(frame, kSphere, X_BS * Pose{{0, 0, end}, {}}, Vec3{1, 1, 1} * (2 * size.x), color);
+        for (const double end : {-size.z, size.z}) add(frame, kSphere, X_BS * Pose{{0, 0, end}, {}}, Vec3{1, 1, 1} * (2 * size.x), color);
     }
     else if (shape.form == "plane")
         add(frame, kCube, X_BS * Pose{{0, 0, -0.5 * kPlaneThickness}, {}}, {kPlaneLength, kPlaneLength, kPlaneThickness}, color);

@@ -84,14 +84,14 @@ private:
 /// Who asked for a service.
 struct ServiceCaller
 {
-    std::uint64_t client = 0;         ///< as it named itself; sent back
+    std::uint64_t client = 0;  ///< as it named itself; sent back
     std::int64_t sequence_number = 0;
-    dds_instance_handle_t writer = 0; ///< of the request
+    dds_instance_handle_t writer = 0;  ///< of the request
 };
 
-/// Finds out whether the client that wrote a request can already receive the response, as rmw_cyclonedds_cpp does: its reader and its writer
-/// have the same `clientid` in their USER_DATA. Waits for its reader, 0.1 s at most; a client that let it wait in vain is not waited for
-/// again.
+/// Finds out whether the client that wrote a request can already receive the response, as rmw_cyclonedds_cpp does: its reader and its
+/// writer have the same `clientid` in their USER_DATA. Waits for its reader, 0.1 s at most; a client that let it wait in vain is not waited
+/// for again.
 class ClientCheck
 {
 public:
@@ -116,11 +116,11 @@ public:
         const std::string extra = "serviceid=" + id + ";";
         auto out = std::make_unique<ServiceServer>();
         // The writer comes first: a client that has found the reader, and asks at once, then has a writer to get its response from.
-        auto responses = node.make_writer(msg::reply_name(o.space, o.name, info.name), info.response, msg::kServiceProfile,
-                                          info.response_hash, extra);
+        auto responses =
+            node.make_writer(msg::reply_name(o.space, o.name, info.name), info.response, msg::kServiceProfile, info.response_hash, extra);
         if (!responses) return responses.errors();
-        auto requests = node.make_reader(msg::request_name(o.space, o.name, info.name), info.request, msg::kServiceProfile,
-                                         info.request_hash, extra);
+        auto requests =
+            node.make_reader(msg::request_name(o.space, o.name, info.name), info.request, msg::kServiceProfile, info.request_hash, extra);
         if (!requests) return requests.errors();
         out->responses_ = responses.take(), out->requests_ = requests.take();
         return out;

@@ -29,13 +29,11 @@ const SceneFrame* SceneFrames::find(std::uint32_t handle) const
 
 const SceneFrame* SceneFrames::find_id(const std::string& id) const
 {
-    const auto at = std::lower_bound(frames_.begin(), frames_.end(), id, [](const SceneFrame& f, const std::string& of) { return f.id < of; });
+    const auto at =
+        std::lower_bound(frames_.begin(), frames_.end(), id, [](const SceneFrame& f, const std::string& of) { return f.id < of; });
     return at == frames_.end() || at->id != id ? nullptr : &*at;
 }
 
-Pose turned(const Pose& axle, double angle)
-{
-    return {axle.p, axle.q * Quat{std::cos(0.5 * angle), 0, 0, std::sin(0.5 * angle)}};
-}
+Pose turned(const Pose& axle, double angle) { return {axle.p, axle.q * Quat{std::cos(0.5 * angle), 0, 0, std::sin(0.5 * angle)}}; }
 
 }  // namespace plab::ros

@@ -24,10 +24,7 @@ std::string joined(const std::vector<std::string>& reasons)
 }
 
 std::string text_of(const Vec3& v) { return number_text(v.x) + " " + number_text(v.y) + " " + number_text(v.z); }
-std::string text_of(const Quat& q)
-{
-    return number_text(q.w) + " " + number_text(q.x) + " " + number_text(q.y) + " " + number_text(q.z);
-}
+std::string text_of(const Quat& q) { return number_text(q.w) + " " + number_text(q.x) + " " + number_text(q.y) + " " + number_text(q.z); }
 
 }  // namespace
 
@@ -92,7 +89,8 @@ void ServiceDesk::handle(const msg::SetSimulationState::Request& request, Answer
         case kQuitting:
             return ask({verb("shutdown")}, reply);
         default:
-            return answer(Outcome{Code::IncorrectTransition, "a server always has a world; states are stopped, playing, paused and quitting"});
+            return answer(
+                Outcome{Code::IncorrectTransition, "a server always has a world; states are stopped, playing, paused and quitting"});
     }
 }
 
@@ -107,7 +105,8 @@ void ServiceDesk::handle(const msg::StepSimulation::Request& request, Answer<msg
         {
             if (!begun.ok() || reply == nullptr) return answer(begun);
             // Pausing changes nothing there, but it is answered when that step is reached.
-            ask({verb("pause")}, [answer](const Outcome& done, const link::Reply*) { answer(done); }, reply->step + steps);
+            ask(
+                {verb("pause")}, [answer](const Outcome& done, const link::Reply*) { answer(done); }, reply->step + steps);
         });
 }
 
@@ -172,8 +171,7 @@ Outcome ServiceDesk::prepare_state(const msg::SetEntityState::Request& request, 
     if (!is_finite(v) || !is_finite(w)) return {Code::Failed, "the twist must be finite"};
     const bool moves = !(v == Vec3{}) || !(w == Vec3{});
     if (frame->is_static && moves) return {Code::Failed, "'" + name + "' is static: it has no velocity"};
-    if (!frame->is_static)
-        out.values.push_back({"linear_velocity", text_of(v)}), out.values.push_back({"angular_velocity", text_of(w)});
+    if (!frame->is_static) out.values.push_back({"linear_velocity", text_of(v)}), out.values.push_back({"angular_velocity", text_of(w)});
     return {};
 }
 

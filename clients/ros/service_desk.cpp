@@ -92,8 +92,10 @@ void ServiceDesk::pass(Clock::time_point now)
     {
         bool more = true;
         for (int i = 0; more && i < kMost && replies_.is_due(now); ++i)
-            more = server.take([&](const typename S::Request& request, const ServiceCaller& caller)
-                               { handle(request, Answer<S>{&server, caller}); });
+            more = server.take(
+                [&](const typename S::Request& request, const ServiceCaller& caller) {
+                    handle(request, Answer<S>{&server, caller});
+                });
     };
     std::apply([&](auto&... end) { (serve(*end), ...); }, ends_);
     const bool has_frame = view_.newest_frame() != nullptr;

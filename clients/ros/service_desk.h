@@ -67,10 +67,11 @@ public:
 private:
     template <class S>
     using End = std::unique_ptr<ServiceServer<S>>;
-    using Ends = std::tuple<End<msg::GetSimulatorFeatures>, End<msg::GetSimulationState>, End<msg::SetSimulationState>, End<msg::StepSimulation>,
-                            End<msg::ResetSimulation>, End<msg::GetEntities>, End<msg::GetEntitiesStates>, End<msg::GetEntityState>,
-                            End<msg::SetEntityState>, End<msg::GetEntityInfo>, End<msg::GetEntityBounds>, End<msg::SpawnEntity>,
-                            End<msg::SpawnEntities>, End<msg::DeleteEntity>, End<msg::LoadWorld>, End<msg::GetCurrentWorld>>;
+    using Ends =
+        std::tuple<End<msg::GetSimulatorFeatures>, End<msg::GetSimulationState>, End<msg::SetSimulationState>, End<msg::StepSimulation>,
+                   End<msg::ResetSimulation>, End<msg::GetEntities>, End<msg::GetEntitiesStates>, End<msg::GetEntityState>,
+                   End<msg::SetEntityState>, End<msg::GetEntityInfo>, End<msg::GetEntityBounds>, End<msg::SpawnEntity>,
+                   End<msg::SpawnEntities>, End<msg::DeleteEntity>, End<msg::LoadWorld>, End<msg::GetCurrentWorld>>;
     using Then = std::function<void(const Outcome&, const link::Reply*)>;
     /// A request that needs a frame.
     struct Waiting
@@ -125,7 +126,7 @@ private:
     link::Requests* requests_ = nullptr;
     Budget replies_{1e6};
     std::deque<Waiting> waiting_;
-    bool is_paused_at_start_ = false;  ///< paused at step 0, and not stopped
+    bool is_paused_at_start_ = false;             ///< paused at step 0, and not stopped
     std::map<std::string, std::string> spawned_;  ///< what was added here: id of the component or group, and of its first body
 };
 

@@ -29,8 +29,7 @@ Outcome ServiceDesk::place_of(const msg::Spawn& spawn, Pose& out) const
     if (in.empty() || in == kWorldFrame) return {};
     const SceneFrame* const frame = find_entity(in);
     if (frame == nullptr) return {Code::SpawnInvalidPose, "there is no frame '" + in + "'"};
-    if (view_.newest_frame() == nullptr && !frame->is_static)
-        return {Code::SpawnInvalidPose, "where '" + in + "' is now is not known"};
+    if (view_.newest_frame() == nullptr && !frame->is_static) return {Code::SpawnInvalidPose, "where '" + in + "' is now is not known"};
     out = Motions(view_.newest_frame()).of(*frame).pose * out;
     return {};
 }
@@ -41,7 +40,8 @@ Outcome ServiceDesk::name_of(const msg::Spawn& spawn, const ReadResource& resour
     const std::string space = text_of(spawn.entity_namespace);
     if (!wire::ros::is_namespace(space)) return {Code::NamespaceInvalid, "'" + space + "' is no namespace of ROS"};
     std::string name = text_of(spawn.name);
-    if (name.empty()) name = first_attribute(resource.text, resource.format == "plab" ? "id" : resource.format == "urdf" ? "name" : "model");
+    if (name.empty())
+        name = first_attribute(resource.text, resource.format == "plab" ? "id" : resource.format == "urdf" ? "name" : "model");
     if (name.empty() && spawn.allow_renaming) name = "entity";
     if (!space.empty()) name = wire::ros::normal_namespace(space).substr(1) + "/" + name;
     if (text_of(spawn.name).empty() && name.empty()) return {Code::NameInvalid, "the entity needs a name"};
@@ -198,7 +198,8 @@ void ServiceDesk::handle(const msg::LoadWorld::Request& request, Answer<msg::Loa
     link::Operation load;
     load.verb = "load", load.argument = resource->file, load.blueprint = resource->text;
     if (resource->format.empty() || (resource->format != "plab" && !converter_))
-        return answer(Outcome{Code::WorldFormat, "begins with <" + first_element(resource->text) + ">, not with <plab>, <robot> or <mujoco>"});
+        return answer(
+            Outcome{Code::WorldFormat, "begins with <" + first_element(resource->text) + ">, not with <plab>, <robot> or <mujoco>"});
     if (resource->format != "plab")
     {
         auto converted = converter_({resource->text, resource->format, resource->file, {}, {}});

@@ -19,7 +19,8 @@ const msg::Transforms& TransformMessage::moving(const SceneFrames& frames, const
     for (const plab_v2_BodyState& body : wire::items(frame.bodies))
         if (const SceneFrame* known = frames.find(body.handle); known != nullptr && !known->is_static) add(*known, pose_of(body), stamp);
     for (const plab_v2_ShaftState& shaft : wire::items(frame.shafts))
-        if (const SceneFrame* known = frames.find(shaft.handle); known != nullptr && !known->is_static) add(*known, turned(known->pose, shaft.angle), stamp);
+        if (const SceneFrame* known = frames.find(shaft.handle); known != nullptr && !known->is_static)
+            add(*known, turned(known->pose, shaft.angle), stamp);
     show(message_.transforms, transforms_);
     return message_;
 }

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "link/person.h"
-#include "web/pages.h"
 #include "link/requests.h"
+#include "web/pages.h"
 #include "web/translate.h"
 
 namespace plab::web

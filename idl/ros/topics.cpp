@@ -47,8 +47,7 @@ const std::array<ServiceInfo, 16> kServices{{
      &simulation_interfaces_srv_dds__ResetSimulation_Response__desc,
      "RIHS01_2c766d09c3aa30f01fadc55a42fd760b63db358c7d1d3b6a64ea9978225ffbc7",
      "RIHS01_718428121e0f1755720878d3c28f1688da7581ee5a5d56d26d10d941a28a50a0"},
-    {"get_entities", &simulation_interfaces_srv_dds__GetEntities_Request__desc,
-     &simulation_interfaces_srv_dds__GetEntities_Response__desc,
+    {"get_entities", &simulation_interfaces_srv_dds__GetEntities_Request__desc, &simulation_interfaces_srv_dds__GetEntities_Response__desc,
      "RIHS01_f0a4c6c0c39c87f84cbd1ea31956b9f39b3fa538ae9c4aa7fc243a32360e8c70",
      "RIHS01_dd1916edbdc659d355e77980b16ed6eb4d41d5ff445557931ed65c58b00f7b2c"},
     {"get_entities_states", &simulation_interfaces_srv_dds__GetEntitiesStates_Request__desc,
@@ -71,8 +70,7 @@ const std::array<ServiceInfo, 16> kServices{{
      &simulation_interfaces_srv_dds__GetEntityBounds_Response__desc,
      "RIHS01_41766afd481abfa03a9dface86a487e317da516333af3f5b017df248dd5d7fee",
      "RIHS01_728d414a3be6d7689fad9d3218c8378c68fbe08c2cfbf9878ac14de713fcf4c1"},
-    {"spawn_entity", &simulation_interfaces_srv_dds__SpawnEntity_Request__desc,
-     &simulation_interfaces_srv_dds__SpawnEntity_Response__desc,
+    {"spawn_entity", &simulation_interfaces_srv_dds__SpawnEntity_Request__desc, &simulation_interfaces_srv_dds__SpawnEntity_Response__desc,
      "RIHS01_9bc04fe30d4844466c57b7b090fd7e9aa426995f3eb6ff9a726826ab7223e1fd",
      "RIHS01_be8c9fc03b6faaf95570949c80195c8ca75dd99f7efc23262309d497b2923982"},
     {"spawn_entities", &simulation_interfaces_srv_dds__SpawnEntities_Request__desc,
@@ -80,11 +78,9 @@ const std::array<ServiceInfo, 16> kServices{{
      "RIHS01_03f070057ac2ab26d723fe9f07c7d57bd39ace34ad34bb043cdbca36825c98d9",
      "RIHS01_85df56d44250220df64762bf3e769cce45f84730eff8b9823093ca3041ecbbf5"},
     {"delete_entity", &simulation_interfaces_srv_dds__DeleteEntity_Request__desc,
-     &simulation_interfaces_srv_dds__DeleteEntity_Response__desc,
-     "RIHS01_4b41b2ebdc313a0c98c7c2218849edc8b7b905fd759a23b68c576496a47dc792",
+     &simulation_interfaces_srv_dds__DeleteEntity_Response__desc, "RIHS01_4b41b2ebdc313a0c98c7c2218849edc8b7b905fd759a23b68c576496a47dc792",
      "RIHS01_2f68929b527a3bbee03637a1c8192f2aa2982807738389aa0781f8e785673ca7"},
-    {"load_world", &simulation_interfaces_srv_dds__LoadWorld_Request__desc,
-     &simulation_interfaces_srv_dds__LoadWorld_Response__desc,
+    {"load_world", &simulation_interfaces_srv_dds__LoadWorld_Request__desc, &simulation_interfaces_srv_dds__LoadWorld_Response__desc,
      "RIHS01_cd389402a680703d3f9b45b1c3d6bb09c0578b4644654227f0b2e98a2f059f48",
      "RIHS01_7bab3265c2461d98a44dd04830c5dc997b3d8605c50861824066246c96a7716e"},
     {"get_current_world", &simulation_interfaces_srv_dds__GetCurrentWorld_Request__desc,
@@ -98,11 +94,11 @@ const std::array<ServiceInfo, 16> kServices{{
 std::span<const MessageTopic> topics() { return kTopics; }
 std::span<const ServiceInfo> services() { return kServices; }
 
-#define PLAB_ROS_SERVICE(Name, index)        \
-    template <>                              \
-    const ServiceInfo& service_of<Name>()    \
-    {                                        \
-        return kServices[index];             \
+#define PLAB_ROS_SERVICE(Name, index)     \
+    template <>                           \
+    const ServiceInfo& service_of<Name>() \
+    {                                     \
+        return kServices[index];          \
     }
 PLAB_ROS_SERVICE(GetSimulatorFeatures, 0)
 PLAB_ROS_SERVICE(GetSimulationState, 1)

@@ -66,38 +66,34 @@ struct Service
     using Request = RequestType;
     using Response = ResponseType;
 };
-using GetSimulatorFeatures = Service<simulation_interfaces_srv_dds__GetSimulatorFeatures_Request_,
-                                     simulation_interfaces_srv_dds__GetSimulatorFeatures_Response_>;
-using GetSimulationState = Service<simulation_interfaces_srv_dds__GetSimulationState_Request_,
-                                   simulation_interfaces_srv_dds__GetSimulationState_Response_>;
-using SetSimulationState = Service<simulation_interfaces_srv_dds__SetSimulationState_Request_,
-                                   simulation_interfaces_srv_dds__SetSimulationState_Response_>;
-using StepSimulation = Service<simulation_interfaces_srv_dds__StepSimulation_Request_,
-                               simulation_interfaces_srv_dds__StepSimulation_Response_>;
-using ResetSimulation = Service<simulation_interfaces_srv_dds__ResetSimulation_Request_,
-                                simulation_interfaces_srv_dds__ResetSimulation_Response_>;
-using GetEntities = Service<simulation_interfaces_srv_dds__GetEntities_Request_,
-                            simulation_interfaces_srv_dds__GetEntities_Response_>;
-using GetEntitiesStates = Service<simulation_interfaces_srv_dds__GetEntitiesStates_Request_,
-                                  simulation_interfaces_srv_dds__GetEntitiesStates_Response_>;
-using GetEntityState = Service<simulation_interfaces_srv_dds__GetEntityState_Request_,
-                               simulation_interfaces_srv_dds__GetEntityState_Response_>;
-using SetEntityState = Service<simulation_interfaces_srv_dds__SetEntityState_Request_,
-                               simulation_interfaces_srv_dds__SetEntityState_Response_>;
-using GetEntityInfo = Service<simulation_interfaces_srv_dds__GetEntityInfo_Request_,
-                              simulation_interfaces_srv_dds__GetEntityInfo_Response_>;
-using GetEntityBounds = Service<simulation_interfaces_srv_dds__GetEntityBounds_Request_,
-                                simulation_interfaces_srv_dds__GetEntityBounds_Response_>;
-using SpawnEntity = Service<simulation_interfaces_srv_dds__SpawnEntity_Request_,
-                            simulation_interfaces_srv_dds__SpawnEntity_Response_>;
-using SpawnEntities = Service<simulation_interfaces_srv_dds__SpawnEntities_Request_,
-                              simulation_interfaces_srv_dds__SpawnEntities_Response_>;
-using DeleteEntity = Service<simulation_interfaces_srv_dds__DeleteEntity_Request_,
-                             simulation_interfaces_srv_dds__DeleteEntity_Response_>;
-using LoadWorld = Service<simulation_interfaces_srv_dds__LoadWorld_Request_,
-                          simulation_interfaces_srv_dds__LoadWorld_Response_>;
-using GetCurrentWorld = Service<simulation_interfaces_srv_dds__GetCurrentWorld_Request_,
-                                simulation_interfaces_srv_dds__GetCurrentWorld_Response_>;
+using GetSimulatorFeatures =
+    Service<simulation_interfaces_srv_dds__GetSimulatorFeatures_Request_, simulation_interfaces_srv_dds__GetSimulatorFeatures_Response_>;
+using GetSimulationState =
+    Service<simulation_interfaces_srv_dds__GetSimulationState_Request_, simulation_interfaces_srv_dds__GetSimulationState_Response_>;
+using SetSimulationState =
+    Service<simulation_interfaces_srv_dds__SetSimulationState_Request_, simulation_interfaces_srv_dds__SetSimulationState_Response_>;
+using StepSimulation =
+    Service<simulation_interfaces_srv_dds__StepSimulation_Request_, simulation_interfaces_srv_dds__StepSimulation_Response_>;
+using ResetSimulation =
+    Service<simulation_interfaces_srv_dds__ResetSimulation_Request_, simulation_interfaces_srv_dds__ResetSimulation_Response_>;
+using GetEntities = Service<simulation_interfaces_srv_dds__GetEntities_Request_, simulation_interfaces_srv_dds__GetEntities_Response_>;
+using GetEntitiesStates =
+    Service<simulation_interfaces_srv_dds__GetEntitiesStates_Request_, simulation_interfaces_srv_dds__GetEntitiesStates_Response_>;
+using GetEntityState =
+    Service<simulation_interfaces_srv_dds__GetEntityState_Request_, simulation_interfaces_srv_dds__GetEntityState_Response_>;
+using SetEntityState =
+    Service<simulation_interfaces_srv_dds__SetEntityState_Request_, simulation_interfaces_srv_dds__SetEntityState_Response_>;
+using GetEntityInfo =
+    Service<simulation_interfaces_srv_dds__GetEntityInfo_Request_, simulation_interfaces_srv_dds__GetEntityInfo_Response_>;
+using GetEntityBounds =
+    Service<simulation_interfaces_srv_dds__GetEntityBounds_Request_, simulation_interfaces_srv_dds__GetEntityBounds_Response_>;
+using SpawnEntity = Service<simulation_interfaces_srv_dds__SpawnEntity_Request_, simulation_interfaces_srv_dds__SpawnEntity_Response_>;
+using SpawnEntities =
+    Service<simulation_interfaces_srv_dds__SpawnEntities_Request_, simulation_interfaces_srv_dds__SpawnEntities_Response_>;
+using DeleteEntity = Service<simulation_interfaces_srv_dds__DeleteEntity_Request_, simulation_interfaces_srv_dds__DeleteEntity_Response_>;
+using LoadWorld = Service<simulation_interfaces_srv_dds__LoadWorld_Request_, simulation_interfaces_srv_dds__LoadWorld_Response_>;
+using GetCurrentWorld =
+    Service<simulation_interfaces_srv_dds__GetCurrentWorld_Request_, simulation_interfaces_srv_dds__GetCurrentWorld_Response_>;
 
 struct ServiceInfo
 {

@@ -62,12 +62,14 @@ std::string not_a_rate(const std::string& text)
 void add_ros_options(CLI::App& app, DaemonOptions& options)
 {
     const std::string group = "ROS 2";
-    app.add_flag("--ros", options.ros, "be a node of ROS 2 as well, in the same DDS domain: clock, tf, joint_states, markers, contacts, services")
+    app.add_flag("--ros", options.ros,
+                 "be a node of ROS 2 as well, in the same DDS domain: clock, tf, joint_states, markers, contacts, services")
         ->group(group);
     app.add_option("--ros-namespace", options.ros_namespace, "namespace of all its topics and services, e.g. /sim (default: none)")
         ->type_name("NAME")
         ->group(group);
-    app.add_option("--ros-rate", options.ros_rate, "maximum number of messages of a topic per second of real time, up to --states (default: 60)")
+    app.add_option("--ros-rate", options.ros_rate,
+                   "maximum number of messages of a topic per second of real time, up to --states (default: 60)")
         ->check(&not_a_rate, "")
         ->group(group);
 }
@@ -79,7 +81,8 @@ std::string take_ros_options(const CLI::App& app, DaemonOptions& options)
         if (app.count(name) > 0 && !options.ros) return std::string(name) + " requires --ros";
     if (options.ros && !options.bus) return "--ros needs the bus";
     if (!wire::ros::is_namespace(options.ros_namespace))
-        return "--ros-namespace: '" + options.ros_namespace + "' is not a namespace: letters, digits and '_', with '/' between names, e.g. /lab/sim";
+        return "--ros-namespace: '" + options.ros_namespace +
+               "' is not a namespace: letters, digits and '_', with '/' between names, e.g. /lab/sim";
     options.ros_namespace = wire::ros::normal_namespace(options.ros_namespace);
     return {};
 }

@@ -93,7 +93,7 @@ Result<ImportedScene> import_text(std::string_view text, const std::string& file
                      "is not the root of " + std::string(format == SceneFormat::Urdf ? "URDF" : "MJCF") + ", which is " +
                          blueprint::in_tags(wanted)};
     Robot robot = format == SceneFormat::Urdf ? read_urdf(tree.root(), options.fixed_base, document)
-                                                    : read_mjcf(tree.root(), options.fixed_base, document);
+                                              : read_mjcf(tree.root(), options.fixed_base, document);
     if (document.failed()) return document.errors();
     if (options.part)
         for (RobotBody& body : robot.bodies)

@@ -22,8 +22,8 @@ std::string scene_of(int bodies)
 {
     const std::string path = std::filesystem::temp_directory_path() / ("bench_ros_" + std::to_string(bodies) + ".xml");
     std::ofstream(path) << "<plab version=\"1\"><component id=\"ball\" type=\"Shape/Sphere\" radius=\"0.1\"/>"
-                        << "<component id=\"gravity\" type=\"Field/Gravity\" between=\"*\" acceleration=\"0 0 -0.001\"/><repeat count=\"" << bodies
-                        << "\" step=\"1 0 0\"><component id=\"b\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" "
+                        << "<component id=\"gravity\" type=\"Field/Gravity\" between=\"*\" acceleration=\"0 0 -0.001\"/><repeat count=\""
+                        << bodies << "\" step=\"1 0 0\"><component id=\"b\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" "
                         << "angular_velocity=\"0 0 1\"/></repeat></plab>\n";
     return path;
 }
@@ -64,8 +64,8 @@ void take(Reader& reader, recording::Encoder& encoder)
 
 void measure(int bodies, double seconds, bool reads)
 {
-    test::Process server({test::program("plabd"), scene_of(bodies), "--ros", "--name", "bench_ros", "--domain", std::to_string(kDomain), "--until",
-                          std::to_string(seconds + 8), "--rate", "real"});
+    test::Process server({test::program("plabd"), scene_of(bodies), "--ros", "--name", "bench_ros", "--domain", std::to_string(kDomain),
+                          "--until", std::to_string(seconds + 8), "--rate", "real"});
     if (!server.wait_for("ready after", test::Milliseconds(20000))) return (void)std::printf("%s\n", server.errors().c_str());
     auto participant = wire::join({kDomain, ""});
     if (!participant) return;
@@ -73,8 +73,12 @@ void measure(int bodies, double seconds, bool reads)
     for (const msg::MessageTopic& topic : msg::topics())
     {
         if (!reads) break;
-        const wire::Entity made(dds_create_topic(participant->get(), topic.type, msg::topic_name("", topic.name).c_str(), nullptr, nullptr));
-        readers.push_back({&topic, wire::Entity(dds_create_reader(participant->get(), made.get(), msg::qos_of(topic.profile, topic.type_hash).get(), nullptr)), 0, 0});
+        const wire::Entity made(
+            dds_create_topic(participant->get(), topic.type, msg::topic_name("", topic.name).c_str(), nullptr, nullptr));
+        readers.push_back(
+            {&topic,
+             wire::Entity(dds_create_reader(participant->get(), made.get(), msg::qos_of(topic.profile, topic.type_hash).get(), nullptr)), 0,
+             0});
     }
     recording::Encoder encoder;
     const auto run_for = [&](double time)

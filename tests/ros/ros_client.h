@@ -101,8 +101,8 @@ public:
         return RosReader<Message>(endpoint(&dds_create_reader, is_graph ? topic.name : wire::ros::topic_name(space, topic.name), topic.type,
                                            wire::ros::qos_of(profile.value_or(topic.profile), topic.type_hash)));
     }
-    wire::Entity endpoint(dds_entity_t (*create)(dds_entity_t, dds_entity_t, const dds_qos_t*, const dds_listener_t*), const std::string& name,
-                          const dds_topic_descriptor_t* type, const wire::Qos& qos)
+    wire::Entity endpoint(dds_entity_t (*create)(dds_entity_t, dds_entity_t, const dds_qos_t*, const dds_listener_t*),
+                          const std::string& name, const dds_topic_descriptor_t* type, const wire::Qos& qos)
     {
         const wire::Entity topic(dds_create_topic(participant_.get(), type, name.c_str(), nullptr, nullptr));
         wire::Entity out(create(participant_.get(), topic.get(), qos.get(), nullptr));
@@ -160,7 +160,12 @@ public:
     std::pair<int, std::string> result(const typename S::Request& request, double seconds = 10)
     {
         std::pair<int, std::string> out;
-        call(request, [&](const auto& response) { out = {response.result.result, ros::text_of(response.result.error_message)}; }, seconds);
+        call(
+            request,
+            [&](const auto& response) {
+                out = {response.result.result, ros::text_of(response.result.error_message)};
+            },
+            seconds);
         return out;
     }
 

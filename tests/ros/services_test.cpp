@@ -70,8 +70,8 @@ struct Simulation
                  });
         return out;
     }
-    std::pair<int, std::string> spawn(const std::string& name, const std::string& text, const msg::RosPose& pose, std::string* given = nullptr,
-                                      bool rename = false, const std::string& uri = "")
+    std::pair<int, std::string> spawn(const std::string& name, const std::string& text, const msg::RosPose& pose,
+                                      std::string* given = nullptr, bool rename = false, const std::string& uri = "")
     {
         auto call = caller<msg::SpawnEntity>();
         msg::SpawnEntity::Request request{};
@@ -185,12 +185,13 @@ TEST_CASE("entities are selected by name, tags and place, and have a category an
 
     msg::GetEntityInfo::Request of_ground{};
     of_ground.entity = wire::text("ground");
-    simulation.caller<msg::GetEntityInfo>().call(of_ground,
-                                                 [&](const auto& response)
-                                                 {
-                                                     CHECK(response.info.category.category == 5);
-                                                     CHECK(texts_of(response.info.tags) == std::set<std::string>{"body", "static", "State/Static"});
-                                                 });
+    simulation.caller<msg::GetEntityInfo>().call(
+        of_ground,
+        [&](const auto& response)
+        {
+            CHECK(response.info.category.category == 5);
+            CHECK(texts_of(response.info.tags) == std::set<std::string>{"body", "static", "State/Static"});
+        });
     msg::GetEntityBounds::Request of_block{};
     of_block.entity = wire::text("block");
     simulation.caller<msg::GetEntityBounds>().call(of_block,
@@ -247,7 +248,8 @@ TEST_CASE("the state of an entity is set at once, or refused with a reason")
     CHECK(simulation.state_of("ball").pose.position.x == 9);
 }
 
-const char* const kBall = R"(<component type="State/RigidBody" mass="1"><component type="Shape/Sphere" id="${id}" radius="0.1"/></component>)";
+const char* const kBall =
+    R"(<component type="State/RigidBody" mass="1"><component type="Shape/Sphere" id="${id}" radius="0.1"/></component>)";
 
 std::string ball_text(const std::string& shape)
 {
@@ -345,7 +347,8 @@ TEST_CASE("another world is loaded whole or not at all, and is stopped then")
     request.world_resource.resource_string = wire::text("<plab version='1'><component id='x' type='State/Nonsense'/></plab>");
     CHECK(load.result(request).first == 103);
     CHECK(simulation.entities().contains("ball"));
-    request.world_resource.resource_string = wire::text("<plab version='1'><scene title='other'/><component id='only' type='State/RigidBody' mass='1' inertia='1 1 1'/></plab>");
+    request.world_resource.resource_string =
+        wire::text("<plab version='1'><scene title='other'/><component id='only' type='State/RigidBody' mass='1' inertia='1 1 1'/></plab>");
     load.call(request,
               [](const auto& response)
               {

@@ -141,7 +141,8 @@ std::string bus_of(int server)
         std::ifstream status(entry.path() / "stat");
         std::string pid, name, state;
         int parent = 0;
-        if (status >> pid >> name >> state >> parent && parent == server && name.starts_with("(plab-bus")) return name.substr(1, name.size() - 2);
+        if (status >> pid >> name >> state >> parent && parent == server && name.starts_with("(plab-bus"))
+            return name.substr(1, name.size() - 2);
     }
     return {};
 }

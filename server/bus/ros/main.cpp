@@ -44,5 +44,6 @@ Result<std::unique_ptr<bus::Companion>> make_node(const bus::StartMessage& start
 
 int main(int argc, char** argv)
 {
-    return bus::run_program(argc, argv, "plab-bus-ros", "carries the topics of one server between it and DDS, and is a node of ROS 2", &make_node);
+    return bus::run_program(argc, argv, "plab-bus-ros", "carries the topics of one server between it and DDS, and is a node of ROS 2",
+                            &make_node);
 }

@@ -80,12 +80,14 @@ TEST_CASE("a robot as a part of a scene is a group with ids of its own, stands w
     REQUIRE_MESSAGE(part.ok(), reasons(part));
     CHECK(part->root == "left/base");
     CHECK(part->blueprint.starts_with("<component id=\"left\">"));
-    for (const char* of_scene : {"<scene", "Field/Gravity", "CDetection"}) CHECK_MESSAGE(part->blueprint.find(of_scene) == std::string::npos, of_scene);
+    for (const char* of_scene : {"<scene", "Field/Gravity", "CDetection"})
+        CHECK_MESSAGE(part->blueprint.find(of_scene) == std::string::npos, of_scene);
     // Twice in one scene: no id is taken.
     options.part->name = "right";
     const auto other = import::import_file(path, options);
     REQUIRE(other.ok());
-    Scene both(part->blueprint + other->blueprint + R"(<component id="gravity" type="Field/Gravity" between="*" acceleration="0 0 -9.81"/>)");
+    Scene both(part->blueprint + other->blueprint +
+               R"(<component id="gravity" type="Field/Gravity" between="*" acceleration="0 0 -9.81"/>)");
     Scene alone = imported_scene(imported_file("arm.urdf"));
     CHECK(distance(both.vec("left/fore", "position"), Vec3{3, 4.5, 6}) < 1e-12);
     both.run(1), alone.run(1);

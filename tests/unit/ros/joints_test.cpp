@@ -31,7 +31,10 @@ struct JointScene
 
 std::vector<link::Parameter> placed(const std::string& frame = "1 0 0 0")
 {
-    return {{"frame_a", frame, "", "state"}, {"frame_b", frame, "", "state"}, {"point_a", "0 0 0", "m", "state"}, {"point_b", "0 0 0", "m", "state"}};
+    return {{"frame_a", frame, "", "state"},
+            {"frame_b", frame, "", "state"},
+            {"point_a", "0 0 0", "m", "state"},
+            {"point_b", "0 0 0", "m", "state"}};
 }
 
 TEST_CASE("a hinge's angle goes on over whole turns, at the speed of the body")
@@ -90,7 +93,8 @@ TEST_CASE("efforts are those of motors and springs on the same coordinate, and u
     test.rebuild();
     CHECK(test.joints.has_drives());
     link::Metrics metrics;
-    for (const auto& [id, name, text] : {std::tuple("spring", "effort", "-1.5"), std::tuple("motor", "torque", "7 7 4"), std::tuple("slide", "torque", "0 0 100")})
+    for (const auto& [id, name, text] :
+         {std::tuple("spring", "effort", "-1.5"), std::tuple("motor", "torque", "7 7 4"), std::tuple("slide", "torque", "0 0 100")})
     {
         link::InteractionMetrics& m = metrics.interactions.emplace_back();
         m.component_id = id, m.outputs.push_back({name, text, "", "output"});

@@ -14,7 +14,8 @@ TEST_CASE("a namespace of ROS has tokens without a digit in front, and nothing e
 {
     using wire::ros::is_namespace;
     for (const char* fine : {"", "/", "sim", "/sim", "/lab_2/sim", "a/b/c"}) CHECK_MESSAGE(is_namespace(fine), fine);
-    for (const char* wrong : {"//", "/sim/", "2nd", "/a//b", "a b", "a-b", "sim__x", "\xC3\xBC", "~sim"}) CHECK_MESSAGE(!is_namespace(wrong), wrong);
+    for (const char* wrong : {"//", "/sim/", "2nd", "/a//b", "a b", "a-b", "sim__x", "\xC3\xBC", "~sim"})
+        CHECK_MESSAGE(!is_namespace(wrong), wrong);
     CHECK_FALSE(is_namespace(std::string(151, 'a')));
     CHECK(wire::ros::normal_namespace("sim") == "/sim");
     CHECK(wire::ros::normal_namespace("/") == "");

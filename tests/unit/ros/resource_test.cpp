@@ -37,13 +37,18 @@ TEST_CASE("a URI names a file of this host, which is read whole or not at all")
 TEST_CASE("a component gets its name and its place, and keeps the rest")
 {
     const Pose place{{1, 2, 3}, {0.5, 0.5, 0.5, 0.5}};
-    const auto made = ros::with_name_and_place("<!-- c -->\n<component id = 'old' type=\"State/RigidBody\"\n position='9 9 9' mass='1 kg'><component/></component>",
-                                               "new & better", place);
+    const auto made = ros::with_name_and_place(
+        "<!-- c -->\n<component id = 'old' type=\"State/RigidBody\"\n position='9 9 9' mass='1 kg'><component/></component>",
+        "new & better", place);
     REQUIRE(made);
-    CHECK(*made == "<component id=\"new &amp; better\" type=\"State/RigidBody\" mass=\"1 kg\" position=\"1 2 3\" orientation=\"0.5 0.5 0.5 0.5\"><component/></component>");
-    CHECK(*ros::with_name_and_place("<component type='A'/>", "n", {}) == "<component id=\"n\" type=\"A\" position=\"0 0 0\" orientation=\"1 0 0 0\"/>");
+    CHECK(*made ==
+          "<component id=\"new &amp; better\" type=\"State/RigidBody\" mass=\"1 kg\" position=\"1 2 3\" orientation=\"0.5 0.5 0.5 "
+          "0.5\"><component/></component>");
+    CHECK(*ros::with_name_and_place("<component type='A'/>", "n", {}) ==
+          "<component id=\"n\" type=\"A\" position=\"0 0 0\" orientation=\"1 0 0 0\"/>");
     // A group has no place.
-    CHECK(*ros::with_name_and_place("<component id='g'><component/></component>", "n", {}) == "<component id=\"n\"><component/></component>");
+    CHECK(*ros::with_name_and_place("<component id='g'><component/></component>", "n", {}) ==
+          "<component id=\"n\"><component/></component>");
     CHECK_FALSE(ros::with_name_and_place("<component id='g'><component/></component>", "n", place));
     CHECK_FALSE(ros::with_name_and_place("<plab version='1'/>", "n", {}));
     for (const char* broken : {"", "<", "<component", "<component id='a", "<component id=>", "<component id"})
