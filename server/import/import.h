@@ -22,7 +22,7 @@ struct Part
 struct ImportOptions
 {
     bool fixed_base = false;  ///< bodies that hang on nothing do not move
-    std::optional<Part> part;
+    std::optional<Part> part{};
 };
 
 struct ImportedScene

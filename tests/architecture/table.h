@@ -94,7 +94,7 @@ inline const std::vector<Layer>& layers()
          {"nlohmann/"},
          false},
         {"server/bus/channel", {"server/publish", "idl/values"}, {"sys/", "unistd.h", "fcntl.h"}},
-        {"server/bus/ros", {"server/sdk", "server/import", "server/bus/channel", "server/bus/process", "clients/link", "clients/ros"}, {}},
+        {"server/ros", {"server/sdk", "server/import", "server/bus/channel", "server/bus/process", "clients/link", "clients/ros"}, {}},
         {"server/bus/process",
          {"server/sdk", "server/publish", "server/bus", "server/bus/channel", "server/program", "idl", "idl/values"},
          {"dds/", "sys/", "unistd.h", "fcntl.h", "poll.h", "pthread.h"}},
@@ -133,7 +133,7 @@ inline const std::vector<Layer>& layers()
         {"interactions/*", {"server/sdk"}, {}},
         {"idl/values", {}, {}},  // plain values: files that include them see no DDS
         {"idl/json", {"idl/values"}, {"nlohmann/"}},
-        {"idl/ros", {"idl"}, {"dds/"}},
+        {"idl/ros", {"idl/topics.h"}, {"dds/"}},
         {"idl/recording",
          {"idl"},
          {"dds/", "zlib.h", "zstd.h", "lz4frame.h", "fcntl.h", "unistd.h", "sys/stat.h", "pthread.h", "semaphore.h"}},

@@ -20,22 +20,25 @@ namespace plab::test
 /// Of these tests alone.
 inline constexpr std::uint32_t kRosDomain = 91;
 
-inline std::string ros_scene() { return std::string(PLAB_SOURCE_DIR) + "/tests/ros/scene.xml"; }
+inline constexpr const char* kRosScene = PLAB_SOURCE_DIR "/tests/ros/scene.xml";
+
+using Options = std::vector<std::string>;
 
 class RosServer
 {
 public:
-    explicit RosServer(std::vector<std::string> options = {"--ros"}, const std::string& scene = ros_scene())
-        : name_(unique_name("ros")), process_(command(scene, std::move(options)))
+    explicit RosServer(const Options& options = {"--ros"}, const std::string& scene = kRosScene)
+        : name_(unique_name("ros")), process_(command(scene, options))
     {
         REQUIRE_MESSAGE(process_.wait_for("ready after", Milliseconds(10000)), process_.errors());
     }
     Process& process() { return process_; }
+    const Process& process() const { return process_; }
     const std::string& name() const { return name_; }
     std::string node() const { return wire::ros::token_of(name_); }
 
 private:
-    std::vector<std::string> command(const std::string& scene, std::vector<std::string> options) const
+    std::vector<std::string> command(const std::string& scene, const Options& options) const
     {
         std::vector<std::string> out{program("plabd"), scene, "--name", name_, "--domain", std::to_string(kRosDomain)};
         out.insert(out.end(), options.begin(), options.end());

@@ -36,16 +36,16 @@ std::map<std::string, std::pair<const dds_topic_descriptor_t*, std::string>> typ
 std::string hex(recording::ByteView bytes)
 {
     std::string out;
-    for (const std::byte byte : bytes)
-        for (const unsigned digit : {std::to_integer<unsigned>(byte) >> 4, std::to_integer<unsigned>(byte) & 15u})
-            out += "0123456789abcdef"[digit];
+    for (const unsigned byte : bytes)
+        for (const unsigned digit : {byte >> 4, byte & 15u}) out += "0123456789abcdef"[digit];
     return out;
 }
 
-std::vector<std::byte> bytes_of(const std::string& text)
+std::vector<unsigned char> bytes_of(const std::string& text)
 {
-    std::vector<std::byte> out;
-    for (std::size_t i = 0; i + 1 < text.size(); i += 2) out.push_back(static_cast<std::byte>(std::stoi(text.substr(i, 2), nullptr, 16)));
+    std::vector<unsigned char> out;
+    for (std::size_t i = 0; i + 1 < text.size(); i += 2)
+        out.push_back(static_cast<unsigned char>(std::stoi(text.substr(i, 2), nullptr, 16)));
     return out;
 }
 
@@ -54,7 +54,7 @@ std::string echoed(const dds_topic_descriptor_t& type, const std::string& text)
     std::vector<std::uint64_t> memory(type.m_size / sizeof(std::uint64_t) + 1);
     recording::Decoder decoder;
     recording::Encoder encoder;
-    const std::vector<std::byte> bytes = bytes_of(text);
+    const std::vector<unsigned char> bytes = bytes_of(text);
     const auto decoded = decoder.decode(bytes, memory.data(), type);
     if (!decoded) return "cannot be decoded: " + decoded.error().text();
     const auto encoded = encoder.encode(memory.data(), type);

@@ -22,7 +22,7 @@ std::set<std::string> texts_of(const auto& sequence)
 /// A paused server, and calls of its services.
 struct Simulation
 {
-    explicit Simulation(std::vector<std::string> options = {"--ros", "--paused"}) : server(std::move(options)) {}
+    explicit Simulation(const Options& options = {"--ros", "--paused"}) : server(options) {}
 
     template <class S>
     RosCaller<S> caller()
@@ -297,7 +297,7 @@ TEST_CASE("components are added under their names and at their places, and remov
 TEST_CASE("a robot in URDF is added twice, with its joints, each where it is wanted, and removed as a whole")
 {
     Simulation simulation;
-    const std::string arm = "file://" + std::string(PLAB_SOURCE_DIR) + "/scenes/imported/arm.urdf";
+    const std::string arm = "file://" PLAB_SOURCE_DIR "/scenes/imported/arm.urdf";
     std::string name;
     CHECK(simulation.spawn("one", "", {{10, 0, 0}, {0, 0, 0, 1}}, &name, false, arm).first == kOk);
     // Turned by a quarter about z.
@@ -358,17 +358,17 @@ TEST_CASE("another world is loaded whole or not at all, and is stopped then")
     CHECK(simulation.entities() == std::set<std::string>{"only"});
     CHECK(simulation.state() == 0);
     simulation.caller<msg::GetCurrentWorld>().call({}, [](const auto& response) { CHECK(std::string(response.world.name) == "other"); });
-    request.world_resource = {wire::text("file://" + std::string(PLAB_SOURCE_DIR) + "/scenes/imported/arm.urdf"), nullptr};
+    request.world_resource = {wire::text("file://" PLAB_SOURCE_DIR "/scenes/imported/arm.urdf"), nullptr};
     request.fail_on_unsupported_element = true;
     CHECK(load.result(request).first == 106);
     request.fail_on_unsupported_element = false;
     CHECK(load.result(request).first == kOk);
-    CHECK(simulation.entities() == std::set<std::string>{"base", "upper", "fore"});
+    CHECK(simulation.entities() == std::set<std::string>{"world_2", "upper", "fore"});
 }
 
 TEST_CASE("a storm of requests costs the step nothing, and the node answers afterwards")
 {
-    Simulation simulation({"--ros"});
+    Simulation simulation(Options{"--ros"});
     {
         auto storm = simulation.caller<msg::GetEntitiesStates>();
         for (int i = 0; i < 20000; ++i) storm.send({});

@@ -94,7 +94,7 @@ TEST_CASE("discovery shows the topics of ROS with their types, QoS and type hash
 
 TEST_CASE("the graph names the node, and all its endpoints belong to it")
 {
-    const RosServer server({"--ros", "--ros-namespace", "lab/sim"});
+    const RosServer server(Options{"--ros", "--ros-namespace", "lab/sim"});
     RosClient client;
     auto graph = client.reader<msg::ParticipantEntities>(msg::kGraph);
     std::set<std::array<unsigned char, 16>> readers, writers;
@@ -138,7 +138,7 @@ std::string bus_of(int server)
 {
     for (const auto& entry : std::filesystem::directory_iterator("/proc"))
     {
-        std::ifstream status(entry.path() / "stat");
+        std::ifstream status((entry.path() / "stat").string());
         std::string pid, name, state;
         int parent = 0;
         if (status >> pid >> name >> state >> parent && parent == server && name.starts_with("(plab-bus"))
@@ -149,14 +149,15 @@ std::string bus_of(int server)
 
 TEST_CASE("without --ros there is no topic of ROS, and the program for it does not run")
 {
-    RosServer server({});
+    const RosServer server(Options{});
     RosClient client;
     REQUIRE(eventually([&] { return !endpoints(client, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, "plab/states").empty(); }));
     for (const char* prefix : {"rt/", "rr/", "ros_"}) CHECK(endpoints(client, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, prefix).empty());
     CHECK(endpoints(client, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, "rq/").empty());
     // The program that looks like a node is plab-bus-ros; plabd itself maps nothing of either.
     CHECK(bus_of(server.process().pid()) == "plab-bus");
-    CHECK(bus_of(RosServer().process().pid()) == "plab-bus-ros");
+    const RosServer with_ros;
+    CHECK(bus_of(with_ros.process().pid()) == "plab-bus-ros");
 }
 
 TEST_CASE("what is published is what the scene does, under names that ROS accepts")
@@ -172,7 +173,12 @@ TEST_CASE("what is published is what the scene does, under names that ROS accept
     double now = -1, rail = 0, rail_time = 0;
     const auto look = [&]
     {
-        clocks += clock.take([&](const msg::Clock& c) { CHECK(time_of(c.clock) >= now), now = time_of(c.clock); });
+        clocks += clock.take(
+            [&](const msg::Clock& c)
+            {
+                CHECK(time_of(c.clock) >= now);
+                now = time_of(c.clock);
+            });
         (void)tf.take(
             [&](const msg::Transforms& m)
             {
@@ -209,7 +215,7 @@ TEST_CASE("what is published is what the scene does, under names that ROS accept
 
 TEST_CASE("late joiners get what never changes: also readers that keep nothing, and of a paused server")
 {
-    RosServer server({"--ros", "--paused"});
+    const RosServer server(Options{"--ros", "--paused"});
     RosClient first;
     auto clock = first.reader<msg::Clock>(msg::kClock);
     REQUIRE(eventually([&] { return clock.take([](const msg::Clock&) {}) > 0; }));

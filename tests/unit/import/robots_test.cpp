@@ -78,7 +78,7 @@ TEST_CASE("a robot as a part of a scene is a group with ids of its own, stands w
     options.part = import::Part{"left", {{3, 4, 5}, {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}};
     const auto part = import::import_file(path, options);
     REQUIRE_MESSAGE(part.ok(), reasons(part));
-    CHECK(part->root == "left/base");
+    CHECK(part->root == "left/world");
     CHECK(part->blueprint.starts_with("<component id=\"left\">"));
     for (const char* of_scene : {"<scene", "Field/Gravity", "CDetection"})
         CHECK_MESSAGE(part->blueprint.find(of_scene) == std::string::npos, of_scene);
