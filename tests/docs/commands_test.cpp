@@ -61,6 +61,7 @@ constexpr Special kSpecial[] = {
      "if [ -e build/share/plab/web/page.js ]; then timeout --preserve-status -k 5 -s INT 2 plab-web --write-address a.txt; [ $? = 130 ]; "
      "fi",
      "until Ctrl-C; without npm there is no page"},
+    {"plabd scenes/imported/arm.urdf --ros", How::With, "--until 1", "has no end of its own"},
     {"plabctl topics rate plab/states", How::Follow, "", "until Ctrl-C"},
     {"plabctl watch events --json -n 1", How::Beside, "sleep 1; plabctl swap gears --to Constraint/AngularVelocity/Impulse",
      "waits for an event"},

@@ -7,6 +7,7 @@
 
 #include "idl/domain.h"
 #include "idl/recording/cdr.h"
+#include "link/frame_reader.h"
 #include "ros/node.h"
 #include "support/process.h"
 
@@ -62,10 +63,19 @@ void take(Reader& reader, recording::Encoder& encoder)
     }
 }
 
-void measure(int bodies, double seconds, bool reads)
+enum class Readers
 {
-    test::Process server({test::program("plabd"), scene_of(bodies), "--ros", "--name", "bench_ros", "--domain", std::to_string(kDomain),
-                          "--until", std::to_string(seconds + 8), "--rate", "real"});
+    None,   ///< of a server with --ros
+    Ros,    ///< of all its topics of ROS
+    Plain,  ///< one reader of plab/updates, of a server without --ros
+};
+constexpr const char* kWords[] = {"--ros, nobody reads", "--ros, all topics read", "without --ros, plab/updates read"};
+
+void measure(int bodies, double seconds, Readers who)
+{
+    const bool reads = who == Readers::Ros;
+    test::Process server({test::program("plabd"), scene_of(bodies), who == Readers::Plain ? "--states=60" : "--ros", "--name", "bench_ros",
+                          "--domain", std::to_string(kDomain), "--until", std::to_string(seconds + 8), "--rate", "real"});
     if (!server.wait_for("ready after", test::Milliseconds(20000))) return (void)std::printf("%s\n", server.errors().c_str());
     auto participant = wire::join({kDomain, ""});
     if (!participant) return;
@@ -80,6 +90,11 @@ void measure(int bodies, double seconds, bool reads)
              wire::Entity(dds_create_reader(participant->get(), made.get(), msg::qos_of(topic.profile, topic.type_hash).get(), nullptr)), 0,
              0});
     }
+    link::SessionOptions session_options{"bench_ros", {kDomain, ""}};
+    auto session = link::Session::join(session_options);
+    std::optional<link::FrameReader> frames;
+    if (who == Readers::Plain && session)
+        if (auto opened = link::FrameReader::open(*session)) frames = opened.take();
     recording::Encoder encoder;
     const auto run_for = [&](double time)
     {
@@ -87,6 +102,7 @@ void measure(int bodies, double seconds, bool reads)
         while (std::chrono::steady_clock::now() < end)
         {
             for (Reader& reader : readers) take(reader, encoder);
+            if (frames) (void)frames->take([](const plab_v2_Frame&) {});
             dds_sleepfor(DDS_MSECS(2));
         }
     };
@@ -95,7 +111,7 @@ void measure(int bodies, double seconds, bool reads)
     const int bus = bus_of(server.pid());
     const double cpu = test::cpu_seconds(bus), cpu_server = test::cpu_seconds(server.pid());
     run_for(seconds);
-    std::printf("%6d bodies, %s: plab-bus-ros %5.1f %% of a core, plabd %5.1f %%\n", bodies, reads ? "all topics read" : "nobody reads   ",
+    std::printf("%6d bodies, %-32s: bus %5.1f %% of a core, plabd %5.1f %%\n", bodies, kWords[static_cast<int>(who)],
                 100 * (test::cpu_seconds(bus) - cpu) / seconds, 100 * (test::cpu_seconds(server.pid()) - cpu_server) / seconds);
     for (const Reader& reader : readers)
         std::printf("    %-28s %6.1f messages/s of %8llu bytes\n", reader.topic->name, static_cast<double>(reader.messages) / seconds,
@@ -109,6 +125,6 @@ int main(int argc, char** argv)
 {
     const double seconds = argc > 1 ? std::atof(argv[1]) : 5;
     for (const int bodies : {1, 200, 10000})
-        for (const bool reads : {false, true}) measure(bodies, seconds, reads);
+        for (const Readers who : {Readers::None, Readers::Ros, Readers::Plain}) measure(bodies, seconds, who);
     return 0;
 }
