@@ -18,6 +18,8 @@ public:
     /// The complete frame, valid until the next call. Null: its key frame did not arrive (the next one comes within a second), a
     /// newer frame was returned before, or it is not valid.
     const plab_v2_Frame* add(const plab_v2_FrameUpdate& update);
+    /// The last frame that add() returned, valid until the next call; null: none yet.
+    const plab_v2_Frame* newest() const { return has_key_ ? &out_ : nullptr; }
     /// Frames that could not be completed.
     std::uint64_t incomplete() const { return incomplete_; }
 
@@ -50,6 +52,8 @@ public:
                     if (const plab_v2_Frame* const frame = assembler_.add(*update)) handle(*frame);
             });
     }
+    /// The last frame, valid until the next take(); null: none yet.
+    const plab_v2_Frame* newest() const { return assembler_.newest(); }
     std::uint64_t incomplete() const { return assembler_.incomplete(); }
     std::uint32_t writers() const { return reader_.writers(); }
     const wire::Entity& entity() const { return reader_.entity(); }

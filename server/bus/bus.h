@@ -10,12 +10,21 @@
 namespace plab::bus
 {
 
+/// Whether the server looks like a node of ROS 2 as well (server/docs/ros.md).
+struct RosOptions
+{
+    bool enabled = false;
+    std::string space;  ///< namespace: "", or with '/' in front
+    double rate = 60;   ///< messages of a topic per second of real time, at most
+};
+
 struct BusOptions
 {
     std::string name = "plab";      ///< name of the server: the partition of its topics
     std::string version;            ///< version of pLab
     std::uint32_t domain = 0;       ///< DDS domain
     std::string network_interface;  ///< empty: this host only
+    RosOptions ros;
     /// Wakes the step loop when a request has arrived, or when a client starts to read a stream (a paused server may have to
     /// show its current state). Called on a thread of the bus; must not wait.
     void (*wake)(void*) = nullptr;

@@ -77,12 +77,13 @@ pid_t spawn(const std::string& program, const std::array<int, kInheritedEnd - kI
 
 }  // namespace
 
-std::string bus_program()
+std::string bus_program(bool with_ros)
 {
     if (const char* given = std::getenv("PLAB_BUS_PROGRAM"); given != nullptr && *given != 0) return given;
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-    return error ? "plab-bus" : (self.parent_path() / "plab-bus").string();
+    const char* const name = with_ros ? "plab-bus-ros" : "plab-bus";
+    return error ? name : (self.parent_path() / name).string();
 }
 
 BusProcess::BusProcess(PipeMemory memory, WakeEvent wake)

@@ -54,7 +54,7 @@ private:
     int status_ = 0;
 };
 
-/// The plab-bus program beside this program; PLAB_BUS_PROGRAM, if set, names another one.
-std::string bus_program();
+/// The plab-bus program beside this program, or plab-bus-ros, which is a ROS node as well; PLAB_BUS_PROGRAM, if set, names another one.
+std::string bus_program(bool with_ros);
 
 }  // namespace plab::bus

@@ -50,7 +50,8 @@ Result<std::unique_ptr<ServerBus>> ServerBus::open(const BusOptions& options)
 ServerBus::ServerBus(const BusOptions& options, wire::NameLock lock)
     : options_(options), lock_(std::move(lock)), wake_(WakeEvent::make()), changes_(kChanges)
 {
-    start_ = {options.name, options.version, options.network_interface, options.domain, getpid(), since_1970_ns()};
+    start_ = {options.name, options.version, options.network_interface, options.domain,
+              getpid(),     since_1970_ns(), options.ros.space,         options.ros.rate};
 }
 
 ServerBus::~ServerBus()

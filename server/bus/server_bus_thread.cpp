@@ -88,7 +88,7 @@ void ServerBus::supervise(Clock::time_point now)
         return;
     }
     if (now < start_at_) return;
-    auto started = BusProcess::start(bus_program(), wake_, start_);
+    auto started = BusProcess::start(bus_program(options_.ros.enabled), wake_, start_);
     if (!started)
     {
         end_process("could not be started: " + started.error().reason, now);

@@ -5,6 +5,7 @@
 
 #include "completion/scene_values.h"
 #include "control/operations.h"
+#include "idl/values/ros_names.h"
 #include "program/installation.h"
 
 namespace plab::daemon
@@ -46,6 +47,44 @@ std::string not_seconds(const std::string& text)
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     const bool fine = error == std::errc() && stop == end && value >= 0 && value <= 1e12;
     return fine ? "" : "'" + text + "' is not a number of seconds from 0 to 1e12";
+}
+
+/// "", or why the text is no rate of messages.
+std::string not_a_rate(const std::string& text)
+{
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    const bool fine = error == std::errc() && stop == end && value >= 0.1 && value <= 1e4;
+    return fine ? "" : "'" + text + "' is not a number of messages per second from 0.1 to 10000";
+}
+
+void add_ros_options(CLI::App& app, DaemonOptions& options)
+{
+    const std::string group = "ROS 2";
+    app.add_flag("--ros", options.ros,
+                 "be a node of ROS 2 as well, in the same DDS domain: clock, tf, joint_states, markers, contacts, services")
+        ->group(group);
+    app.add_option("--ros-namespace", options.ros_namespace, "namespace of all its topics and services, e.g. /sim (default: none)")
+        ->type_name("NAME")
+        ->group(group);
+    app.add_option("--ros-rate", options.ros_rate,
+                   "maximum number of messages of a topic per second of real time, up to --states (default: 60)")
+        ->check(&not_a_rate, "")
+        ->group(group);
+}
+
+/// The error in them, if there is one.
+std::string take_ros_options(const CLI::App& app, DaemonOptions& options)
+{
+    for (const char* name : {"--ros-namespace", "--ros-rate"})
+        if (app.count(name) > 0 && !options.ros) return std::string(name) + " requires --ros";
+    if (options.ros && !options.bus) return "--ros needs the bus";
+    if (!wire::ros::is_namespace(options.ros_namespace))
+        return "--ros-namespace: '" + options.ros_namespace +
+               "' is not a namespace: letters, digits and '_', with '/' between names, e.g. /lab/sim";
+    options.ros_namespace = wire::ros::normal_namespace(options.ros_namespace);
+    return {};
 }
 
 void add_bus_options(CLI::App& app, DaemonOptions& options, std::string& states, bool& no_bus)
@@ -319,6 +358,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& opti
     add_task_options(app, options, written);
     app.add_flag("--paused", options.paused, "wait before the first step until a client sends resume or step");
     add_bus_options(app, options, written.states, written.no_bus);
+    add_ros_options(app, options);
     add_record_options(app, options, written.recorded_states);
     add_past_options(app, options);
     if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return end;
@@ -326,6 +366,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& opti
     std::string why = take_task(app.count("--reference") > 0, written, options);
     if (why.empty()) why = take_bus_options(written.states, written.no_bus, options);
     if (why.empty()) why = take_past_options(app, written.recorded_states, options);
+    if (why.empty()) why = take_ros_options(app, options);
     if (why.empty() && options.paused && !options.bus) why = "--paused needs the bus: without it, no client could resume the run";
     if (why.empty()) why = take_operations(written, options);
     if (!why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};

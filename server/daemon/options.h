@@ -67,12 +67,12 @@ struct DaemonOptions
     std::string scene;
     std::string blueprint;    ///< of Task::Import: where to write it; "" and "-": standard output
     bool fixed_base = false;  ///< of a scene of another program
-    std::string reference;  ///< types to describe; "": all
-    double until = -1;      ///< s; < 0: until a signal
-    std::string out;        ///< JSON of the final state; "-" is standard output
-    std::string trace;      ///< CSV over time
-    double every = 0;       ///< s between trace rows; 0: each step
-    double rate = -1;       ///< 1: real time; 0: as fast as possible; < 0: not given
+    std::string reference;    ///< types to describe; "": all
+    double until = -1;        ///< s; < 0: until a signal
+    std::string out;          ///< JSON of the final state; "-" is standard output
+    std::string trace;        ///< CSV over time
+    double every = 0;         ///< s between trace rows; 0: each step
+    double rate = -1;         ///< 1: real time; 0: as fast as possible; < 0: not given
     int threads = 1;
     std::size_t max_components = model::CompileLimits().components;
     double error_share = 0.01;  ///< of real time for shadow steps
@@ -94,6 +94,9 @@ struct DaemonOptions
     std::uint32_t domain = 0;       ///< DDS domain
     std::string network_interface;  ///< empty: this host only
     double states_per_second = 60;  ///< of real time; 0: each step
+    bool ros = false;               ///< is a node of ROS 2, too
+    std::string ros_namespace;      ///< "", or with '/' in front
+    double ros_rate = 60;           ///< messages of a topic per second of real time, at most
     bool paused = false;            ///< waits at step 0
 };
 

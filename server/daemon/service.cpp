@@ -78,6 +78,7 @@ Result<void> Service::open_bus(const DaemonOptions& options, const Wake& wake, I
     bus::BusOptions bus;
     bus.name = options.name, bus.version = PLAB_VERSION, bus.domain = options.domain;
     bus.network_interface = options.network_interface;
+    bus.ros = {options.ros, options.ros_namespace, options.ros_rate};
     bus.log = [](void*, const char* line) { spdlog::warn("bus: {}", line); };
     bus.end = [](void* to) { static_cast<Interruption*>(to)->ask(kGrace); };
     bus.end_argument = &interruption;

@@ -64,10 +64,12 @@ std::pair<std::string_view, std::string> solid(const RobotShape& shape)
 
 }  // namespace
 
-std::string Ids::make(std::string_view name)
+std::string Ids::make(std::string_view given)
 {
+    // Ids are made of other ids, too.
+    const std::string name = (given.starts_with(prefix_) ? "" : prefix_) + std::string(given);
     std::string id;
-    for (const char c : name.substr(0, 150)) id += static_cast<unsigned char>(c) <= ' ' || c == 0x7f ? '_' : c;
+    for (const char c : std::string_view(name).substr(0, 150)) id += static_cast<unsigned char>(c) <= ' ' || c == 0x7f ? '_' : c;
     while (!id.empty() && id.size() < name.size() && (static_cast<unsigned char>(name[id.size()]) & 0xC0) == 0x80) id.pop_back();
     if (id.empty() || id == "*") id = "unnamed";
     std::string unique = id;

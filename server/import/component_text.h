@@ -15,10 +15,14 @@ namespace plab::import
 class Ids
 {
 public:
+    /// All ids begin with `prefix`.
+    explicit Ids(std::string prefix = {}) : prefix_(std::move(prefix)) {}
+    const std::string& prefix() const { return prefix_; }
     /// `name` with '_' for blanks and control characters, of at most 150 bytes, and with a number if it is taken.
     std::string make(std::string_view name);
 
 private:
+    std::string prefix_;
     std::set<std::string, std::less<>> taken_;
     std::map<std::string, std::size_t, std::less<>> next_;
 };

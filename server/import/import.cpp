@@ -92,14 +92,17 @@ Result<ImportedScene> import_text(std::string_view text, const std::string& file
                      blueprint::in_tags(tree.root().name),
                      "is not the root of " + std::string(format == SceneFormat::Urdf ? "URDF" : "MJCF") + ", which is " +
                          blueprint::in_tags(wanted)};
-    const Robot robot = format == SceneFormat::Urdf ? read_urdf(tree.root(), options.fixed_base, document)
-                                                    : read_mjcf(tree.root(), options.fixed_base, document);
+    Robot robot = format == SceneFormat::Urdf ? read_urdf(tree.root(), options.fixed_base, document)
+                                              : read_mjcf(tree.root(), options.fixed_base, document);
     if (document.failed()) return document.errors();
+    if (options.part)
+        for (RobotBody& body : robot.bodies)
+            if (body.parent == kWorld) body.pose = options.part->place * body.pose;
     const Assembly assembly = assemble(robot, document);
     if (document.failed()) return document.errors();
-    WrittenScene written = write_blueprint(robot, assembly, document);
+    WrittenScene written = write_blueprint(robot, assembly, options.part ? options.part->name : "", document);
     if (document.failed()) return document.errors();
-    return ImportedScene{std::move(written.blueprint), document.losses(), written.bodies, written.joints};
+    return ImportedScene{std::move(written.blueprint), std::move(written.root), document.losses(), written.bodies, written.joints};
 }
 
 Result<ImportedScene> import_file(const std::string& path, const ImportOptions& options)

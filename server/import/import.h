@@ -1,22 +1,34 @@
 /// Scenes of other programs (URDF, MJCF) as blueprints. server/docs/importing.md states what is carried over and what is listed.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "plab/result.h"
+#include "plab/vector.h"
 
 namespace plab::import
 {
 
+/// Of a scene that is there already: a group of this name, whose components have ids that begin with it, without the things that a scene
+/// has once: settings, gravity and contacts.
+struct Part
+{
+    std::string name;
+    Pose place;  ///< of the file's world in that scene
+};
+
 struct ImportOptions
 {
     bool fixed_base = false;  ///< bodies that hang on nothing do not move
+    std::optional<Part> part{};
 };
 
 struct ImportedScene
 {
     std::string blueprint;  ///< XML
+    std::string root;       ///< id of the first body
     Errors losses;          ///< what could not be carried over: place, element, reason
     std::size_t bodies = 0, joints = 0;
 };

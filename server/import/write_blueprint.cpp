@@ -52,7 +52,8 @@ std::string camera(const Assembly& assembly)
 class Writer
 {
 public:
-    Writer(const Robot& robot, const Assembly& assembly, Document& document) : robot_(robot), assembly_(assembly), document_(document)
+    Writer(const Robot& robot, const Assembly& assembly, const std::string& group, Document& document)
+        : robot_(robot), assembly_(assembly), group_(group), document_(document), ids_(group.empty() ? "" : group + "/")
     {
         for (const char* own : {"manager", "gravity", "contact", "contact.response", "solver"}) ids_.make(own);
     }
@@ -64,10 +65,12 @@ public:
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_body(i);
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_joints(i);
         for (const Coupling& coupling : robot_.couplings) write_coupling(coupling);
+        if (!body_ids_.empty()) out_.root = body_ids_.front();
+        if (!group_.empty()) return write_group();
         if (moves_)
             line("<component id=\"gravity\" type=\"Field/Gravity\" between=\"*\"" + attribute("acceleration", robot_.gravity) + "/>");
         write_contacts();
-        if (manager_) line("<component id=\"manager\" type=\"Manager/Automatic\"/>");
+        write_manager();
         const std::string settings =
             (robot_.title.empty() ? "" : attribute("title", robot_.title)) + (robot_.step.empty() ? "" : attribute("dt", robot_.step));
         out_.blueprint = "<plab version=\"1\">\n  <scene" + settings + ">" + camera(assembly_) + "</scene>\n" + text_ + "</plab>\n";
@@ -75,6 +78,18 @@ public:
     }
 
 private:
+    WrittenScene write_group()
+    {
+        write_manager();
+        out_.blueprint = "<component" + attribute("id", group_) + ">\n" + text_ + "</component>\n";
+        return std::move(out_);
+    }
+    void write_manager()
+    {
+        if (manager_) line("<component" + attribute("id", manager_id()) + " type=\"Manager/Automatic\"/>");
+    }
+    std::string manager_id() const { return ids_.prefix() + "manager"; }
+    std::string manager_role() const { return attribute("manager", manager_id()); }
     void line(const std::string& component) { text_ += "  " + component + "\n"; }
     const PlacedBody& body(std::size_t i) const { return assembly_.bodies[i]; }
     static std::string quoted(const std::string& name) { return "'" + name + "'"; }
@@ -167,7 +182,7 @@ private:
         {
             line("<component" + attribute("id", ids_.make(id + ".limit")) + " type=\"Constraint/Limit\"" + place +
                  (j.lower > -kInfinity ? attribute("lower", j.lower - j.start) : "") +
-                 (j.upper < kInfinity ? attribute("upper", j.upper - j.start) : "") + " manager=\"manager\"/>");
+                 (j.upper < kInfinity ? attribute("upper", j.upper - j.start) : "") + manager_role() + "/>");
             manager_ = true;
         }
         if (j.stiffness > 0 || j.damping > 0)
@@ -177,7 +192,7 @@ private:
         {
             // A motor that stands still and may slip is Coulomb's friction.
             line("<component" + attribute("id", ids_.make(id + ".friction")) + " type=\"Constraint/Motor\"" + place + " speed=\"0\"" +
-                 attribute("max_effort", j.friction) + " manager=\"manager\"/>");
+                 attribute("max_effort", j.friction) + manager_role() + "/>");
             manager_ = true;
         }
     }
@@ -283,6 +298,7 @@ private:
 
     const Robot& robot_;
     const Assembly& assembly_;
+    std::string group_;
     Document& document_;
     Ids ids_;
     std::vector<std::string> body_ids_;
@@ -295,9 +311,9 @@ private:
 
 }  // namespace
 
-WrittenScene write_blueprint(const Robot& robot, const Assembly& assembly, Document& document)
+WrittenScene write_blueprint(const Robot& robot, const Assembly& assembly, const std::string& group, Document& document)
 {
-    return Writer(robot, assembly, document).run();
+    return Writer(robot, assembly, group, document).run();
 }
 
 }  // namespace plab::import

@@ -94,6 +94,7 @@ inline const std::vector<Layer>& layers()
          {"nlohmann/"},
          false},
         {"server/bus/channel", {"server/publish", "idl/values"}, {"sys/", "unistd.h", "fcntl.h"}},
+        {"server/ros", {"server/sdk", "server/import", "server/bus/channel", "server/bus/process", "clients/link", "clients/ros"}, {}},
         {"server/bus/process",
          {"server/sdk", "server/publish", "server/bus", "server/bus/channel", "server/program", "idl", "idl/values"},
          {"dds/", "sys/", "unistd.h", "fcntl.h", "poll.h", "pthread.h"}},
@@ -132,6 +133,7 @@ inline const std::vector<Layer>& layers()
         {"interactions/*", {"server/sdk"}, {}},
         {"idl/values", {}, {}},  // plain values: files that include them see no DDS
         {"idl/json", {"idl/values"}, {"nlohmann/"}},
+        {"idl/ros", {"idl/topics.h"}, {"dds/"}},
         {"idl/recording",
          {"idl"},
          {"dds/", "zlib.h", "zstd.h", "lz4frame.h", "fcntl.h", "unistd.h", "sys/stat.h", "pthread.h", "semaphore.h"}},
@@ -173,6 +175,7 @@ inline const std::vector<Layer>& layers()
           "clients/control/recording/player"},
          {"CLI/", "nlohmann/", "unistd.h"},
          false},
+        {"clients/ros", {"idl", "idl/values", "idl/ros", "clients/link"}, {"dds/", "regex.h"}},
         {"clients/*",
          {"server/program", "idl", "clients/link", "clients/completion"},
          {"CLI/", "nlohmann/", "unistd.h", "sys/", "signal.h"}},
@@ -192,7 +195,15 @@ inline const std::vector<Layer>& layers()
 /// Files that the build makes.
 inline const Words& generated_files()
 {
-    static const Words files{"idl/plab.h", "idl/recording/plab_idl_text.h"};
+    static const Words files{"idl/plab.h",
+                             "idl/recording/plab_idl_text.h",
+                             "idl/ros/rmw_dds_common.h",
+                             "idl/ros/ros_gz_interfaces.h",
+                             "idl/ros/rosgraph_msgs.h",
+                             "idl/ros/sensor_msgs.h",
+                             "idl/ros/simulation_interfaces.h",
+                             "idl/ros/tf2_msgs.h",
+                             "idl/ros/visualization_msgs.h"};
     return files;
 }
 

@@ -64,6 +64,7 @@ constexpr Special kSpecial[] = {
     {"plab-foxglove --file", How::Instead, "timeout --preserve-status -k 5 -s INT 2 plab-foxglove --port 0 --file run.mcap; [ $? = 130 ]",
      "until Ctrl-C"},
     {"plab-foxglove", How::Instead, "timeout --preserve-status -k 5 -s INT 2 plab-foxglove --port 0; [ $? = 130 ]", "until Ctrl-C"},
+    {"plabd scenes/imported/arm.urdf --ros", How::With, "--until 1", "has no end of its own"},
     {"plabctl topics rate plab/states", How::Follow, "", "until Ctrl-C"},
     {"plabctl watch events --json -n 1", How::Beside, "sleep 1; plabctl swap gears --to Constraint/AngularVelocity/Impulse",
      "waits for an event"},

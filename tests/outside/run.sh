@@ -79,7 +79,7 @@ check_refusals() {
 # Pages of the manual are there and format; shells get what may stand at the cursor.
 check_help() {
     local program shell said
-    for program in plabd plab-bus plabctl plab-log plab-study plab-view plab-web plab-foxglove plab-manifest plab-conformance; do
+    for program in plabd plab-bus plab-bus-ros plabctl plab-log plab-study plab-view plab-web plab-foxglove plab-manifest plab-conformance; do
         [[ -x $prefix/bin/$program ]] || continue
         [[ -s $prefix/share/man/man1/$program.1 ]] || fail "no page for $program"
         bash -n "$prefix/share/bash-completion/completions/$program" || fail "completion of $program for bash"

@@ -47,8 +47,10 @@ struct StartMessage
     std::uint32_t domain = 0;
     std::int32_t process = 0;     ///< process id of plabd
     std::int64_t started_ns = 0;  ///< start time of plabd, ns since 1970
+    std::string ros_space;        ///< of plab-bus-ros: RosOptions
+    double ros_rate = 0;
 };
-PLAB_MEMBERS(StartMessage, name, version, network_interface, domain, process, started_ns)
+PLAB_MEMBERS(StartMessage, name, version, network_interface, domain, process, started_ns, ros_space, ros_rate)
 
 struct StatusMessage
 {

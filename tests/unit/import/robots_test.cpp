@@ -70,5 +70,31 @@ TEST_CASE("the walker falls and comes to lie on the floor, with its joints withi
     }
 }
 
+TEST_CASE("a robot as a part of a scene is a group with ids of its own, stands where it is wanted, and moves as it does alone")
+{
+    const std::string path = std::string(PLAB_SOURCE_DIR) + "/scenes/imported/arm.urdf";
+    import::ImportOptions options;
+    // A turn about z, so that gravity is the same.
+    options.part = import::Part{"left", {{3, 4, 5}, {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}};
+    const auto part = import::import_file(path, options);
+    REQUIRE_MESSAGE(part.ok(), reasons(part));
+    CHECK(part->root == "left/world");
+    CHECK(part->blueprint.starts_with("<component id=\"left\">"));
+    for (const char* of_scene : {"<scene", "Field/Gravity", "CDetection"})
+        CHECK_MESSAGE(part->blueprint.find(of_scene) == std::string::npos, of_scene);
+    // Twice in one scene: no id is taken.
+    options.part->name = "right";
+    const auto other = import::import_file(path, options);
+    REQUIRE(other.ok());
+    Scene both(part->blueprint + other->blueprint +
+               R"(<component id="gravity" type="Field/Gravity" between="*" acceleration="0 0 -9.81"/>)");
+    Scene alone = imported_scene(imported_file("arm.urdf"));
+    CHECK(distance(both.vec("left/fore", "position"), Vec3{3, 4.5, 6}) < 1e-12);
+    both.run(1), alone.run(1);
+    CHECK(std::fabs(alone.real("elbow", "angle")) > 0.1);
+    for (const char* joint : {"shoulder", "elbow"})
+        CHECK(std::fabs(both.real("left/" + std::string(joint), "angle") - alone.real(joint, "angle")) < 1e-9);
+}
+
 }  // namespace
 }  // namespace plab::test
