@@ -48,19 +48,19 @@ bool reaches_server(const wire::Entity& requests, const wire::Entity& replies)
 /// it: so a request is soon sent again.
 constexpr Seconds kFirstBetween(0.02);
 
-/// A request that waits for its reply.
-struct Pending
-{
-    Request request;
-    std::uint64_t number = 0;
-    Seconds between = kFirstBetween;
-    Clock::time_point sent_at, seen_at;  ///< the request last sent, the server last seen
-};
-
 }  // namespace
 
 struct Caller::State
 {
+    /// A request that waits for its reply.
+    struct Pending
+    {
+        Request request;
+        std::uint64_t number = 0;
+        Seconds between = kFirstBetween;
+        Clock::time_point sent_at, seen_at;  ///< the request last sent, the server last seen
+    };
+
     const Session* session = nullptr;
     wire::ClientId id{};
     std::uint64_t last = 0;
@@ -156,7 +156,7 @@ Result<void> Caller::begin(const Request& request)
 Result<std::optional<Reply>> Caller::wait(Seconds slice)
 {
     constexpr Seconds kMostBetween(1.0), kGone(0.5);
-    Pending& pending = state_->pending;
+    State::Pending& pending = state_->pending;
     if (state_->replies.writers() > 0) pending.seen_at = Clock::now();
     // Its last reply may arrive before or after the notice of its end.
     if (Clock::now() - pending.seen_at >= kGone) return reason("server '" + state_->session->server() + "' has gone without a reply");

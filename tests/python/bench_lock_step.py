@@ -46,13 +46,14 @@ def in_real_time(count: int, rate: int) -> tuple[int, int]:
 
 def main() -> None:
     for count, rate in ((1, 1000), (200, 1000), (10_000, 60)):
-        with plab.Server.start(lab.many_balls(count), states="all") as server, server.session() as session:
+        with plab.Server.start(lab.many_balls(count)) as server, server.session() as session:
             session.step(10)
             steps, median = lock_step(session)
             step_time = session.metrics().step_time
+        with plab.Server.start(lab.many_balls(count), states="all") as server, server.session() as session:
             arrived, made = at_most(session)
         got, sent = in_real_time(count, rate)
-        print(f"{count:6} bodies: {steps:5.0f} steps/s in lock step, median {median * 1e6:.0f} us, of which the step {step_time * 1e6:.0f} us")
+        print(f"{count:6} bodies: {steps:.0f} steps/s in lock step, median {median * 1e6:.0f} us, of it the step {step_time * 1e6:.0f} us")
         print(f"{'':14} as fast as it can: {arrived:.0f} frames/s arrive of {made:.0f} steps/s")
         print(f"{'':14} {rate} frames/s in real time: {got} arrive of {sent}")
 

@@ -148,7 +148,12 @@ class DeathTest(lab.LabTest):
     def run_script(self, body: str) -> subprocess.Popen:
         script = f"import sys, lab, plab\nserver = plab.Server.start(lab.BALL, rate=1)\nsession = server.session()\n{body}"
         child = subprocess.Popen(
-            [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=os.path.dirname(__file__)
+            [sys.executable, "-c", script],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=os.path.dirname(__file__),
+            start_new_session=True,
         )
         self.addCleanup(child.stdout.close)
         self.addCleanup(child.stderr.close)
@@ -167,13 +172,14 @@ class DeathTest(lab.LabTest):
             with self.subTest(what):
                 child = self.run_script(
                     "f = session.frames(timeout=None); next(f)\nprint('waiting', flush=True)\n"
-                    f"try:\n    {wait}\nexcept KeyboardInterrupt:\n    print('interrupted', flush=True)\n    raise\nfinally:\n"
-                    "    session.close(); server.close()\n"
+                    f"try:\n    {wait}\n"
+                    "except KeyboardInterrupt:\n    print('interrupted', server.exit_code, flush=True)\n    raise\n"
+                    "finally:\n    session.close(); server.close()\n"
                 )
                 time.sleep(0.3)
                 begin = time.monotonic()
-                child.send_signal(signal.SIGINT)
-                self.assertEqual(child.stdout.readline(), "interrupted\n")
+                os.killpg(child.pid, signal.SIGINT)  # as a terminal does
+                self.assertEqual(child.stdout.readline(), "interrupted None\n")  # the server runs on
                 self.assertLess(time.monotonic() - begin, 1.5)
                 self.assertEqual(child.wait(20), -signal.SIGINT)
                 self.assertTrue(lab.wait_until(lambda child=child: not lab.processes_of(f"python_{child.pid}_")))

@@ -28,7 +28,8 @@ class StepTest(lab.LabTest):
     def test_two_runs_have_the_same_bits(self):
         def states() -> list[bytes]:
             with plab.Server.start(lab.PAPER) as server, server.session() as session:
-                return [session.step(100)._bodies[:, 1:].tobytes() + frame.speeds.tobytes() for frame in [session.step(100)] for _ in range(3)]
+                frames = [session.step(300) for _ in range(3)]
+            return [frame.positions.tobytes() + frame.quaternions.tobytes() + frame.speeds.tobytes() for frame in frames]
 
         self.assertEqual(states(), states())
 
@@ -66,7 +67,7 @@ class FramesTest(lab.LabTest):
         frames = session.frames()
         session.resume()
         steps = [frame.step for frame in frames]
-        self.assertEqual(steps, sorted(set(steps)))
+        self.assertEqual(steps, sorted(steps))
         self.assertGreater(len(steps), 3)
         self.assertEqual(server.wait(10), 0)
         session.close()

@@ -93,6 +93,8 @@ PLAB_PYTHON_API PlabCatalogue* plab_catalogue_open(PlabSession* session, unsigne
 PLAB_PYTHON_API int plab_catalogue_fetch(PlabCatalogue* catalogue, double slice);
 /// JSON of one part as it stands: a list, or of the server, the scene and the metrics an object or null.
 PLAB_PYTHON_API const char* plab_catalogue_text(PlabCatalogue* catalogue, unsigned part);
+/// JSON: a list of [run, handle, id] of all objects, in a twentieth of the time that their whole text takes.
+PLAB_PYTHON_API const char* plab_catalogue_names(PlabCatalogue* catalogue);
 PLAB_PYTHON_API void plab_catalogue_close(PlabCatalogue* catalogue);
 
 PLAB_PYTHON_API PlabFrames* plab_frames_open(PlabSession* session);

@@ -203,6 +203,18 @@ const char* plab_catalogue_text(PlabCatalogue* catalogue, unsigned part)
         });
 }
 
+const char* plab_catalogue_names(PlabCatalogue* catalogue)
+{
+    return guarded(
+        [&]() -> Result<const char*>
+        {
+            link::Json out = link::Json::array();
+            for (const auto& [id, object] : catalogue->catalogue.now().objects) out.push_back({object.run, object.handle, id});
+            catalogue->text = link::line_of(out);
+            return catalogue->text.c_str();
+        });
+}
+
 void plab_catalogue_close(PlabCatalogue* catalogue) { delete catalogue; }
 
 PlabFrames* plab_frames_open(PlabSession* session)

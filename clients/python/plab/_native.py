@@ -70,6 +70,7 @@ _PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "catalogue_open": (c_void_p, [c_void_p, c_uint]),
     "catalogue_fetch": (c_int, [c_void_p, c_double]),
     "catalogue_text": (c_char_p, [c_void_p, c_uint]),
+    "catalogue_names": (c_char_p, [c_void_p]),
     "catalogue_close": (None, [c_void_p]),
     "frames_open": (c_void_p, [c_void_p]),
     "frames_next": (c_int, [c_void_p, c_double, POINTER(Frame)]),

@@ -9,6 +9,7 @@ import tempfile
 import time
 from collections.abc import Iterable
 from types import TracebackType
+from typing import IO
 
 from .errors import NoServer
 from .programs import Program
@@ -20,7 +21,7 @@ _numbers = itertools.count(1)
 class Server:
     """A plabd that this process started. ``with Server.start(scene) as server, server.session() as session: ...``"""
 
-    def __init__(self, program: Program, name: str, domain: int, scene_file: tempfile.NamedTemporaryFile | None) -> None:  # type: ignore[valid-type]
+    def __init__(self, program: Program, name: str, domain: int, scene_file: IO[str] | None) -> None:
         self._program, self._scene_file = program, scene_file
         self.name, self.domain = name, domain
 

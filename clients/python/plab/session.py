@@ -24,11 +24,15 @@ if TYPE_CHECKING:
 class Session:
     """Joins a running server. ``with plab.Session("plab") as session: ...``
 
-    server: its name; by default PLAB_SERVER, or the only one that runs. domain: the DDS domain, by default PLAB_DOMAIN or 0. interface: a
-    network interface, by default PLAB_INTERFACE, "" for this host only. timeout: s to wait for the server, and later for replies and data.
+    server: its name; by default PLAB_SERVER, or the only one that runs.
+    domain: the DDS domain, by default PLAB_DOMAIN or 0.
+    interface: a network interface, by default PLAB_INTERFACE, "" for this host only.
+    timeout: s to wait for the server, and later for replies and data.
+    own: the ``Server`` whose session it is; ``Server.session`` fills it in.
 
-    Not for several threads at once; each thread may have a session of its own. Requests raise Refused with the server's reasons, NoReply and
-    ServerGone. ``at`` names the step before which a request takes effect (Late: it has passed), ``revision`` that of the scene it was made for.
+    Not for several threads at once; each thread may have a session of its own. Requests raise Refused with the server's reasons, NoReply
+    and ServerGone. ``at`` names the step before which a request takes effect (Late: it has passed), ``revision`` the scene that it was
+    made for.
     """
 
     def __init__(
@@ -69,7 +73,7 @@ class Session:
                 raise ServerGone("the server has ended already")
         raise NoServer(why_not)
 
-    # ---- Life -------------------------------------------------------------------------------------------------------------------------------
+    # ---- Life --------------------------------------------------------------------------------------------------------
 
     @property
     def server(self) -> str:
@@ -104,7 +108,7 @@ class Session:
         if self._own is not None and self._own.exit_code:
             raise ServerGone(f"server '{self._own.name}' ended with exit code {self._own.exit_code}\n{self._own.log}".strip())
 
-    # ---- What there is ----------------------------------------------------------------------------------------------------------------------
+    # ---- What there is -----------------------------------------------------------------------------------------------
 
     def info(self) -> ServerInfo:
         """The server's state, at most a second old."""
@@ -142,15 +146,18 @@ class Session:
         raise NoReply(f"server '{self.server}' sent no metrics within {timeout} s")
 
     def _part(self, part: int, timeout: float | None = None) -> Any:
+        return _native.parse(self._fetched(part, self.timeout if timeout is None else timeout).text(part))
+
+    def _fetched(self, part: int, timeout: float) -> _native.Handle:
         """The catalogue is kept up to date from its first use on; parts that nobody asks for cost nothing."""
         catalogue = self._catalogues.get(part)
         if catalogue is None:
             pointer = _native.call("catalogue_open", self._handle.pointer, part)
             catalogue = self._catalogues[part] = _native.Handle("catalogue_", pointer, "catalogue_close")
         begin = time.monotonic()
-        for slice in _native.slices(self.timeout if timeout is None else timeout):
+        for slice in _native.slices(timeout):
             if catalogue.fetch(slice):
-                return _native.parse(catalogue.text(part))
+                return catalogue
             missing = _native.error()
             is_silent = catalogue.text(_native.PART_SERVER) == b"null"
             if self.has_ended() or is_silent and time.monotonic() - begin > GONE_AFTER:
@@ -160,12 +167,12 @@ class Session:
 
     def _load_names(self) -> dict[tuple[int, int], str]:
         try:
-            objects = self._part(_native.PART_OBJECTS)
+            names = self._fetched(_native.PART_OBJECTS, self.timeout).names()
         except ServerGone:
             return {}  # its last frames are worth having without new names
-        return {(one["run"], one["handle"]): one["id"] for one in objects}
+        return {(run, handle): id for run, handle, id in _native.parse(names)}
 
-    # ---- What happens -----------------------------------------------------------------------------------------------------------------------
+    # ---- What happens ------------------------------------------------------------------------------------------------
 
     def frames(self, *, until: float | None = None, timeout: float | None = 10) -> FrameStream:
         """An iterator of states, as the server sends them (60 a second unless ``Server.start(states=...)`` says otherwise).
@@ -195,19 +202,19 @@ class Session:
     def record(self, path: str | os.PathLike[str], *, state_rate: float | None = None, overwrite: bool = False) -> Recorder:
         """Records what the server sends, from the present frame on, until the recorder is closed; as plabctl does, in a process of its own.
 
-        path: a new file, "run.mcap". state_rate: frames per simulated second at most. ``Server.start(record=...)`` has every step from 0 on.
+        path: a new file, "run.mcap". state_rate: frames per simulated second at most. ``Server.start(record=...)`` has every step.
         """
         return Recorder(path, self.server, self._own.domain if self._own else None, state_rate, overwrite, self.timeout)
 
-    # ---- Requests ---------------------------------------------------------------------------------------------------------------------------
+    # ---- Requests ----------------------------------------------------------------------------------------------------
 
     def request(
         self, *operations: Operation, at: int | None = None, revision: int | None = None, timeout: float | None = None
     ) -> Reply:
         """Operations that take effect at one step boundary, all or none; ``Operation`` has the words of server/docs/requests.md.
 
-        A request that names a distant step is answered at that step: give it the ``timeout`` for that. After NoReply it may still be carried
-        out; ``cancel`` withdraws it.
+        A request that names a distant step is answered at that step: give it the ``timeout`` for that. After NoReply it may still be
+        carried out; ``cancel`` withdraws it.
         """
         timeout = self.timeout if timeout is None else timeout
         self._connect(timeout)
@@ -255,13 +262,15 @@ class Session:
     ) -> Swap:
         """Exchanges one component for another of its family, and returns the proof. ``values`` are parameters of the new one.
 
-        trial: s that the first step may be tried for, or "none", "unlimited", "20 ms or refuse". allow_energy: the factor by which the first
-        step may multiply the energy, or "any".
+        trial: s that the first step may be tried for, or "none", "unlimited", "20 ms or refuse". allow_energy: the factor by which the
+        first step may multiply the energy, or "any".
         """
         reply = self.request(*swap_operations(id, type, values, trial, allow_energy), at=at, timeout=timeout)
         return reply.swaps[0]
 
-    def swap_all(self, pattern: str, type: str, /, *, at: int | None = None, trial: float | str | None = None, **values: Value) -> list[Swap]:
+    def swap_all(
+        self, pattern: str, type: str, /, *, at: int | None = None, trial: float | str | None = None, **values: Value
+    ) -> list[Swap]:
         """As ``swap``, of all ids that the pattern with ``*`` and ``?`` names: all or none."""
         return self.request(*swap_operations(pattern, type, values, trial, None), at=at).swaps
 

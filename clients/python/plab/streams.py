@@ -24,8 +24,8 @@ GONE_AFTER = 2.0  # s without a writer: plab-bus may have been started again, wh
 class Stream(Generic[T]):
     """An iterator that waits for what comes next.
 
-    It ends at its ``until``, or when a server of one's own (``Server.start``) has ended by itself. ServerGone: another server has ended, or one
-    was killed. NoReply: nothing came for ``timeout`` s, for instance because the server is paused. ``close`` unsubscribes.
+    It ends at its ``until``, or when a server of one's own (``Server.start``) has ended by itself. ServerGone: another server has ended,
+    or one was killed. NoReply: nothing came for ``timeout`` s, for instance because the server is paused. ``close`` unsubscribes.
     """
 
     _what = ""

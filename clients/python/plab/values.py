@@ -272,7 +272,8 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Swap:
-    """The proof of an exchange: what was carried over, and the first step with the new component beside what the old one would have given."""
+    """The proof of an exchange: what was carried over, and the first step with the new component, beside what the old one would have
+    given."""
 
     component: str
     from_type: str
