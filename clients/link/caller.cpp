@@ -44,13 +44,27 @@ bool reaches_server(const wire::Entity& requests, const wire::Entity& replies)
     return std::find_first_of(readers.begin(), readers.end(), servers.begin(), servers.end()) != readers.end();
 }
 
+/// The server's reader may discover this writer slightly later than this side discovers the reader, and earlier samples are not kept for
+/// it: so a request is soon sent again.
+constexpr Seconds kFirstBetween(0.02);
+
 }  // namespace
 
 struct Caller::State
 {
+    /// A request that waits for its reply.
+    struct Pending
+    {
+        Request request;
+        std::uint64_t number = 0;
+        Seconds between = kFirstBetween;
+        Clock::time_point sent_at, seen_at;  ///< the request last sent, the server last seen
+    };
+
     const Session* session = nullptr;
     wire::ClientId id{};
     std::uint64_t last = 0;
+    Pending pending;
     wire::DataReader<plab_v2_Reply> replies;  // its filter reads `id`: State never moves
     wire::DataWriter<plab_v2_Request> requests;
 
@@ -130,42 +144,54 @@ Presence Caller::presence() const
     return state_->replies.writers() == 0 ? Presence::Gone : Presence::Silent;
 }
 
-Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& stop)
+Result<void> Caller::begin(const Request& request)
 {
-    constexpr Seconds kMostBetween(1.0), kSlice(0.1), kGone(0.5);
-    // The server's reader may discover this writer slightly later than this side discovers the reader, and earlier samples are
-    // not kept for it.
-    Seconds between(0.02);
-    const auto end = moment_after(timeout);
     auto number = send(request);
     if (!number) return number.errors();
-    auto sent_at = Clock::now(), seen_at = sent_at;
+    const auto now = Clock::now();
+    state_->pending = {request, *number, kFirstBetween, now, now};
+    return {};
+}
+
+Result<std::optional<Reply>> Caller::wait(Seconds slice)
+{
+    constexpr Seconds kMostBetween(1.0), kGone(0.5);
+    State::Pending& pending = state_->pending;
+    if (state_->replies.writers() > 0) pending.seen_at = Clock::now();
+    // Its last reply may arrive before or after the notice of its end.
+    if (Clock::now() - pending.seen_at >= kGone) return reason("server '" + state_->session->server() + "' has gone without a reply");
+    const Seconds until_again = std::max(pending.between - Seconds(Clock::now() - pending.sent_at), Seconds(1e-3));
+    (void)state_->session->wait(state_->replies, std::min(slice, until_again));
     std::optional<Reply> answer;
-    while (!answer)
+    take(
+        [&](std::uint64_t of, Reply reply)
+        {
+            if (of != pending.number || answer) return;
+            answer = std::move(reply);
+            // The caller made one request. That this function repeated it, and that another copy was answered first, is an
+            // internal detail.
+            answer->repeated = false;
+        });
+    if (answer || Clock::now() - pending.sent_at < pending.between) return answer;
+    // A request for a later step is answered at that step: repeating it is harmless because of its number.
+    if (auto sent = send_again(pending.request, pending.number); !sent) return sent.errors();
+    pending.sent_at = Clock::now(), pending.between = std::min(2 * pending.between, kMostBetween);
+    return answer;
+}
+
+Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& stop)
+{
+    constexpr Seconds kSlice(0.1);
+    const auto end = moment_after(timeout);
+    if (auto begun = begin(request); !begun) return begun.errors();
+    while (true)
     {
-        if (state_->replies.writers() > 0) seen_at = Clock::now();
-        // Its last reply may arrive before or after the notice of its end.
-        if (Clock::now() - seen_at >= kGone) return reason("server '" + state_->session->server() + "' has gone without a reply");
-        const Seconds left = Seconds(end - Clock::now());
-        if (left <= Seconds(0)) return reason("no reply from server '" + state_->session->server() + "' within the time-out");
+        auto reply = wait(std::min(Seconds(end - Clock::now()), kSlice));
+        if (!reply) return reply.errors();
+        if (*reply) return **reply;
+        if (Clock::now() >= end) return reason("no reply from server '" + state_->session->server() + "' within the time-out");
         if (stop && stop()) return reason("interrupted before the reply");
-        (void)state_->session->wait(state_->replies,
-                                    std::min({left, kSlice, std::max(between - Seconds(Clock::now() - sent_at), Seconds(1e-3))}));
-        take(
-            [&](std::uint64_t of, Reply reply)
-            {
-                if (of != *number || answer) return;
-                answer = std::move(reply);
-                // The caller made one request. That this function repeated it, and that another copy was answered first, is an
-                // internal detail.
-                answer->repeated = false;
-            });
-        if (answer || Clock::now() - sent_at < between) continue;
-        // A request for a later step is answered at that step: repeating it is harmless because of its number.
-        if (auto sent = send_again(request, *number); !sent) return sent.errors();
-        sent_at = Clock::now(), between = std::min(2 * between, kMostBetween);
     }
-    return *answer;
 }
 
 }  // namespace plab::link

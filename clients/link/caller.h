@@ -35,6 +35,12 @@ public:
     /// whether the request was carried out).
     Result<Reply> call(const Request& request, Seconds timeout, const Stop& stop = {});
 
+    /// call() in pieces, for callers that look up in between: sends the request, in place of one that still waits for its reply.
+    Result<void> begin(const Request& request);
+    /// Waits for its reply for `slice` at most, and sends it again when that is due. Nothing: not yet. An error means that the server
+    /// has gone without a reply. Only after begin().
+    Result<std::optional<Reply>> wait(Seconds slice);
+
     /// The name of the last request, for `cancel`: "3f..00:7". "" before the first.
     std::string last_request() const;
     /// Whether the server is still there; takes a moment if it is silent.

@@ -1,5 +1,6 @@
 # What `cmake --install BUILD --prefix PREFIX` puts where, in components: "server" (plabd, its clients, plugins and scenes), "viewer"
-# (what needs OSMesa besides), "web" (plab-web and its page, plab-foxglove), "study" (plab-study), "doc" (these documents) and "sdk" (what plugins and clients are built with
+# (what needs OSMesa besides), "web" (plab-web and its page, plab-foxglove), "study" (plab-study), "python" (the Python package), "doc" (these
+# documents) and "sdk" (what plugins and clients are built with
 # elsewhere). plabd finds its plugins in ../lib/plab as seen from its own folder, and the CMake package and pkg-config's files look from
 # theirs, so PREFIX may be moved. The folders are the same under every PREFIX for that reason, /usr among them. Included last: it needs
 # all targets.
@@ -33,6 +34,12 @@ install(TARGETS plab-web plab-foxglove RUNTIME DESTINATION bin COMPONENT web)
 # Not there without npm: plab-web then says so.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/plab/web DESTINATION share/plab COMPONENT web)
 install(TARGETS plab-study RUNTIME DESTINATION bin COMPONENT study)
+# Where Debian's Python looks, if PREFIX is /usr; elsewhere PYTHONPATH names it. The package looks for the programs from there.
+set(PLAB_PYTHON_DIR lib/python3/dist-packages/plab)
+install(DIRECTORY clients/python/plab/ DESTINATION ${PLAB_PYTHON_DIR} COMPONENT python FILES_MATCHING PATTERN "*.py" PATTERN "py.typed"
+  PATTERN __pycache__ EXCLUDE)
+install(TARGETS plab_python LIBRARY DESTINATION ${PLAB_PYTHON_DIR} COMPONENT python)
+install(DIRECTORY clients/python/examples DESTINATION share/plab/python COMPONENT python FILES_MATCHING PATTERN "*.py")
 install(DIRECTORY server/docs/ DESTINATION share/doc/plab COMPONENT doc FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
 
 # The SDK: headers, the libraries of clients, the wire's IDL, and what CMake and pkg-config ask for.
@@ -115,7 +122,7 @@ if(TARGET plab-conformance)
 endif()
 
 # Debian wants one in each package.
-foreach(component_package "server plab" "viewer plab-view" "web plab-web" "sdk plab-dev")
+foreach(component_package "server plab" "viewer plab-view" "web plab-web" "python python3-plab" "sdk plab-dev")
   string(REPLACE " " ";" pair ${component_package})
   list(GET pair 0 component)
   list(GET pair 1 package)
@@ -124,7 +131,7 @@ endforeach()
 
 # All that is installed, and none of the tests.
 get_property(help GLOBAL PROPERTY PLAB_HELP)
-add_custom_target(plab_installed DEPENDS plab_runtime plab-study plab-manifest ${help})
+add_custom_target(plab_installed DEPENDS plab_runtime plab_python_package plab-study plab-manifest ${help})
 if(TARGET plab-conformance)
   add_dependencies(plab_installed plab-conformance)
 endif()

@@ -1,5 +1,6 @@
 # Debian packages, for `cpack` in the build folder: plab (server, clients, plab-study, documents), plab-view (what needs OSMesa besides),
-# plab-web (plab-web and its page, plab-foxglove) and plab-dev (the SDK). Their dependencies are the libraries that the files in them load, as dpkg-shlibdeps finds them. The packages'
+# plab-web (plab-web and its page, plab-foxglove), python3-plab (the Python package) and plab-dev (the SDK). Their dependencies are the
+# libraries that the files in them load, as dpkg-shlibdeps finds them. The packages'
 # programs are stripped; the debug information is in packages of its own, plab-dbgsym and so on. Included last: it needs install.cmake.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME plab)
@@ -10,7 +11,7 @@ set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL server study doc viewer web sdk)
+set(CPACK_COMPONENTS_ALL server study doc viewer web python sdk)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_DEBUGINFO_PACKAGE ON)
@@ -24,6 +25,10 @@ set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "plab (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_WEB_PACKAGE_NAME plab-web)
 set(CPACK_DEBIAN_WEB_DESCRIPTION "page for browsers that shows and steers pLab's scenes")
 set(CPACK_DEBIAN_WEB_PACKAGE_DEPENDS "plab (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-plab)
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "runs, steps and steers pLab's scenes from Python")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "plab (= ${PROJECT_VERSION}), python3 (>= 3.11), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-matplotlib")
 set(CPACK_DEBIAN_SDK_PACKAGE_NAME plab-dev)
 set(CPACK_DEBIAN_SDK_DESCRIPTION "headers, libraries and CMake package for plugins and clients of pLab")
 # Cyclone DDS for plab::link; authors of plugins do without.
@@ -37,4 +42,5 @@ foreach(component server study doc)
 endforeach()
 cpack_add_component(viewer)
 cpack_add_component(web)
+cpack_add_component(python)
 cpack_add_component(sdk)

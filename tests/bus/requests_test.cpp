@@ -59,6 +59,29 @@ TEST_CASE("a swap takes effect at the step that it names, and the reply reports 
     CHECK(has(reasons(stale), "revision 1"));
 }
 
+TEST_CASE("a call in pieces looks up while its reply is to come, and a new one takes its place")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--rate", "max", "--paused"});
+    Client client(server), other(server);
+    REQUIRE(client.caller.begin(link::Request{{{"pause"}}, 1000000, {}}).ok());
+    REQUIRE(client.caller.begin(link::Request{{{"pause"}}, 100, {}}).ok());
+    const auto early = client.caller.wait(Seconds(0.2));
+    REQUIRE(early.ok());
+    CHECK(!early->has_value());
+    CHECK(ask(other.caller, {"step", "", "200"}).done());
+    std::optional<link::Reply> reply;
+    for (int i = 0; i < 100 && !reply; ++i)
+    {
+        auto piece = client.caller.wait(Seconds(0.05));
+        REQUIRE_MESSAGE(piece.ok(), piece.error().text());
+        reply = piece.take();
+    }
+    REQUIRE(reply.has_value());
+    CHECK(reply->done());
+    CHECK(reply->step == 100);
+    CHECK(!reply->repeated);
+}
+
 TEST_CASE("a request that is sent again is carried out once, and its answer is repeated")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});

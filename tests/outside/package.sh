@@ -30,7 +30,7 @@ make_packages() {
     rm -rf "$build/packages"
     (cd "$build" && quietly cpack cpack) || fail "cpack"
     local name
-    for name in plab plab-view plab-web plab-dev; do
+    for name in plab plab-view plab-web python3-plab plab-dev; do
         dpkg-deb -c "$build/packages/${name}"_*.deb | grep -q "/usr/share/doc/$name/copyright$" || fail "$name has no copyright file"
     done
     ls -l --block-size=K "$build/packages" | awk 'NR > 1 { print $5, $9 }'

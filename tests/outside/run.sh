@@ -100,6 +100,17 @@ check_help() {
     fi
 }
 
+# The Python package is found by its prefix, and finds the programs there: a scene is stepped.
+check_python() {
+    /usr/bin/python3 -c 'import numpy' 2>/dev/null || { echo "outside: no numpy: that part is left out"; return; }
+    local said
+    said=$(cd "$work/tutorial" && PLAB_DOMAIN=$domain PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$prefix/lib/python3/dist-packages timeout -k 5 60 /usr/bin/python3 -c '
+import plab
+with plab.Server.start("ball.xml") as server, server.session() as session:
+    print(plab.__file__, plab.programs.path_of("plabd"), session.step(10).bodies)') || fail "the Python package: $said"
+    [[ $said == "$prefix/lib/python3/dist-packages/plab/__init__.py $prefix/bin/plabd "*ball* ]] || fail "the Python package says '$said'"
+}
+
 # No other test is likely to use it.
 domain=$((20 + $$ % 200))
 install_and_move
@@ -107,4 +118,5 @@ run_tutorial
 run_pkg_config
 check_refusals
 check_help
+check_python
 echo "outside: passed"
