@@ -17,22 +17,6 @@ Entries::iterator place_of(Entries& next, std::string_view id)
     return std::lower_bound(next.begin(), next.end(), id, [](const Entry& e, std::string_view name) { return e.name < name; });
 }
 
-/// The factor by which a distance (m) appears in a picture (pixels), for the viewer to whom it is largest; kHidden: nobody can see the
-/// component within `look_ahead` (s).
-double pixels_per_metre(const GovernedComponent& g, std::span<const Viewpoint> eyes, double look_ahead, double margin)
-{
-    constexpr double kNearest = 0.1;  // m: what is nearer fills the picture
-    double most = kHidden;
-    for (const Viewpoint& eye : eyes)
-    {
-        const double reach = look_ahead * (length(eye.velocity) + g.speed);
-        if (!is_in_view(widened(eye, margin), {g.center, g.radius + reach})) continue;
-        const double distance = std::max(kNearest, distance_to(eye, {g.center, g.radius}) - reach);
-        most = std::max(most, 0.5 * eye.height / std::tan(0.5 * eye.field_of_view) / distance);
-    }
-    return most;
-}
-
 double pick(const LevelError& error, const std::string& unit, double scale)
 {
     if (unit == "rad") return error.angle;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "simulation/costs/clock.h"
 #include "simulation/simulation.h"
 
 namespace plab::simulation
@@ -70,10 +71,12 @@ const Result<FirstStep>& Simulation::step_with(std::uint32_t component, const Le
     Request request;
     request.operations.push_back(SwapOperation{run_.world().id_of(component), level.type, level.values});
     request.trial.budget = TrialChoice::Budget::Unlimited;  // a limit by the clock would make decisions depend on it
-    return tried_.emplace_back(Tried{component, &level, Transaction(run_, context_, *this, request).first_step()}).step;
+    constexpr std::uint64_t kMeasure = 200'000;             // ns
+    const std::uint64_t measure = measuring_ ? kMeasure : 0;
+    return tried_.emplace_back(Tried{component, &level, Transaction(run_, context_, *this, request).first_step(measure)}).step;
 }
 
-LevelError Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval)
+TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval)
 {
     if (!step_with(component, level) || !step_with(component, finer)) return {};
     const FirstStep &one = *step_with(component, level), &other = *step_with(component, finer);
@@ -85,8 +88,8 @@ LevelError Simulation::error_of_level(std::uint32_t component, const Level& leve
             departure.add(one.motion[i++], other.motion[k++]);
         else
             one.motion[i].object < other.motion[k].object ? ++i : ++k;
-    LevelError out = departure.result();
-    if (one.motion.size() == other.motion.size()) out.power = std::fabs(one.energy - other.energy) / h;
+    TrialFindings out{departure.result(), one.seconds, other.seconds};
+    if (one.motion.size() == other.motion.size()) out.error.power = std::fabs(one.energy - other.energy) / h;
     return out;
 }
 
@@ -102,14 +105,19 @@ void Simulation::measure_for_governors()
         std::nth_element(values.begin(), at, values.end());
         return *at;
     };
-    const StepCost cost{nine_of_ten(&StepCost::wall), nine_of_ten(&StepCost::processor)};
+    bool taken = false;
+    const auto cost = [&]
+    {
+        taken = true;
+        return StepCost{nine_of_ten(&StepCost::wall), nine_of_ten(&StepCost::processor)};
+    };
     for (Request& request : run_.levels().measurements(time(), dt(), cost))
     {
-        recent_steps_.clear();
         Reply reply = carry_out(request);
         reply.made = std::make_shared<const Request>(std::move(request));
         own_requests_.push_back(std::move(reply));
     }
+    if (taken) recent_steps_.clear();
 }
 
 void Simulation::decide()
@@ -204,7 +212,9 @@ void Simulation::carry_out_decision(const Decision& decision)
 
 bool Simulation::take_effect(const Decision& decision, const Request& request, const std::vector<std::string>& reasons)
 {
+    const std::uint64_t begin = now_ns(), thread_begin = thread_ns();
     Reply reply = Transaction(run_, context_, *this, request).run();
+    const StepCost cost{1e-9 * static_cast<double>(now_ns() - begin), 1e-9 * static_cast<double>(thread_ns() - thread_begin)};
     run_.stepper().charge(decision.by, static_cast<std::int64_t>(reply.pause_ns));
     if (!reply.done)
     {
@@ -213,6 +223,7 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
             refuse_decision(decision.by, decision.verb + " " + decision.target, last_refusal_);
         return false;
     }
+    if (decision.verb.empty()) run_.levels().note_exchange(decision.by, decision.operations.size(), cost);
     run_.watch->begin_anew();
     note_levels();
     for (std::size_t k = 0; k < reply.swaps.size() && decision.verb.empty(); ++k)

@@ -128,7 +128,7 @@ private:
     /// Observers see the governor of a component with it.
     void note_levels();
     const Result<FirstStep>& step_with(std::uint32_t component, const Level& level);
-    LevelError error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval);
+    TrialFindings error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval);
 
     bool run_step();
     void take_back_step();

@@ -32,6 +32,7 @@ struct StudyOptions
     int repeat = 5;
     bool govern = false;   ///< compares a governor with one level for all
     std::string governor;  ///< its id; empty: the first one of the scene
+    bool verify_levels = false;  ///< checks what governors promise; `scene` may be a recording
     std::string out;
     std::string command;  ///< the command line as typed
 };

@@ -30,6 +30,7 @@ struct FirstStep
 {
     std::vector<ObjectMotion> motion;  ///< bodies first, each in the order of host rows
     double energy = 0;                 ///< J, kinetic and stored
+    double seconds = 0;                ///< that the step takes, the median of some; 0: not measured
 };
 
 /// A transaction: back up, apply, try, then commit or roll back.
@@ -51,8 +52,9 @@ public:
     Transaction(Run& run, RunContext& context, RunOperations& operations, const Request& request);
     /// Applies, tries and commits the request. On any error everything is as it was before.
     Reply run();
-    /// Makes the first step with the request, and undoes both: they leave no trace.
-    Result<FirstStep> first_step();
+    /// Makes the first step with the request, and undoes both: they leave no trace. `measure_ns`: time for which the step may be repeated
+    /// to measure what it costs.
+    Result<FirstStep> first_step(std::uint64_t measure_ns);
 
 private:
     Result<void> apply(const Operation& operation);
