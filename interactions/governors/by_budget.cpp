@@ -273,24 +273,22 @@ void BudgetLook::choose()
         control_.tell(row_, change.component, error_of(change.component, change.level), "m", std::numeric_limits<double>::quiet_NaN());
     }
     g_.waiting[row_] = static_cast<std::int64_t>(changes.size() - now);
-    if (cost_ + exchange_cost(now) > budget_) g_.last_long[row_] = context_.time;
+    if (now > 0 && cost_ + exchange_cost(now) > budget_) g_.last_long[row_] = context_.time;
+    g_.retry[row_] = now > 0 ? context_.time : g_.last_long[row_] + kRare * context_.dt;
 }
 
 void BudgetLook::publish()
 {
     g_.spent[row_] = cost_ / budget_;
     g_.given_up[row_] = static_cast<std::int64_t>(static_cast<double>(look_.watched().size()) - g_.watch.count[row_].back());
-    double all = 0, lost = 0, squares = 0;
+    double all = 0, lost = 0;
     for (std::size_t k = 0; k < look_.watched().size(); ++k)
     {
-        const GovernedComponent& c = look_.watched()[k];
         const double scale = importance(k);
         all += scale;
-        if (c.level < look_.finest()) lost += scale;
-        if (c.level >= 0) squares += std::pow(scale * error_of(k, c.level), 2);
+        if (look_.watched()[k].level < look_.finest()) lost += scale;
     }
     g_.lost[row_] = all > 0 ? lost / all : 0;
-    g_.error[row_] = std::sqrt(squares / static_cast<double>(look_.watched().size()));
 }
 
 /// Learns what exchanges cost, as a fixed cost and one for each component. What was measured differs from what was expected by a factor,
@@ -353,11 +351,10 @@ void BudgetRows::describe(Schema& schema)
     schema.state(next_trial, "next_trial", unit::one, "position of the component that was tried last");
     schema.state(waiting, "waiting", unit::one, "changes that wait for a boundary where there is time for them");
     schema.state(last_long, "last_long", unit::second, "when exchanges made a step longer than the budget").initially(-1e9);
+    schema.state(retry, "retry", unit::second, "when the changes that wait are planned again");
     schema.output(spent, "spent", unit::one, "cost of a step relative to the budget");
     schema.output(given_up, "given_up", unit::one, "number of components that are not at the most exact level");
     schema.output(lost, "lost", unit::one, "their share of the importance of all components, when it looked last");
-    schema.output(error, "error", unit::one,
-                  "root mean square of the errors that it knows of, in pixels; for what nobody sees a metre counts as a pixel");
 }
 
 void keep_budget(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control)
@@ -366,14 +363,15 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
     const bool measured = governors.step_cost[row] > kLeastCost, knows_costs = !governors.costs[row].empty();
     const bool looks = due(context, governors.watch.every[row]) || (measured && !knows_costs);
     const bool tries = governors.trials_left[row] > 0 && governors.spent[row] < 1;
-    if (!looks && !tries && governors.waiting[row] == 0) return;
+    const bool goes_on = governors.waiting[row] > 0 && context.time >= governors.retry[row];
+    if (!looks && !tries && !goes_on) return;
     BudgetLook look(context, row, governors, control);
     if (look.watches_nothing()) return;
     if (!knows_costs || looks) look.learn_errors_of_new_kinds();
     if (!measured && !knows_costs) return look.begin_cheaply(), look.publish();
     if (!measured) return;
     if (looks) look.learn_costs(), governors.trials_left[row] = governors.trials[row];
-    if (looks || governors.waiting[row] > 0)
+    if (looks || goes_on)
         look.choose();
     else
         --governors.trials_left[row], look.learn_errors(1);

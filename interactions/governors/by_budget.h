@@ -25,9 +25,10 @@ struct BudgetRows
     Column<std::int64_t> trials_left, next_trial;  ///< until the next look; position in the list of those watched
     Column<std::int64_t> waiting;                  ///< changes that the last look left for later boundaries
     Column<double> last_long;                      ///< s, when exchanges made a step longer than the budget
+    Column<double> retry;                          ///< s, when the changes that wait are planned again
     Column<double> spent;
     Column<std::int64_t> given_up;
-    Column<double> lost, error;
+    Column<double> lost;
 
     void describe(Schema& schema);
 };

@@ -54,9 +54,11 @@ private:
 void judge(bool held, Row row, ErrorRows& governors)
 {
     constexpr double kGain = 0.25, kMost = 1e4;
+    constexpr double kSooner = 0.5, kLater = 1.02, kLongest = 16;
     const double c = governors.target[row];
     ++governors.judged[row], governors.held[row] += held ? 1 : 0;
     governors.safety[row] = std::clamp(governors.safety[row] * std::exp(kGain * (held ? c - 1 : c)), 1.0, kMost);
+    governors.patience[row] = std::clamp(governors.patience[row] * (held ? kLater : kSooner), 1.0, kLongest);
 }
 
 /// Rule of succession (Laplace): nothing is certain after no or few trials.
@@ -87,9 +89,9 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
                               brief(governors.interval[row]) + " s, confidence " + brief(governors.confidence[row]));
     if (!std::isnan(error)) governors.worst[row] = std::max(governors.worst[row], error);
     // Far below the bound it is measured less often.
-    constexpr double kLongest = 16;
     const double likely = error * governors.safety[row];
-    const double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, kLongest) : std::isnan(likely) ? 1 : kLongest;
+    const double longest = governors.patience[row];
+    const double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, longest) : std::isnan(likely) ? 1 : longest;
     const double then = context.time + every * (waits ? 1 : longer);
     entry = place_of(next, id);
     if (entry != next.end() && entry->name == id)
@@ -137,6 +139,9 @@ void ErrorRows::describe(Schema& schema)
         .not_negative();
     schema.state(next, "next", unit::one, "when a component is measured again, s");
     schema.state(safety, "safety", unit::one, "factor by which measured errors are taken to be larger").initially(1);
+    schema.state(patience, "patience", unit::one,
+                 "times `every` after which what is far below the bound is measured again; it falls with each promise that is broken")
+        .initially(16);
     schema.state(judged, "judged", unit::one, "measurements of a level that was measured before");
     schema.state(held, "held", unit::one, "those of them that found the error still below the bound");
     schema.output(confidence, "confidence", unit::one, "with which a level's error is below the bound when it is measured again");
@@ -178,8 +183,10 @@ void keep_error(const StepContext& context, Row row, ErrorRows& governors, Level
         const std::size_t k = waiting[n].second;
         if (n < most)
             measure(context, row, k, scale_of(k), look, governors, control);
-        else if (by_sight && waiting[n].first < 0 && look.may_choose(k, look.finest()))
-            (void)look.choose(k, look.finest(), "it comes into view, and its error has not been measured yet");
+        else if (waiting[n].first < context.time - 2 * governors.watch.every[row] && look.may_choose(k, look.finest()))
+            (void)look.choose(k, look.finest(), waiting[n].first >= 0 ? "its error has not been measured for too long"
+                                                : by_sight            ? "it comes into view, and its error has not been measured yet"
+                                                                      : "its error has not been measured yet");
     }
 }
 

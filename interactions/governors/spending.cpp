@@ -67,15 +67,16 @@ std::vector<std::int32_t> choose_levels(std::span<const Candidate> candidates, c
     for (const Candidate& c : candidates) levels.push_back(c.least), spent += c.weight * price(prices.expected, c.least);
     std::vector<LevelStep> steps = steps_of(candidates, prices, tolerance);
     std::stable_sort(steps.begin(), steps.end(), [](const LevelStep& a, const LevelStep& b) { return a.worth > b.worth; });
-    std::vector<bool> tried(prices.expected.size(), false);
+    std::vector<bool> tried(prices.expected.size(), false), tries(candidates.size(), false);
     for (const LevelStep& s : steps)
     {
-        if (levels[s.candidate] != s.from) continue;  // an earlier step of this candidate did not fit
+        // An earlier step of this candidate did not fit, or is to be known before the next one is made.
+        if (levels[s.candidate] != s.from || tries[s.candidate]) continue;
         const auto to = static_cast<std::size_t>(s.to);
         const bool one_tries = s.doubtful() && !tried[to];
         const double cost = s.doubtful() && !one_tries ? s.at_worst : s.seconds;
         if (cost > 0 && spent + cost > seconds) continue;
-        spent += cost, levels[s.candidate] = s.to, tried[to] = tried[to] || one_tries;
+        spent += cost, levels[s.candidate] = s.to, tried[to] = tried[to] || one_tries, tries[s.candidate] = one_tries;
     }
     return levels;
 }

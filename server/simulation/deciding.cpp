@@ -62,8 +62,8 @@ std::vector<std::string> ids_in(const std::vector<Operation>& operations)
 
 }  // namespace
 
-/// What the first step would be with a level.
-const Result<FirstStep>& Simulation::step_with(std::uint32_t component, const Level& level)
+/// What the first steps would be with a level.
+const Result<FirstStep>& Simulation::step_with(std::uint32_t component, const Level& level, const FirstStepChoice& choice)
 {
     if (!tried_.empty() && tried_.front().component != component) tried_.clear();
     for (const Tried& t : tried_)
@@ -71,17 +71,19 @@ const Result<FirstStep>& Simulation::step_with(std::uint32_t component, const Le
     Request request;
     request.operations.push_back(SwapOperation{run_.world().id_of(component), level.type, level.values});
     request.trial.budget = TrialChoice::Budget::Unlimited;  // a limit by the clock would make decisions depend on it
-    constexpr std::uint64_t kMeasure = 200'000;             // ns
-    const std::uint64_t measure = measuring_ ? kMeasure : 0;
-    return tried_.emplace_back(Tried{component, &level, Transaction(run_, context_, *this, request).first_step(measure)}).step;
+    return tried_.emplace_back(Tried{component, &level, Transaction(run_, context_, *this, request).first_step(choice)}).step;
 }
 
-TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval)
+TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval, bool with_cost)
 {
-    if (!step_with(component, level) || !step_with(component, finer)) return {};
-    const FirstStep &one = *step_with(component, level), &other = *step_with(component, finer);
     const double h = run_.clock.time_at(tick() + 1) - time();
-    Departure departure(h, interval);
+    // What is smooth goes on as it begins. An impact does not announce itself, so the whole interval is tried.
+    const int steps = concerns_contacts(run_.world(), component) ? std::max(1, static_cast<int>(std::lround(interval / h))) : 1;
+    constexpr std::uint64_t kMeasure = 200'000;  // ns
+    const FirstStepChoice choice{steps, measuring_ && with_cost ? kMeasure : 0};
+    if (!step_with(component, level, choice) || !step_with(component, finer, choice)) return {};
+    const FirstStep &one = *step_with(component, level, choice), &other = *step_with(component, finer, choice);
+    Departure departure(h, steps > 1 ? h : interval);
     // One of the steps may have touched more objects.
     for (std::size_t i = 0, k = 0; i < one.motion.size() && k < other.motion.size();)
         if (one.motion[i].object == other.motion[k].object)
@@ -89,19 +91,19 @@ TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& l
         else
             one.motion[i].object < other.motion[k].object ? ++i : ++k;
     TrialFindings out{departure.result(), one.seconds, other.seconds};
-    if (one.motion.size() == other.motion.size()) out.error.power = std::fabs(one.energy - other.energy) / h;
+    if (one.motion.size() == other.motion.size()) out.error.power = std::fabs(one.energy - other.energy) / (steps * h);
     return out;
 }
 
 void Simulation::measure_for_governors()
 {
     if (!deciding_ || !measuring_ || !run_.levels().watches_anything() || recent_steps_.empty()) return;
-    // Most steps shall keep within a budget, so what counts is the cost that nine of ten steps do not exceed.
-    const auto nine_of_ten = [this](double StepCost::*clock)
+    // Most steps shall keep within a budget, so what counts is the cost that 19 of 20 steps do not exceed.
+    const auto nearly_all = [this](double StepCost::*clock)
     {
         std::vector<double> values;
         for (const StepCost& step : recent_steps_) values.push_back(step.*clock);
-        const auto at = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
+        const auto at = values.begin() + static_cast<std::ptrdiff_t>(19 * (values.size() - 1) / 20);
         std::nth_element(values.begin(), at, values.end());
         return *at;
     };
@@ -109,7 +111,7 @@ void Simulation::measure_for_governors()
     const auto cost = [&]
     {
         taken = true;
-        return StepCost{nine_of_ten(&StepCost::wall), nine_of_ten(&StepCost::processor)};
+        return StepCost{nearly_all(&StepCost::wall), nearly_all(&StepCost::processor)};
     };
     for (Request& request : run_.levels().measurements(time(), dt(), cost))
     {
@@ -133,8 +135,8 @@ void Simulation::decide()
     private:
         std::vector<Event>& to_;
     } events(decided_.events);
-    const auto error = [this](std::uint32_t component, const Level* level, const Level* finer, double interval)
-    { return error_of_level(component, *level, *finer, interval); };
+    const auto error = [this](std::uint32_t component, const Level* level, const Level* finer, double interval, bool with_cost)
+    { return error_of_level(component, *level, *finer, interval, with_cost); };
     const std::vector<Decision> decisions = run_.levels().decide(tick(), time(), dt(), error, events);
     tried_.clear();
     for (auto first = decisions.begin(); first != decisions.end();)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "simulation/simulation.h"
 #include "study/run.h"
@@ -51,6 +52,7 @@ struct Contender
     GovernPoint point;
     std::unique_ptr<Simulation> run;
     std::vector<double> steps;  ///< s of CPU time
+    bool shares_snapshot = false;  ///< since the last step
     double looks = 0;           ///< how often the levels were counted
 };
 
@@ -139,7 +141,8 @@ private:
         if (plan_.stop && plan_.stop->due()) return reason("interrupted");
         const double begin = thread_cpu_seconds();
         (void)c.run->step();
-        c.steps.push_back(thread_cpu_seconds() - begin);
+        // The first step after a snapshot copies what it shares with that. This is not what the scene costs.
+        if (!std::exchange(c.shares_snapshot, false)) c.steps.push_back(thread_cpu_seconds() - begin);
         return {};
     }
 
@@ -149,6 +152,7 @@ private:
         while (c.run->time() < compared_from - half)
             if (auto made = step(c); !made) return made;
         if (auto ready = begin_reference(*c.run); !ready) return ready;
+        c.shares_snapshot = true;
         while (c.run->time() < end - half)
         {
             if (auto made = step(c); !made) return made;
@@ -183,7 +187,7 @@ private:
     {
         double cpu = 0;
         for (const double s : c.steps) cpu += s;
-        c.point.cpu = cpu / std::max(1e-9, c.run->time());
+        c.point.cpu = cpu / (std::max<double>(1, static_cast<double>(c.steps.size())) * c.run->dt());
         c.point.step_median = at_share(c.steps, 0.5), c.point.step_99 = at_share(c.steps, 0.99),
         c.point.step_longest = at_share(c.steps, 1);
         take_mean(c.point.error);

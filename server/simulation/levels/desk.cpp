@@ -97,7 +97,8 @@ LevelError LevelBook::Desk::error(Row /*row*/, std::size_t index, std::int32_t l
     if (at + 1 == levels.size()) return {0, 0, 0};
     if (at >= levels.size() || !error_) return {};
     const std::uint32_t component = governor_->watched[index].component;
-    const TrialFindings found = error_(component, &levels[at], &levels[at + 1], interval);
+    constexpr std::size_t kMostMeasured = 64;
+    const TrialFindings found = error_(component, &levels[at], &levels[at + 1], interval, governor_->trials < kMostMeasured);
     note_trial(*governor_, index, level, interval, found, book_.trials_[component]);
     return found.error;
 }

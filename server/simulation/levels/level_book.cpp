@@ -270,6 +270,7 @@ void LevelBook::note_trial(Governor& governor, std::size_t index, std::int32_t l
         known[l].seconds = seconds;
         if (governor.trial_seconds[l].size() < kMostSamples) governor.trial_seconds[l].push_back(seconds / objects);
     };
+    governor.trials += found.seconds > 0 ? 1 : 0;
     const auto l = static_cast<std::size_t>(level);
     note(l, found.seconds), note(l + 1, found.finer_seconds);
     known[l].error = found.error, known[l].interval = interval;

@@ -70,8 +70,10 @@ struct LevelInfo
 class LevelBook
 {
 public:
-    /// Measures how far apart two levels of a component are after a step: see LevelControl::error().
-    using MeasureError = std::function<TrialFindings(std::uint32_t component, const Level* level, const Level* finer, double interval)>;
+    /// Measures how far apart two levels of a component are after a step: see LevelControl::error(). `with_cost`: also what the steps cost,
+    /// for which they have to be repeated.
+    using MeasureError =
+        std::function<TrialFindings(std::uint32_t component, const Level* level, const Level* finer, double interval, bool with_cost)>;
 
     LevelBook(world::World& world, Stepper& stepper);
     ~LevelBook();
@@ -122,6 +124,7 @@ private:
         std::vector<Watched> watched;  ///< in id order
         // Measured since the last input of that kind.
         std::vector<std::vector<double>> trial_seconds;  ///< for each object, by level
+        std::size_t trials = 0;                          ///< whose cost was measured: after some of them, steps tell it better
         std::size_t exchanged = 0;                       ///< components
         StepCost exchange_cost;
     };

@@ -174,7 +174,7 @@ void Transaction::run_on_scene(bool swaps)
     write_clock(clock);
 }
 
-Result<FirstStep> Transaction::first_step(std::uint64_t measure_ns)
+Result<FirstStep> Transaction::first_step(const FirstStepChoice& choice)
 {
     if (auto expanded = expand_patterns(); !expanded) return expanded.errors();
     saved_.begin(*run_, changes_contacts());
@@ -188,8 +188,10 @@ Result<FirstStep> Transaction::first_step(std::uint64_t measure_ns)
         Interruption deadline(context_->interruption);
         if (request_->trial.budget == TrialChoice::Budget::Given)
             deadline.ask(std::chrono::nanoseconds(static_cast<std::int64_t>(budget_ns())));
-        const std::uint64_t until = measure_ns > 0 ? now_ns() + measure_ns : 0;
-        TrialResult result = Trial(run_->world(), run_->stepper(), next_step()).run(scope, {}, deadline, context_->progress, until);
+        const std::uint64_t until = choice.measure_ns > 0 ? now_ns() + choice.measure_ns : 0;
+        TrialStep step = next_step();
+        step.count = choice.steps;
+        TrialResult result = Trial(run_->world(), run_->stepper(), step).run(scope, {}, deadline, context_->progress, until);
         if (result.given_up) reply_.errors = {reason("the trial was interrupted")};
         if (!result.failure.empty()) reply_.errors = {reason(result.failure)};
         out.motion = std::move(result.motion), out.energy = result.outcome.energy;

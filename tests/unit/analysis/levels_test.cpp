@@ -17,7 +17,7 @@ namespace
 {
 
 /// The last value at or before this time.
-double value_at(const figures::Curve& curve, double time)
+double count_at(const figures::Curve& curve, double time)
 {
     double out = 0;
     for (const auto& [t, value] : curve.points)
@@ -45,9 +45,9 @@ TEST_CASE("how many components each governor has at each level, from change to c
     CHECK(curves[0].name == "Solver/Cheap");
     CHECK(curves[1].name == "Solver/Fine");
     for (const figures::Curve& curve : curves) CHECK(curve.unit == "components of lod");
-    const auto all = [&](double time) { return value_at(curves[0], time) + value_at(curves[1], time); };
-    for (const double time : {0.5, 0.99}) CHECK(value_at(curves[0], time) == 10);
-    for (const double time : {1.01, 1.5, 2.0}) CHECK(value_at(curves[1], time) == 4);
+    const auto all = [&](double time) { return count_at(curves[0], time) + count_at(curves[1], time); };
+    for (const double time : {0.5, 0.99}) CHECK(count_at(curves[0], time) == 10);
+    for (const double time : {1.01, 1.5, 2.0}) CHECK(count_at(curves[1], time) == 4);
     for (const double time : {0.5, 1.01, 2.0}) CHECK(all(time) == 10);
     CHECK(curves[1].points.back().first == doctest::Approx(2));
 }
@@ -58,8 +58,8 @@ TEST_CASE("a reset begins anew: the levels of the run before do not count any mo
     REQUIRE(log.ok());
     const auto curves = levels_over_time(*log);
     REQUIRE(curves.size() == 2);
-    CHECK(value_at(curves[0], 2.3) == 10);
-    CHECK(value_at(curves[1], 2.3) == 0);
+    CHECK(count_at(curves[0], 2.3) == 10);
+    CHECK(count_at(curves[1], 2.3) == 0);
 }
 
 TEST_CASE("the report draws the levels, with a name for each; without a governor it does not mention them")

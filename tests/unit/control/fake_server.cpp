@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstring>
 #include <stdexcept>
+#include <tuple>
 
 #include "idl/frame_updates.h"
 
@@ -151,6 +152,14 @@ void FakeServer::publish_catalogue()
     (void)ends_->interactions.write(contact);
     std::vector<plab_v2_Parameter> restitution{parameter("restitution", "0.8", "", "param"),
                                                parameter("code", "function f()\nend", "", "param")};
+    for (const auto& [name, value, unit] : {std::tuple("governor", "lod", ""), std::tuple("level", "1", ""), std::tuple("levels", "4", ""),
+                                            std::tuple("level_algorithm", "Response/Impulse", ""), std::tuple("level_every", "0.5", "s"),
+                                            std::tuple("level_reason", "there is room", ""), std::tuple("level_since", "2", "s"),
+                                            std::tuple("level_name.0", "Response/Coarse", ""), std::tuple("level_error.0", "0.25", "m"),
+                                            std::tuple("level_cost.0", "2e-06", "s"), std::tuple("level_name.1", "Response/Impulse", ""),
+                                            std::tuple("level_error.1", "0.003", "m"), std::tuple("level_name.2", "Response/Fine", ""),
+                                            std::tuple("level_cost.2", "5e-05", "s"), std::tuple("level_name.3", "Response/Finest", "")})
+        restitution.push_back(parameter(name, value, unit, "level"));
     plab_v2_Interaction response{};
     response.component_id = text("contact.response"), response.name = text("bounce\x1b[31m"), response.type_name = text("Response/Impulse");
     response.family = text("Response"), response.run = 1, response.since = 600, response.quarantined = true;

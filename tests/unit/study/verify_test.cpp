@@ -25,11 +25,11 @@ std::string falling(const std::string& governor, int bodies = 1)
     return text + "<component id='weight' type='Field/Gravity' between='*'/>" + governor;
 }
 
-std::string by_error(const std::string& more)
+std::string by_error(const std::string& more, const std::string& every = "0.25")
 {
     return "<component id='lod' type='Governor/Error' watches='*.solver' levels='Solver/SemiImplicitEuler; Solver/RungeKutta4' "
-           "interval='0.25' every='0.25' " +
-           more + "/>";
+           "interval='0.25' every='" +
+           every + "' " + more + "/>";
 }
 
 /// `meanwhile` is called before each step, with the number of steps made.
@@ -73,7 +73,7 @@ TEST_CASE("a level that errs more than the bound is found, with its component an
     {
         if (steps == 50) REQUIRE(s.ask(simulation::SwapOperation{"ball.2.solver", "Solver/SemiImplicitEuler", {}}).done);
     };
-    const auto result = verified(falling(by_error("bound='1e-3' every='100'"), 4), 1.0, meanwhile);
+    const auto result = verified(falling(by_error("bound='1e-3'", "100"), 4), 1.0, meanwhile);
     REQUIRE_MESSAGE(result.ok(), test::reasons(result));
     const VerifiedGovernor& g = result->governors[0];
     CHECK(g.components == 4);
