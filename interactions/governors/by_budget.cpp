@@ -174,11 +174,13 @@ LevelPrices BudgetLook::prices() const
     constexpr double kDoubtful = 0.5, kWorst = 20;  // of what a level is taken to cost; of what a step costs now
     constexpr double kHardly = 0.02;                 // of all work: steps have not told yet what the level costs
     const Reals parts = parts_at_levels();
+    const auto used = std::find_if(parts.rbegin(), parts.rend(), [](double part) { return part >= kHardly; });
+    const auto untried = static_cast<std::size_t>(parts.rend() - used);  // the first level above those in use
     LevelPrices out;
     for (std::size_t l = 0; l < levels_; ++l)
     {
         const bool doubtful = model_.deviation(l) > kDoubtful * model_.cost(l);
-        const double likely = model_.cost(l) + (parts[l] < kHardly ? model_.deviation(l) : 0.0);
+        const double likely = model_.cost(l) + (l >= untried ? model_.deviation(l) : 0.0);
         out.expected.push_back(likely), out.worst.push_back(doubtful ? std::max(likely, kWorst * cost_) : likely);
     }
     return out;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 
 #include "sight.h"
 
@@ -64,6 +66,13 @@ void judge(bool held, Row row, ErrorRows& governors)
 /// Rule of succession (Laplace): nothing is certain after no or few trials.
 double confidence_of(std::int64_t held, std::int64_t judged) { return static_cast<double>(held + 1) / static_cast<double>(judged + 2); }
 
+/// Of types that answer contacts: an impact does not announce itself, so what was measured holds for the interval of the measurement only.
+bool answers_contacts(const std::string& ladder)
+{
+    constexpr std::string_view kKinds[] = {"CDetection", "Manager", "Resolution", "Response"};
+    return std::any_of(std::begin(kKinds), std::end(kKinds), [&](std::string_view kind) { return ladder.starts_with(kind); });
+}
+
 /// Measures a component, chooses its level, and says when it is measured again.
 void measure(const StepContext& context, Row row, std::size_t k, double scale, Look& look, ErrorRows& governors, LevelControl& control)
 {
@@ -90,7 +99,7 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
     if (!std::isnan(error)) governors.worst[row] = std::max(governors.worst[row], error);
     // Far below the bound it is measured less often.
     const double likely = error * governors.safety[row];
-    const double longest = governors.patience[row];
+    const double longest = answers_contacts(governors.watch.levels[row]) ? 1.0 : governors.patience[row];
     const double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, longest) : std::isnan(likely) ? 1 : longest;
     const double then = context.time + every * (waits ? 1 : longer);
     entry = place_of(next, id);

@@ -45,6 +45,15 @@ void CostModel::update_difference(std::size_t level, double more)
     Reals weight(n_, 0.0);
     weight[level] = 1, weight[level - 1] = -1;
     const double deviation = kTrial * std::fabs(more);
+    if (this->deviation(level) > 0.9 * kGuess * cost(level))
+    {
+        // A guess says nothing against a trial: the level costs what the one below does, and this much more.
+        state_[level] = std::max(0.0, state_[level - 1] + more);
+        for (std::size_t k = 0; k < n_; ++k)
+            if (k != level) covariance(level, k) = covariance(k, level) = covariance(level - 1, k);
+        covariance(level, level) = covariance(level - 1, level - 1) + deviation * deviation;
+        return;
+    }
     // Trials err in the same way each time, so they must not be averaged: they only replace what is known less well.
     if (variance_of(weight) <= 4 * deviation * deviation) return;
     observe(weight, more, deviation * deviation);

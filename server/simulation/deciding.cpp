@@ -77,8 +77,10 @@ const Result<FirstStep>& Simulation::step_with(std::uint32_t component, const Le
 TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval, bool with_cost)
 {
     const double h = run_.clock.time_at(tick() + 1) - time();
-    // What is smooth goes on as it begins. An impact does not announce itself, so the whole interval is tried.
-    const int steps = concerns_contacts(run_.world(), component) ? std::max(1, static_cast<int>(std::lround(interval / h))) : 1;
+    // What a solver errs goes on as it begins. An impact does not announce itself, and where a coupling is exchanged the first step shows
+    // more of the exchange than of the level: so the whole interval is tried.
+    const bool goes_on = run_.world().type_of(component)->info.family == "Solver";
+    const int steps = goes_on ? 1 : std::max(1, static_cast<int>(std::lround(interval / h)));
     constexpr std::uint64_t kMeasure = 200'000;  // ns
     const FirstStepChoice choice{steps, measuring_ && with_cost ? kMeasure : 0};
     if (!step_with(component, level, choice) || !step_with(component, finer, choice)) return {};

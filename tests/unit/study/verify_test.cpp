@@ -73,12 +73,12 @@ TEST_CASE("a level that errs more than the bound is found, with its component an
     {
         if (steps == 50) REQUIRE(s.ask(simulation::SwapOperation{"ball.2.solver", "Solver/SemiImplicitEuler", {}}).done);
     };
-    const auto result = verified(falling(by_error("bound='1e-3'", "100"), 4), 1.0, meanwhile);
+    const auto result = verified(falling(by_error("bound='1e-3'", "100"), 4), 0.75, meanwhile);
     REQUIRE_MESSAGE(result.ok(), test::reasons(result));
     const VerifiedGovernor& g = result->governors[0];
     CHECK(g.components == 4);
-    CHECK(g.intervals.size() == 4);
-    CHECK(g.counted() == 2);  // those with the most exact level promise nothing
+    CHECK(g.intervals.size() == 3);
+    CHECK(g.counted() == 1);  // those with the most exact level promise nothing
     CHECK(g.held() == 0);
     CHECK(g.share() == 0);
     REQUIRE(g.worst());
@@ -86,7 +86,7 @@ TEST_CASE("a level that errs more than the bound is found, with its component an
     CHECK(g.worst()->begin == doctest::Approx(0.5));
     const auto sentences = verify_findings(*result);
     REQUIRE(sentences.size() == 2);
-    CHECK(test::has(sentences[0], "0 % of 2 intervals"));
+    CHECK(test::has(sentences[0], "0 % of 1 intervals"));
     CHECK(test::has(sentences[1], "ball.2.solver with Solver/SemiImplicitEuler in the interval from 0.5 s on"));
 }
 
