@@ -172,7 +172,7 @@ void BudgetLook::learn_errors_of_new_kinds()
 LevelPrices BudgetLook::prices() const
 {
     constexpr double kDoubtful = 0.5, kWorst = 20;  // of what a level is taken to cost; of what a step costs now
-    constexpr double kHardly = 0.02;                 // of all work: steps have not told yet what the level costs
+    constexpr double kHardly = 0.02;                // of all work: steps have not told yet what the level costs
     const Reals parts = parts_at_levels();
     const auto used = std::find_if(parts.rbegin(), parts.rend(), [](double part) { return part >= kHardly; });
     const auto untried = static_cast<std::size_t>(parts.rend() - used);  // the first level above those in use

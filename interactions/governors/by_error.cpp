@@ -148,8 +148,9 @@ void ErrorRows::describe(Schema& schema)
         .not_negative();
     schema.state(next, "next", unit::one, "when a component is measured again, s");
     schema.state(safety, "safety", unit::one, "factor by which measured errors are taken to be larger").initially(1);
-    schema.state(patience, "patience", unit::one,
-                 "times `every` after which what is far below the bound is measured again; it falls with each promise that is broken")
+    schema
+        .state(patience, "patience", unit::one,
+               "times `every` after which what is far below the bound is measured again; it falls with each promise that is broken")
         .initially(16);
     schema.state(judged, "judged", unit::one, "measurements of a level that was measured before");
     schema.state(held, "held", unit::one, "those of them that found the error still below the bound");
@@ -193,9 +194,10 @@ void keep_error(const StepContext& context, Row row, ErrorRows& governors, Level
         if (n < most)
             measure(context, row, k, scale_of(k), look, governors, control);
         else if (waiting[n].first < context.time - 2 * governors.watch.every[row] && look.may_choose(k, look.finest()))
-            (void)look.choose(k, look.finest(), waiting[n].first >= 0 ? "its error has not been measured for too long"
-                                                : by_sight            ? "it comes into view, and its error has not been measured yet"
-                                                                      : "its error has not been measured yet");
+            (void)look.choose(k, look.finest(),
+                              waiting[n].first >= 0 ? "its error has not been measured for too long"
+                              : by_sight            ? "it comes into view, and its error has not been measured yet"
+                                                    : "its error has not been measured yet");
     }
 }
 

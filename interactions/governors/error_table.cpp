@@ -8,9 +8,9 @@ namespace plab::governors
 namespace
 {
 
-constexpr double kMemory = 32;        ///< trials: older ones fade
+constexpr double kMemory = 32;          ///< trials: older ones fade
 constexpr std::size_t kMostKinds = 64;  ///< further ones count as the last one
-constexpr double kLeast = 1e-12;      ///< m, by which a finer level is at least taken to be better
+constexpr double kLeast = 1e-12;        ///< m, by which a finer level is at least taken to be better
 
 }  // namespace
 
@@ -46,8 +46,7 @@ Reals ErrorTable::errors(std::uint32_t objects) const
     Reals out(n_, 0.0);
     const std::size_t at = place_of(objects);
     const bool known = at + width() <= state_.size();
-    for (std::size_t l = n_ - 1; l-- > 0;)
-        out[l] = std::max(known ? std::sqrt(state_[at + 2 + l]) : 0.0, out[l + 1] + kLeast);
+    for (std::size_t l = n_ - 1; l-- > 0;) out[l] = std::max(known ? std::sqrt(state_[at + 2 + l]) : 0.0, out[l + 1] + kLeast);
     return out;
 }
 

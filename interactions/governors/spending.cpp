@@ -34,7 +34,8 @@ LevelStep best_step(const Candidate& c, std::size_t index, std::int32_t from, co
         const double seconds = c.weight * (price(prices.expected, to) - price(prices.expected, from));
         const double worth = removed / std::max(kLeastSeconds, seconds);
         if (removed > 0 && worth >= best.worth)
-            best = {worth, index, from, to, seconds, std::max(seconds, c.weight * (price(prices.worst, to) - price(prices.expected, from)))};
+            best = {worth, index,   from,
+                    to,    seconds, std::max(seconds, c.weight * (price(prices.worst, to) - price(prices.expected, from)))};
     }
     return best;
 }

@@ -25,9 +25,10 @@ struct LevelPrices
 };
 
 /// Starts with the cheapest level for each candidate, and goes on with the step from one level to a finer one that removes the most error
-/// (pixels) for a second, until no further step fits into `seconds`. A level is left out where the way past it is steeper: it costs about as
-/// much as a finer one and errs much more. Errors up to `tolerance` (pixels) are not worth removing. A level that a candidate has already is
-/// kept unless another step is worth twice as much. Of the levels of which hardly anything is known, each is tried by one candidate first.
+/// (pixels) for a second, until no further step fits into `seconds`. A level is left out where the way past it is steeper: it costs about
+/// as much as a finer one and errs much more. Errors up to `tolerance` (pixels) are not worth removing. A level that a candidate has
+/// already is kept unless another step is worth twice as much. Of the levels of which hardly anything is known, each is tried by one
+/// candidate first.
 ///
 /// Source: Sinha and Zoltners, The multiple-choice knapsack problem, Operations Research 27(3), 1979 (the greedy solution of its linear
 /// relaxation, which misses the best one by at most one step).

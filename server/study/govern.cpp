@@ -51,9 +51,9 @@ struct Contender
 {
     GovernPoint point;
     std::unique_ptr<Simulation> run;
-    std::vector<double> steps;  ///< s of CPU time
+    std::vector<double> steps;     ///< s of CPU time
     bool shares_snapshot = false;  ///< since the last step
-    double looks = 0;           ///< how often the levels were counted
+    double looks = 0;              ///< how often the levels were counted
 };
 
 class Comparison

@@ -173,10 +173,7 @@ std::size_t VerifiedGovernor::held() const
     return sum;
 }
 
-double VerifiedGovernor::share() const
-{
-    return counted() == 0 ? 1 : static_cast<double>(held()) / static_cast<double>(counted());
-}
+double VerifiedGovernor::share() const { return counted() == 0 ? 1 : static_cast<double>(held()) / static_cast<double>(counted()); }
 
 const VerifiedLevel* VerifiedGovernor::worst() const
 {

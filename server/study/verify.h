@@ -3,8 +3,8 @@
 /// A governor by error states that each component departs within `interval` by less than `bound` from where the most exact level would take
 /// it. So from the state at the begin of each interval a second simulation continues with the most exact level for all components of the
 /// governor, and decides nothing. The error of a component is the largest departure of its objects at any step of the interval, in the unit
-/// of the governor. Intervals in which the component had the most exact level all the time do not count, because there is nothing to promise;
-/// nor do, in pixels, those in which no viewer sees it.
+/// of the governor. Intervals in which the component had the most exact level all the time do not count, because there is nothing to
+/// promise; nor do, in pixels, those in which no viewer sees it.
 #pragma once
 
 #include <functional>
@@ -30,7 +30,7 @@ struct VerifiedLevel
 
 struct VerifiedInterval
 {
-    double begin = 0;               ///< s
+    double begin = 0;                   ///< s
     std::size_t counted = 0, held = 0;  ///< components; those whose error was at most the bound
     VerifiedLevel worst;
 };

@@ -395,8 +395,8 @@ TEST_CASE("a budget: trial steps tell what levels cost and how they err, so the 
     const auto errors = std::get<Reals>(s.get("lod", "errors"));
     REQUIRE(errors.size() == 5);  // one kind: a component that acts on one object
     CHECK(errors[0] == 1);
-    CHECK(errors[1] == 3);                // trials
-    CHECK(errors[2] > 1e4 * errors[3]);   // mean squares
+    CHECK(errors[1] == 3);               // trials
+    CHECK(errors[2] > 1e4 * errors[3]);  // mean squares
     measure(s, "step_cost", Value(1e-4)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 9e-4}));
     s.step();
     CHECK(count_at(s, 1) == 6);  // hardly dearer; the most exact one would take 0.9 ms for each of them

@@ -47,7 +47,7 @@ private:
     world::WorldLookup lookup_;
     std::uint32_t by_ = kNoIndex;
     Governor* governor_ = nullptr;  ///< null: the component watches nothing
-    bool chose_ = false;                  ///< the last decision has choices of this component
+    bool chose_ = false;            ///< the last decision has choices of this component
     std::vector<Decision> decisions_;
 };
 

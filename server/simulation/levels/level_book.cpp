@@ -235,8 +235,9 @@ std::vector<Request> LevelBook::measurements(double time, double dt, const std::
         const auto counted = [&](const StepCost& c) { return by_wall ? c.wall : c.processor; };
         Request request;
         request.trial.budget = TrialChoice::Budget::None;
-        const auto set = [&](const char* name, Value value)
-        { request.operations.push_back(SetOperation{world_.id_of(g.component), name, std::move(value)}); };
+        const auto set = [&](const char* name, Value value) {
+            request.operations.push_back(SetOperation{world_.id_of(g.component), name, std::move(value)});
+        };
         const double every = std::max(dt, real_of(world_, g.component, "every"));
         const bool due = std::floor(time / every + 1e-9) != std::floor((time - dt) / every + 1e-9);
         if (is_input(schema, "step_cost") && (due || real_of(world_, g.component, "step_cost") == 0))

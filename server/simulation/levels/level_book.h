@@ -40,10 +40,10 @@ struct TrialFindings
 struct LevelTrial
 {
     std::int32_t level = 0;
-    std::string text;       ///< of the level
-    LevelError error;       ///< within `interval` (s), against the next finer level; NaN: not told
-    double interval = 0;    ///< s
-    double seconds = 0;     ///< of the step; 0: not measured
+    std::string text;     ///< of the level
+    LevelError error;     ///< within `interval` (s), against the next finer level; NaN: not told
+    double interval = 0;  ///< s
+    double seconds = 0;   ///< of the step; 0: not measured
 };
 
 /// s, what a step costs: time that passes, and time of the processor that the stepping thread used.
@@ -156,9 +156,9 @@ private:
 
     world::World& world_;
     Stepper& stepper_;
-    std::vector<Governor> governors_;  ///< in id order
-    std::vector<Change> changes_;      ///< by directory index
-    std::vector<Told> told_;           ///< by directory index
+    std::vector<Governor> governors_;              ///< in id order
+    std::vector<Change> changes_;                  ///< by directory index
+    std::vector<Told> told_;                       ///< by directory index
     std::vector<std::vector<LevelTrial>> trials_;  ///< by directory index
     /// By directory index: what the world returns is not valid any more after a trial, which may copy the directory that a snapshot shares.
     std::vector<std::string> ids_;

@@ -21,8 +21,7 @@ LevelPrices certain(std::vector<double> cost) { return {cost, cost}; }
 double cost_of(const Levels& levels, std::span<const Candidate> candidates, const LevelPrices& prices)
 {
     double sum = 0;
-    for (std::size_t k = 0; k < levels.size(); ++k)
-        sum += candidates[k].weight * prices.expected[static_cast<std::size_t>(levels[k])];
+    for (std::size_t k = 0; k < levels.size(); ++k) sum += candidates[k].weight * prices.expected[static_cast<std::size_t>(levels[k])];
     return sum;
 }
 
@@ -66,7 +65,8 @@ TEST_CASE("it misses the best choice by at most one step of one candidate")
     const std::array<Reals, 2> errors{Reals{9, 4, 0}, Reals{7, 6.5, 0}};
     std::vector<Candidate> candidates(6);
     for (std::size_t k = 0; k < 6; ++k)
-        candidates[k].weight = 1.0 / 6, candidates[k].errors = errors[k % 2], candidates[k].scale = 1.0 + 0.7 * static_cast<double>(k * k % 5);
+        candidates[k].weight = 1.0 / 6, candidates[k].errors = errors[k % 2],
+        candidates[k].scale = 1.0 + 0.7 * static_cast<double>(k * k % 5);
     const LevelPrices prices = certain({1, 2, 5});
     double largest = 0;
     for (const Candidate& c : candidates) largest = std::max(largest, c.scale * c.errors[0]);

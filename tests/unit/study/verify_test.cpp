@@ -94,7 +94,8 @@ TEST_CASE("in pixels only what a viewer sees counts")
 {
     const std::string viewer = "<component id='eye' type='Viewer/Free' position='-10 1 -1' direction='";
     const std::string pixels = by_error("bound='1e6' unit='pixels'");
-    const auto seen = verified(falling(pixels + viewer + "1 0 0'/>", 3), 1.0), unseen = verified(falling(pixels + viewer + "-1 0 0'/>", 3), 1.0);
+    const auto seen = verified(falling(pixels + viewer + "1 0 0'/>", 3), 1.0),
+               unseen = verified(falling(pixels + viewer + "-1 0 0'/>", 3), 1.0);
     REQUIRE_MESSAGE(seen.ok(), test::reasons(seen));
     REQUIRE(unseen.ok());
     CHECK(seen->governors[0].counted() == 3 * 4);
