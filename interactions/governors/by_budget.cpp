@@ -2,171 +2,311 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
-#include <tuple>
+#include <limits>
+#include <numeric>
 
 #include "cost_model.h"
+#include "error_table.h"
 #include "sight.h"
+#include "spending.h"
 
 namespace plab::governors
 {
 namespace
 {
+
 /// s: what is shorter was not measured, and its square would underflow.
 constexpr double kLeastCost = 1e-12;
+/// Pixels per metre: of what nobody sees, and of everything where there is no viewer.
+constexpr double kUnseen = 1;
+/// Exchanges that make a step too long are this many steps apart at least: fewer than one of 100.
+constexpr double kRare = 128;
 
-/// rad: of what nobody sees, and of everything where there is no viewer.
-constexpr double kUnseen = 1e-3;
-
-/// The largest angle (rad, of a radius) under which a viewer sees it.
-double importance_of(const GovernedComponent& g, std::span<const Viewpoint> eyes)
+/// How much an error of the component counts, in pixels per metre.
+double importance_of(const GovernedComponent& g, std::span<const Viewpoint> eyes, double look_ahead)
 {
-    double most = kUnseen;
-    const Ball ball{g.center, g.radius};
-    for (const Viewpoint& eye : eyes)
+    constexpr double kMargin = 0.15;  // rad
+    return std::max(kUnseen, pixels_per_metre(g, eyes, look_ahead, kMargin));
+}
+
+/// Parts of the cost of a level: a component costs in proportion to the objects on which it acts.
+double weight_of(const GovernedComponent& g) { return std::max(1.0, static_cast<double>(g.objects)); }
+
+/// m. NaN: it cannot be told.
+double metres_of(const LevelError& error, double radius)
+{
+    return std::isnan(error.distance) ? error.angle * (std::isfinite(radius) ? radius : 1.0) : error.distance;
+}
+
+/// One look of a governor by budget.
+class BudgetLook
+{
+public:
+    BudgetLook(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control)
+        : context_(context),
+          row_(row),
+          g_(governors),
+          control_(control),
+          look_(context, row, governors.watch, control),
+          levels_(static_cast<std::size_t>(look_.finest() + 1)),
+          budget_(governors.budget[row] > 0 ? governors.budget[row] : governors.share[row] * context.dt),
+          cost_(governors.step_cost[row] > kLeastCost ? governors.step_cost[row] : 0),
+          model_(governors.costs[row], levels_),
+          table_(governors.errors[row], levels_)
     {
-        const double distance = length(g.center - eye.position);
-        const double angle = distance > g.radius ? g.radius / distance : 1.0;
-        if (is_in_view(widened(eye, 0.15), ball)) most = std::max(most, angle);
+        for (const GovernedComponent& c : look_.watched())
+            if (c.level >= 0) whole_ += weight_of(c);
     }
-    return most;
-}
 
-/// The new level of each watched component.
-using Plan = std::vector<std::int32_t>;
+    bool watches_nothing() const { return look_.watched().empty(); }
+    void begin_cheaply();
+    void learn_costs();
+    void learn_errors(std::int64_t most);
+    void learn_errors_of_new_kinds();
+    void choose();
+    void publish();
 
-Plan present_levels(const Look& look)
-{
-    Plan plan;
-    for (const GovernedComponent& g : look.watched()) plan.push_back(g.level);
-    return plan;
-}
+private:
+    struct Change
+    {
+        std::size_t component;
+        std::int32_t level;
+        double worth;  ///< pixels per second; of a cheaper level infinite: it has to come first
+    };
+    void try_levels(std::size_t k);
+    Reals parts_at_levels() const;
+    LevelPrices prices() const;
+    double seconds_to_spend(const LevelPrices& price) const;
+    std::vector<Change> plan() const;
+    std::size_t exchanges_now(const std::vector<Change>& changes) const;
+    double exchange_cost(std::size_t n) const;
+    double error_of(std::size_t k, std::int32_t level) const;
+    std::string reason(const Change& change) const;
+    bool is_over() const { return cost_ > budget_; }
+    bool has_room() const { return cost_ < budget_ * (1 - g_.headroom[row_]); }
+    double importance(std::size_t k) const { return importance_of(look_.watched()[k], control_.viewpoints(), g_.watch.every[row_]); }
 
-/// A change of one level, and what it is worth.
-struct Offer
-{
-    double worth = 0;  ///< importance per second of a step
-    std::size_t component = 0;
-    double seconds = 0;  ///< by which the step changes
-    double at_worst = 0;
+    const StepContext& context_;
+    Row row_;
+    BudgetRows& g_;
+    LevelControl& control_;
+    Look look_;
+    std::size_t levels_;
+    double budget_, cost_;
+    CostModel model_;
+    ErrorTable table_;
+    double whole_ = 0;  ///< sum of weights
 };
 
-/// Gives up the least importance for each second that is saved, one level after the other, until `needed` (s) is saved.
-Plan plan_savings(const Look& look, const std::vector<double>& importance, const CostModel& model, double needed)
+/// Before anything is known of costs, the first step must not take longer than the scene can help.
+void BudgetLook::begin_cheaply()
 {
-    Plan plan = present_levels(look);
-    const auto dearer = [](const Offer& a, const Offer& b) { return std::tie(a.worth, a.component) > std::tie(b.worth, b.component); };
-    std::priority_queue<Offer, std::vector<Offer>, decltype(dearer)> offers(dearer);
-    const auto offer = [&](std::size_t k)
-    {
-        if (plan[k] <= 0) return;
-        const auto l = static_cast<std::size_t>(plan[k]);
-        const double saved = (model.cost(l) - model.cost(l - 1)) / static_cast<double>(plan.size());
-        if (saved > 0) offers.push({importance[k] / saved, k, saved, saved});
-    };
-    for (std::size_t k = 0; k < plan.size(); ++k) offer(k);
-    for (double saved = 0; saved < needed && !offers.empty();)
-    {
-        const Offer best = offers.top();
-        offers.pop();
-        saved += best.seconds, --plan[best.component];
-        offer(best.component);
-    }
-    return plan;
+    for (std::size_t k = 0; k < look_.watched().size(); ++k)
+        if (look_.watched()[k].level > 0 && look_.may_choose(k, 0)) (void)look_.choose(k, 0, "nothing is known yet of what levels cost");
 }
 
-/// Buys the most importance for each second, one level for each component, as far as there is room (s). What a level costs is taken to be
-/// as much as it may well be. A level of which hardly anything is known is tried by a few components first, because it may cost many times
-/// what is guessed.
-Plan plan_spending(const Look& look, const std::vector<double>& importance, const CostModel& model, double cost, double room)
+/// The part of all work that is done with each level; sum 1.
+Reals BudgetLook::parts_at_levels() const
 {
-    constexpr double kDoubtful = 0.5, kWorst = 20;  // of what a level is taken to cost; of what a step costs now
-    Plan plan = present_levels(look);
-    std::vector<Offer> offers;
-    for (std::size_t k = 0; k < plan.size(); ++k)
-    {
-        if (plan[k] < 0 || plan[k] >= look.finest() || !look.rested(k)) continue;
-        const auto l = static_cast<std::size_t>(plan[k]);
-        const double likely = model.cost(l + 1) + model.deviation(l + 1);
-        const bool doubtful = model.deviation(l + 1) > kDoubtful * model.cost(l + 1);
-        const double share = 1 / static_cast<double>(plan.size()), spent = share * std::max(1e-12, likely - model.cost(l));
-        offers.push_back({importance[k] / spent, k, spent, doubtful ? std::max(spent, share * kWorst * cost) : spent});
-    }
-    std::sort(offers.begin(), offers.end(),
-              [](const Offer& a, const Offer& b) { return a.worth != b.worth ? a.worth > b.worth : a.component < b.component; });
-    double spent = 0;
-    bool tried = false;  // one component may always try what is not known
-    for (const Offer& o : offers)
-    {
-        const bool doubtful = o.at_worst > o.seconds;
-        const double seconds = doubtful && tried ? o.at_worst : o.seconds;
-        if (spent + seconds > room) continue;
-        spent += seconds, ++plan[o.component], tried = tried || doubtful;
-    }
-    return plan;
-}
-
-/// While the budget is used up: takes from what has become unimportant, one level each, and gives that to what has become important.
-/// `room`: s.
-Plan plan_exchange(const Look& look, const std::vector<double>& importance, const CostModel& model, double room)
-{
-    constexpr double kMuch = 2;  // as important
-    Plan plan = present_levels(look);
-    std::vector<std::size_t> order;
-    for (std::size_t k = 0; k < plan.size(); ++k)
-        if (plan[k] >= 0 && look.rested(k)) order.push_back(k);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return importance[a] < importance[b]; });
-    const auto step = [&](std::int32_t level)
-    {
-        const auto l = static_cast<std::size_t>(level);
-        return std::max(0.0, model.cost(l + 1) - model.cost(l)) / static_cast<double>(plan.size());
-    };
-    std::size_t least = 0;
-    for (std::size_t n = order.size(); n-- > 0;)
-    {
-        const std::size_t up = order[n];
-        if (plan[up] >= look.finest()) continue;
-        const double needed = step(plan[up]);
-        const std::size_t first = least;
-        double free = room;
-        for (; free < needed && least < n && kMuch * importance[order[least]] < importance[up]; ++least)
-            if (plan[order[least]] > 0) free += step(plan[order[least]] - 1);
-        if (free < needed) break;
-        for (std::size_t k = first; k < least; ++k) plan[order[k]] = std::max(0, plan[order[k]] - 1);
-        ++plan[up], room = free - needed;
-    }
-    return plan;
-}
-
-/// Of the components that are on the ladder.
-Reals fractions_of(const Look& look)
-{
-    Reals out(static_cast<std::size_t>(look.finest() + 1), 0.0);
-    double all = 0;
-    for (const GovernedComponent& g : look.watched())
-        if (g.level >= 0) ++out[static_cast<std::size_t>(g.level)], ++all;
-    for (double& f : out) f = all > 0 ? f / all : 0;
+    Reals out(levels_, 0.0);
+    for (const GovernedComponent& c : look_.watched())
+        if (c.level >= 0) out[static_cast<std::size_t>(c.level)] += weight_of(c) / whole_;
     return out;
 }
 
-/// Before anything is known of costs, the first steps must not take longer than the scene can help.
-void begin_cheaply(Look& look, Row row, BudgetRows& governors)
+void BudgetLook::learn_costs()
 {
-    for (std::size_t k = 0; k < look.watched().size(); ++k)
-        if (look.watched()[k].level > 0 && look.may_choose(k, 0)) (void)look.choose(k, 0, "nothing is known yet of what levels cost");
-    governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(look.watched().size()) - governors.watch.count[row].back());
+    if (whole_ > 0) model_.update(parts_at_levels(), cost_);
+    Reals& trials = g_.trial_costs[row_];
+    for (std::size_t l = 1; l < std::min(trials.size(), levels_); ++l)
+        if (trials[l] > 0 && trials[l - 1] > 0) model_.update_difference(l, whole_ * (trials[l] - trials[l - 1]));
+    trials.clear();
 }
 
-void publish_what_is_given_up(const Look& look, const std::vector<double>& importance, Row row, BudgetRows& governors)
+/// The error of each level of one component, as the sum of what each level departs from the next finer one.
+void BudgetLook::try_levels(std::size_t k)
 {
-    governors.given_up[row] = static_cast<std::int64_t>(static_cast<double>(look.watched().size()) - governors.watch.count[row].back());
-    double all = 0, lost = 0;
-    for (std::size_t k = 0; k < importance.size(); ++k)
+    const GovernedComponent& c = look_.watched()[k];
+    Reals errors(levels_, 0.0);
+    for (std::size_t l = levels_ - 1; l-- > 0;)
     {
-        all += importance[k];
-        if (look.watched()[k].level < look.finest()) lost += importance[k];
+        const double e = metres_of(control_.error(row_, k, static_cast<std::int32_t>(l), g_.interval[row_]), c.radius);
+        if (std::isnan(e)) return;
+        errors[l] = errors[l + 1] + e;
     }
-    governors.lost[row] = all > 0 ? lost / all : 0;
+    table_.add(c.objects, errors);
+}
+
+void BudgetLook::learn_errors(std::int64_t most)
+{
+    const auto size = static_cast<std::int64_t>(look_.watched().size());
+    for (std::int64_t n = 0; n < std::min(most, size); ++n)
+    {
+        // A stride that visits all, far from one another.
+        std::int64_t stride = std::max<std::int64_t>(1, size * 5 / 13);
+        while (std::gcd(stride, size) != 1) ++stride;
+        g_.next_trial[row_] = (g_.next_trial[row_] + stride) % size;
+        try_levels(static_cast<std::size_t>(g_.next_trial[row_]));
+    }
+}
+
+/// So that nothing is chosen without knowing what it buys.
+void BudgetLook::learn_errors_of_new_kinds()
+{
+    constexpr int kFew = 3;
+    constexpr std::int64_t kMost = 24;
+    std::vector<std::pair<std::uint32_t, int>> met;  // objects, trials in this look
+    std::int64_t left = kMost;
+    for (std::size_t k = 0; k < look_.watched().size() && left > 0; ++k)
+    {
+        const GovernedComponent& c = look_.watched()[k];
+        if (c.level < 0 || c.objects == 0) continue;
+        auto kind = std::find_if(met.begin(), met.end(), [&](const auto& m) { return m.first == c.objects; });
+        if (kind == met.end()) kind = met.insert(met.end(), {c.objects, table_.trials(c.objects) > 0 ? kFew : 0});
+        if (kind->second >= kFew) continue;
+        ++kind->second, --left;
+        try_levels(k);
+    }
+}
+
+LevelPrices BudgetLook::prices() const
+{
+    constexpr double kDoubtful = 0.5, kWorst = 20;  // of what a level is taken to cost; of what a step costs now
+    constexpr double kHardly = 0.02;                // of all work: steps have not told yet what the level costs
+    const Reals parts = parts_at_levels();
+    const auto used = std::find_if(parts.rbegin(), parts.rend(), [](double part) { return part >= kHardly; });
+    const auto untried = static_cast<std::size_t>(parts.rend() - used);  // the first level above those in use
+    LevelPrices out;
+    for (std::size_t l = 0; l < levels_; ++l)
+    {
+        const bool doubtful = model_.deviation(l) > kDoubtful * model_.cost(l);
+        const double likely = model_.cost(l) + (l >= untried ? model_.deviation(l) : 0.0);
+        out.expected.push_back(likely), out.worst.push_back(doubtful ? std::max(likely, kWorst * cost_) : likely);
+    }
+    return out;
+}
+
+/// For all components together. Between the budget and its headroom what is spent already is spent otherwise at most, so that a level does
+/// not come and go with each measurement.
+double BudgetLook::seconds_to_spend(const LevelPrices& price) const
+{
+    const double goal = budget_ * (1 - 0.5 * g_.headroom[row_]);
+    const Reals parts = parts_at_levels();
+    double modelled = 0;
+    for (std::size_t l = 0; l < levels_; ++l) modelled += parts[l] * price.expected[l];
+    // What the model does not explain stays as it is.
+    const double room = goal - cost_;
+    return modelled + (is_over() || has_room() ? room : std::max(0.0, room));
+}
+
+std::vector<BudgetLook::Change> BudgetLook::plan() const
+{
+    std::vector<Candidate> candidates;
+    std::vector<std::size_t> component;
+    std::vector<std::pair<std::uint32_t, Reals>> known;  // errors by kind
+    for (std::size_t k = 0; k < look_.watched().size(); ++k)
+    {
+        const GovernedComponent& c = look_.watched()[k];
+        if (c.level < 0) continue;
+        auto kind = std::find_if(known.begin(), known.end(), [&](const auto& m) { return m.first == c.objects; });
+        if (kind == known.end()) kind = known.insert(known.end(), {c.objects, table_.errors(c.objects)});
+        candidates.push_back({look_.rested(k) ? 0 : c.level, c.level, weight_of(c) / whole_, importance(k), kind->second});
+        component.push_back(k);
+    }
+    const LevelPrices price = prices();
+    const std::vector<std::int32_t> levels = choose_levels(candidates, price, seconds_to_spend(price), g_.tolerance[row_]);
+    std::vector<Change> out;
+    for (std::size_t n = 0; n < candidates.size(); ++n)
+    {
+        const Candidate& c = candidates[n];
+        if (levels[n] == c.present) continue;
+        const auto from = static_cast<std::size_t>(c.present), to = static_cast<std::size_t>(levels[n]);
+        const double seconds = std::max(kLeastCost, c.weight * (price.expected[to] - price.expected[from]));
+        constexpr double kFirst = std::numeric_limits<double>::infinity();
+        out.push_back({component[n], levels[n], to < from ? kFirst : c.scale * (c.errors[from] - c.errors[to]) / seconds});
+    }
+    std::stable_sort(out.begin(), out.end(), [](const Change& a, const Change& b) { return a.worth > b.worth; });
+    return out;
+}
+
+/// s, that an exchange of n components takes; 0: nothing is known of it.
+double BudgetLook::exchange_cost(std::size_t n) const
+{
+    const Reals& learnt = g_.exchange[row_];
+    return n == 0 || learnt.size() < 2 ? 0 : learnt[0] + static_cast<double>(n) * learnt[1];
+}
+
+/// How many of the changes are made at this boundary.
+std::size_t BudgetLook::exchanges_now(const std::vector<Change>& changes) const
+{
+    const std::size_t all = changes.size();
+    const double room = std::max(0.0, budget_ - cost_);
+    if (is_over() || exchange_cost(all) <= room) return all;
+    const double each = g_.exchange[row_][1];
+    const auto fit = static_cast<std::size_t>(std::max(0.0, (room - g_.exchange[row_][0]) / std::max(kLeastCost, each)));
+    // Slower than this it would be out of date before it is done.
+    const double boundaries = std::max(1.0, 2 * g_.watch.every[row_] / context_.dt);
+    if (static_cast<double>(fit) * boundaries >= static_cast<double>(all)) return fit;
+    return context_.time - g_.last_long[row_] >= kRare * context_.dt ? all : 0;
+}
+
+double BudgetLook::error_of(std::size_t k, std::int32_t level) const
+{
+    return table_.errors(look_.watched()[k].objects)[static_cast<std::size_t>(level)];
+}
+
+std::string BudgetLook::reason(const Change& change) const
+{
+    const GovernedComponent& c = look_.watched()[change.component];
+    const double scale = importance(change.component);
+    return std::string(has_room() ? "there is room: " : "") + "a step takes " + brief(1e3 * cost_) + " ms of " + brief(1e3 * budget_) +
+           " ms; error " + brief(scale * error_of(change.component, c.level)) + " -> " +
+           brief(scale * error_of(change.component, change.level)) + " pixels";
+}
+
+void BudgetLook::choose()
+{
+    const std::vector<Change> changes = plan();
+    const std::size_t now = exchanges_now(changes);
+    for (std::size_t n = 0; n < now; ++n)
+    {
+        const Change& change = changes[n];
+        (void)look_.choose(change.component, change.level, reason(change));
+        control_.tell(row_, change.component, error_of(change.component, change.level), "m", std::numeric_limits<double>::quiet_NaN());
+    }
+    g_.waiting[row_] = static_cast<std::int64_t>(changes.size() - now);
+    if (now > 0 && cost_ + exchange_cost(now) > budget_) g_.last_long[row_] = context_.time;
+    g_.retry[row_] = now > 0 ? context_.time : g_.last_long[row_] + kRare * context_.dt;
+}
+
+void BudgetLook::publish()
+{
+    g_.spent[row_] = cost_ / budget_;
+    g_.given_up[row_] = static_cast<std::int64_t>(static_cast<double>(look_.watched().size()) - g_.watch.count[row_].back());
+    double all = 0, lost = 0;
+    for (std::size_t k = 0; k < look_.watched().size(); ++k)
+    {
+        const double scale = importance(k);
+        all += scale;
+        if (look_.watched()[k].level < look_.finest()) lost += scale;
+    }
+    g_.lost[row_] = all > 0 ? lost / all : 0;
+}
+
+/// Learns what exchanges cost, as a fixed cost and one for each component. What was measured differs from what was expected by a factor,
+/// which is shared between the two in proportion to what each was expected to be: exchanges of one component tell the fixed one, exchanges
+/// of many the other one, and both stay positive.
+void learn_exchange(Reals& learnt, Reals& measured)
+{
+    if (measured.size() != 2 || !(measured[0] > 0)) return;
+    const double n = measured[0], seconds = measured[1];
+    constexpr double kNew = 0.3;  // of what is learnt from one measurement
+    if (learnt.size() < 2) learnt = {0.5 * seconds, 0.5 * seconds / n};
+    const double expected = learnt[0] + n * learnt[1];
+    const double factor = expected > 0 ? 1 + kNew * (seconds / expected - 1) : 1;
+    const double fixed_part = expected > 0 ? learnt[0] / expected : 0.5;
+    learnt[0] *= std::pow(factor, fixed_part), learnt[1] *= std::pow(factor, 1 - fixed_part);
+    measured.clear();
 }
 
 }  // namespace
@@ -185,9 +325,35 @@ void BudgetRows::describe(Schema& schema)
     schema.param(headroom, "headroom", unit::one, "fraction of the budget that is left free before levels become finer")
         .or_else(0.15)
         .not_negative();
+    schema
+        .param(tolerance, "tolerance", unit::one,
+               "error in pixels that is not worth removing; for what nobody sees a metre counts as a pixel; 0: all time is spent")
+        .or_else(0)
+        .not_negative();
+    schema.param(interval, "interval", unit::second, "time within which the error of a level is counted").or_else(0.25).positive();
+    schema.param(trials, "trials", unit::one, "components whose levels are tried between two looks, one at a boundary where there is room")
+        .or_else(2)
+        .not_negative();
     schema.state(step_cost, "step_cost", unit::second, "what a step costs, as measured; set by the host").input();
+    schema
+        .state(trial_costs, "trial_costs", unit::second,
+               "what a trial step with each level cost for each object, as measured since the last look; 0: none was made; set by the host")
+        .input();
+    schema
+        .state(exchange_cost, "exchange_cost", unit::one,
+               "the number of components that were exchanged last, and what that cost (s), as measured; set by the host")
+        .input();
     schema.state(costs, "costs", unit::second,
                  "cost of a step with all components at each level, as learnt, and then the covariance (s^2) of these costs");
+    schema.state(errors, "errors", unit::one,
+                 "for each number of objects on which a component acts: that number, the number of trials, and the mean square of the "
+                 "error (m^2) of each level");
+    schema.state(exchange, "exchange", unit::second, "what an exchange costs, as learnt: fixed, and for each component");
+    schema.state(trials_left, "trials_left", unit::one, "components to be tried before the next look");
+    schema.state(next_trial, "next_trial", unit::one, "position of the component that was tried last");
+    schema.state(waiting, "waiting", unit::one, "changes that wait for a boundary where there is time for them");
+    schema.state(last_long, "last_long", unit::second, "when exchanges made a step longer than the budget").initially(-1e9);
+    schema.state(retry, "retry", unit::second, "when the changes that wait are planned again");
     schema.output(spent, "spent", unit::one, "cost of a step relative to the budget");
     schema.output(given_up, "given_up", unit::one, "number of components that are not at the most exact level");
     schema.output(lost, "lost", unit::one, "their share of the importance of all components, when it looked last");
@@ -195,33 +361,23 @@ void BudgetRows::describe(Schema& schema)
 
 void keep_budget(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control)
 {
-    if (!due(context, governors.watch.every[row])) return;
-    const double budget = governors.budget[row] > 0 ? governors.budget[row] : governors.share[row] * context.dt;
-    const double cost = governors.step_cost[row] > kLeastCost ? governors.step_cost[row] : 0;
-    governors.spent[row] = cost / budget;
-    Look look(context, row, governors.watch, control);
-    if (look.watched().empty()) return;
-    const bool is_first = governors.costs[row].empty();
-    if (is_first && cost <= 0) return begin_cheaply(look, row, governors);
-    if (cost <= 0) return;
-    CostModel model(governors.costs[row], static_cast<std::size_t>(look.finest() + 1));
-    model.update(fractions_of(look), cost);
-    std::vector<double> importance;
-    for (const GovernedComponent& g : look.watched()) importance.push_back(importance_of(g, control.viewpoints()));
-    const double goal = budget * (1 - 0.5 * governors.headroom[row]);
-    const bool over = cost > budget;
-    Plan plan;
-    if (over)
-        plan = plan_savings(look, importance, model, cost - goal);
-    else if (cost < budget * (1 - governors.headroom[row]))
-        plan = plan_spending(look, importance, model, cost, goal - cost);
+    learn_exchange(governors.exchange[row], governors.exchange_cost[row]);
+    const bool measured = governors.step_cost[row] > kLeastCost, knows_costs = !governors.costs[row].empty();
+    const bool looks = due(context, governors.watch.every[row]) || (measured && !knows_costs);
+    const bool tries = governors.trials_left[row] > 0 && governors.spent[row] < 1;
+    const bool goes_on = governors.waiting[row] > 0 && context.time >= governors.retry[row];
+    if (!looks && !tries && !goes_on) return;
+    BudgetLook look(context, row, governors, control);
+    if (look.watches_nothing()) return;
+    if (!knows_costs || looks) look.learn_errors_of_new_kinds();
+    if (!measured && !knows_costs) return look.begin_cheaply(), look.publish();
+    if (!measured) return;
+    if (looks) look.learn_costs(), governors.trials_left[row] = governors.trials[row];
+    if (looks || goes_on)
+        look.choose();
     else
-        plan = plan_exchange(look, importance, model, std::max(0.0, goal - cost));
-    const std::string why = (over || cost >= budget * (1 - governors.headroom[row]) ? "a step takes " : "there is room: a step takes ") +
-                            brief(1e3 * cost) + " ms of " + brief(1e3 * budget) + " ms";
-    for (std::size_t k = 0; k < plan.size(); ++k)
-        if (plan[k] >= 0) (void)look.choose(k, plan[k], why + "; importance " + brief(importance[k]));
-    publish_what_is_given_up(look, importance, row, governors);
+        --governors.trials_left[row], look.learn_errors(1);
+    if (looks) look.publish();
 }
 
 }  // namespace plab::governors

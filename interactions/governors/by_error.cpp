@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 
 #include "sight.h"
 
@@ -15,22 +17,6 @@ constexpr double kHidden = 0;
 Entries::iterator place_of(Entries& next, std::string_view id)
 {
     return std::lower_bound(next.begin(), next.end(), id, [](const Entry& e, std::string_view name) { return e.name < name; });
-}
-
-/// The factor by which a distance (m) appears in a picture (pixels), for the viewer to whom it is largest; kHidden: nobody can see the
-/// component within `look_ahead` (s).
-double pixels_per_metre(const GovernedComponent& g, std::span<const Viewpoint> eyes, double look_ahead, double margin)
-{
-    constexpr double kNearest = 0.1;  // m: what is nearer fills the picture
-    double most = kHidden;
-    for (const Viewpoint& eye : eyes)
-    {
-        const double reach = look_ahead * (length(eye.velocity) + g.speed);
-        if (!is_in_view(widened(eye, margin), {g.center, g.radius + reach})) continue;
-        const double distance = std::max(kNearest, distance_to(eye, {g.center, g.radius}) - reach);
-        most = std::max(most, 0.5 * eye.height / std::tan(0.5 * eye.field_of_view) / distance);
-    }
-    return most;
 }
 
 double pick(const LevelError& error, const std::string& unit, double scale)
@@ -70,13 +56,22 @@ private:
 void judge(bool held, Row row, ErrorRows& governors)
 {
     constexpr double kGain = 0.25, kMost = 1e4;
+    constexpr double kSooner = 0.5, kLater = 1.02, kLongest = 16;
     const double c = governors.target[row];
     ++governors.judged[row], governors.held[row] += held ? 1 : 0;
     governors.safety[row] = std::clamp(governors.safety[row] * std::exp(kGain * (held ? c - 1 : c)), 1.0, kMost);
+    governors.patience[row] = std::clamp(governors.patience[row] * (held ? kLater : kSooner), 1.0, kLongest);
 }
 
 /// Rule of succession (Laplace): nothing is certain after no or few trials.
 double confidence_of(std::int64_t held, std::int64_t judged) { return static_cast<double>(held + 1) / static_cast<double>(judged + 2); }
+
+/// Of types that answer contacts: an impact does not announce itself, so what was measured holds for the interval of the measurement only.
+bool answers_contacts(const std::string& ladder)
+{
+    constexpr std::string_view kKinds[] = {"CDetection", "Manager", "Resolution", "Response"};
+    return std::any_of(std::begin(kKinds), std::end(kKinds), [&](std::string_view kind) { return ladder.starts_with(kind); });
+}
 
 /// Measures a component, chooses its level, and says when it is measured again.
 void measure(const StepContext& context, Row row, std::size_t k, double scale, Look& look, ErrorRows& governors, LevelControl& control)
@@ -103,9 +98,9 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
                               brief(governors.interval[row]) + " s, confidence " + brief(governors.confidence[row]));
     if (!std::isnan(error)) governors.worst[row] = std::max(governors.worst[row], error);
     // Far below the bound it is measured less often.
-    constexpr double kLongest = 16;
     const double likely = error * governors.safety[row];
-    const double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, kLongest) : std::isnan(likely) ? 1 : kLongest;
+    const double longest = answers_contacts(governors.watch.levels[row]) ? 1.0 : governors.patience[row];
+    const double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, longest) : std::isnan(likely) ? 1 : longest;
     const double then = context.time + every * (waits ? 1 : longer);
     entry = place_of(next, id);
     if (entry != next.end() && entry->name == id)
@@ -153,6 +148,10 @@ void ErrorRows::describe(Schema& schema)
         .not_negative();
     schema.state(next, "next", unit::one, "when a component is measured again, s");
     schema.state(safety, "safety", unit::one, "factor by which measured errors are taken to be larger").initially(1);
+    schema
+        .state(patience, "patience", unit::one,
+               "times `every` after which what is far below the bound is measured again; it falls with each promise that is broken")
+        .initially(16);
     schema.state(judged, "judged", unit::one, "measurements of a level that was measured before");
     schema.state(held, "held", unit::one, "those of them that found the error still below the bound");
     schema.output(confidence, "confidence", unit::one, "with which a level's error is below the bound when it is measured again");
@@ -194,8 +193,11 @@ void keep_error(const StepContext& context, Row row, ErrorRows& governors, Level
         const std::size_t k = waiting[n].second;
         if (n < most)
             measure(context, row, k, scale_of(k), look, governors, control);
-        else if (by_sight && waiting[n].first < 0 && look.may_choose(k, look.finest()))
-            (void)look.choose(k, look.finest(), "it comes into view, and its error has not been measured yet");
+        else if (waiting[n].first < context.time - 2 * governors.watch.every[row] && look.may_choose(k, look.finest()))
+            (void)look.choose(k, look.finest(),
+                              waiting[n].first >= 0 ? "its error has not been measured for too long"
+                              : by_sight            ? "it comes into view, and its error has not been measured yet"
+                                                    : "its error has not been measured yet");
     }
 }
 

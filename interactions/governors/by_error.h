@@ -17,6 +17,7 @@ struct ErrorRows
     Column<double> look_ahead, margin;  ///< s, rad: of pixels, as those of Governor/Visibility
     Column<Entries> next;               ///< s: when a component is measured again, by id
     Column<double> safety;              ///< factor
+    Column<double> patience;            ///< factor of `every`: what is far below the bound is measured again after at most this
     Column<std::int64_t> judged, held;  ///< promises: see keep_error()
     Column<double> confidence, worst;
     Column<std::int64_t> measured, unknown;

@@ -21,6 +21,10 @@ public:
     bool is_known() const { return state_.size() == n_ + n_ * n_; }
     /// `fraction`: of the components at each level, sum 1. `cost`: s.
     void update(std::span<const double> fraction, double cost);
+    /// What trial steps say: a step with all components at the level costs this much more (s) than one with all of them at the level
+    /// below. A trial step of a few objects is not a step of all, so it counts only as long as steps have not told better. Does nothing
+    /// before the first update.
+    void update_difference(std::size_t level, double more);
     /// s: the cost of a step with all components at this level, and its standard deviation.
     double cost(std::size_t level) const { return state_[level]; }
     double deviation(std::size_t level) const;
@@ -28,6 +32,9 @@ public:
 private:
     double& covariance(std::size_t i, std::size_t k) { return state_[n_ + i * n_ + k]; }
     void begin(std::span<const double> fraction, double cost);
+    /// `value` = sum_l weight_l c_l was measured, with this variance.
+    void observe(std::span<const double> weight, double value, double variance);
+    double variance_of(std::span<const double> weight) const;
 
     Reals& state_;
     std::size_t n_;

@@ -39,6 +39,20 @@ bool is_in_view(const Viewpoint& eye, const Ball& ball)
     return beside <= ball.radius && above <= ball.radius;
 }
 
+double pixels_per_metre(const GovernedComponent& g, std::span<const Viewpoint> eyes, double look_ahead, double margin)
+{
+    constexpr double kNearest = 0.1;  // m: what is nearer fills the picture
+    double most = 0;
+    for (const Viewpoint& eye : eyes)
+    {
+        const double reach = look_ahead * (length(eye.velocity) + g.speed);
+        if (!is_in_view(widened(eye, margin), {g.center, g.radius + reach})) continue;
+        const double distance = std::max(kNearest, distance_to(eye, {g.center, g.radius}) - reach);
+        most = std::max(most, 0.5 * eye.height / std::tan(0.5 * eye.field_of_view) / distance);
+    }
+    return most;
+}
+
 namespace
 {
 

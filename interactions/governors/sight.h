@@ -27,6 +27,10 @@ Viewpoint widened(const Viewpoint& eye, double margin);
 /// it.
 bool is_in_view(const Viewpoint& eye, const Ball& ball);
 
+/// Pixels in the picture for each metre at the component, for the viewer to whom it is largest; 0: nobody can see it within `look_ahead`
+/// (s), even if each picture were larger by `margin` (rad) on each side.
+double pixels_per_metre(const GovernedComponent& component, std::span<const Viewpoint> eyes, double look_ahead, double margin);
+
 /// A box that nothing can be seen through: an orthonormal frame with half extents.
 struct Occluder
 {

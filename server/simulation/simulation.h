@@ -127,8 +127,8 @@ private:
     void read_changed_governors();
     /// Observers see the governor of a component with it.
     void note_levels();
-    const Result<FirstStep>& step_with(std::uint32_t component, const Level& level);
-    LevelError error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval);
+    const Result<FirstStep>& step_with(std::uint32_t component, const Level& level, const FirstStepChoice& choice);
+    TrialFindings error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval, bool with_cost);
 
     bool run_step();
     void take_back_step();

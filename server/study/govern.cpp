@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "simulation/simulation.h"
 #include "study/run.h"
+#include "study/shadow.h"
 
 namespace plab::study
 {
@@ -13,71 +15,19 @@ namespace
 {
 
 using simulation::LevelInfo;
-using simulation::Operation;
 using simulation::Simulation;
 
-Result<void> ask(Simulation& s, std::vector<Operation> operations)
-{
-    simulation::Request request;
-    request.trial.budget = simulation::TrialChoice::Budget::None;
-    request.operations = std::move(operations);
-    const simulation::Reply reply = s.carry_out_now(request);
-    if (!reply.done) return reply.errors;
-    return {};
-}
-
-Result<void> give_all(Simulation& s, const std::vector<std::string>& watched, const simulation::Level& level)
-{
-    std::vector<Operation> operations;
-    for (const std::string& id : watched) operations.emplace_back(simulation::SwapOperation{id, level.type, level.values});
-    return ask(s, std::move(operations));
-}
-
-/// A moving body in a run and in the reference.
-struct Pair
-{
-    std::uint32_t here = 0, there = 0;  ///< host rows
-};
-
-std::vector<Pair> pairs_of(const Simulation& one, const Simulation& other)
-{
-    std::vector<Pair> out;
-    for (const std::uint32_t i : one.world().in_id_order())
-    {
-        const world::Component& c = one.world().component(i);
-        if (c.facet != Facet::Body || !one.world().host().bodies.dynamic(c.host_index)) continue;
-        if (const std::uint32_t k = other.world().find(c.id); k != kNoIndex)
-            out.push_back({c.host_index, other.world().component(k).host_index});
-    }
-    return out;
-}
-
-/// Pixels in the picture of a viewer for each metre at p; 0: p is not in the picture.
-double pixels_per_metre(const Viewpoint& eye, const Vec3& p)
-{
-    constexpr double kNearest = 0.5;  // m
-    const Vec3 right = normalized(cross(eye.direction, eye.up)), up = cross(right, eye.direction), d = p - eye.position;
-    const double tall = std::tan(0.5 * eye.field_of_view), wide = tall * eye.width / eye.height, z = dot(d, eye.direction);
-    if (z < kNearest || std::fabs(dot(d, right)) > wide * z || std::fabs(dot(d, up)) > tall * z) return 0;
-    return 0.5 * eye.height / tall / z;
-}
-
-/// Sums of squares until mean() is called.
+/// Sums of squares until take_mean() is called.
 void add_errors(Simulation& run, const Simulation& reference, GovernError& out)
 {
-    const Bodies &a = run.world().host().bodies, &b = reference.world().host().bodies;
     const std::vector<Viewpoint> eyes = run.viewpoints();
-    for (const Pair& p : pairs_of(run, reference))
+    for (const ObjectPair& p : body_pairs(run, reference))
     {
-        const Quat turn = conjugate(a.orientation[p.here]) * b.orientation[p.there];
-        const double angle = 2 * std::atan2(length(Vec3{turn.x, turn.y, turn.z}), std::fabs(turn.w));
-        const double radius = run.stepper().radius_of_body()[p.here];
-        const double apart = length(a.position[p.here] - b.position[p.there]) + (std::isfinite(radius) ? radius * angle : 0);
-        out.metres += apart * apart, ++out.bodies;
-        double scale = 0;
-        for (const Viewpoint& eye : eyes) scale = std::max(scale, pixels_per_metre(eye, a.position[p.here]));
+        const double metres = apart(run, reference, p).metres;
+        out.metres += metres * metres, ++out.bodies;
+        const double scale = pixels_per_metre(eyes, run.world().host().bodies.position[p.here]);
         if (scale == 0) continue;
-        const double pixels = apart * scale;
+        const double pixels = metres * scale;
         out.pixels += pixels * pixels, ++out.seen;
         out.worst_pixels = std::max(out.worst_pixels, pixels);
     }
@@ -101,8 +51,9 @@ struct Contender
 {
     GovernPoint point;
     std::unique_ptr<Simulation> run;
-    std::vector<double> steps;  ///< s of CPU time
-    double looks = 0;           ///< how often the levels were counted
+    std::vector<double> steps;     ///< s of CPU time
+    bool shares_snapshot = false;  ///< since the last step
+    double looks = 0;              ///< how often the levels were counted
 };
 
 class Comparison
@@ -149,7 +100,7 @@ private:
             fixed.point.name = level.text, fixed.run = std::make_unique<Simulation>(types_);
             if (auto loaded = fixed.run->load(plan_.scene); !loaded) return loaded;
             fixed.run->let_measure(true);  // for other governors of the scene
-            if (auto removed = ask(*fixed.run, {simulation::RemoveOperation{out_.governor}}); !removed) return removed;
+            if (auto removed = ask_now(*fixed.run, {simulation::RemoveOperation{out_.governor}}); !removed) return removed;
             if (auto given = give_all(*fixed.run, watched_, level); !given) return given;
             contenders_.push_back(std::move(fixed));
             out_.levels.push_back(level.text);
@@ -181,7 +132,7 @@ private:
         if (const auto* b = std::get_if<double>(&budget)) out_.budget = *b > 0 ? *b : std::get<double>(share) * s.dt();
         out_.title = plan_.title, out_.command = plan_.command, out_.scene_file = plan_.scene.file;
         out_.until = plan_.until, out_.between = plan_.between, out_.window = plan_.window, out_.dt = s.dt(), out_.refine = plan_.refine;
-        out_.components = watched_.size(), out_.objects = pairs_of(s, s).size();
+        out_.components = watched_.size(), out_.objects = body_pairs(s, s).size();
         return {};
     }
 
@@ -190,7 +141,8 @@ private:
         if (plan_.stop && plan_.stop->due()) return reason("interrupted");
         const double begin = thread_cpu_seconds();
         (void)c.run->step();
-        c.steps.push_back(thread_cpu_seconds() - begin);
+        // The first step after a snapshot copies what it shares with that. This is not what the scene costs.
+        if (!std::exchange(c.shares_snapshot, false)) c.steps.push_back(thread_cpu_seconds() - begin);
         return {};
     }
 
@@ -200,6 +152,7 @@ private:
         while (c.run->time() < compared_from - half)
             if (auto made = step(c); !made) return made;
         if (auto ready = begin_reference(*c.run); !ready) return ready;
+        c.shares_snapshot = true;
         while (c.run->time() < end - half)
         {
             if (auto made = step(c); !made) return made;
@@ -218,7 +171,7 @@ private:
         model::StepLength dt = plan_.scene.settings.dt;
         dt.seconds /= plan_.refine;
         if (dt.denominator > 0) dt.denominator *= plan_.refine;
-        return ask(*reference_, {simulation::StepLengthOperation{dt}});
+        return ask_now(*reference_, {simulation::StepLengthOperation{dt}});
     }
 
     void count_levels(Contender& c)
@@ -234,7 +187,7 @@ private:
     {
         double cpu = 0;
         for (const double s : c.steps) cpu += s;
-        c.point.cpu = cpu / std::max(1e-9, c.run->time());
+        c.point.cpu = cpu / (std::max<double>(1, static_cast<double>(c.steps.size())) * c.run->dt());
         c.point.step_median = at_share(c.steps, 0.5), c.point.step_99 = at_share(c.steps, 0.99),
         c.point.step_longest = at_share(c.steps, 1);
         take_mean(c.point.error);

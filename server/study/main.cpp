@@ -12,6 +12,7 @@
 #include "study/govern.h"
 #include "study/options.h"
 #include "study/suite.h"
+#include "study/verify.h"
 #include "study/write.h"
 
 namespace
@@ -159,11 +160,27 @@ int run_govern(const study::StudyOptions& options, model::TypeSource& types, mod
     return 0;
 }
 
+int run_verification(const study::StudyOptions& options, model::TypeSource& types)
+{
+    study::VerifyPlan plan;
+    plan.file = options.scene, plan.command = options.command, plan.until = options.until, plan.stop = &work;
+    program::Progress line(progress_to(options), std::chrono::milliseconds(0));
+    plan.progress = shown_by(line);
+    auto result = study::verify_levels(types, plan);
+    line.clear();
+    if (!result) return fail(result.errors());
+    if (auto written = study::write_verified(*result, options.out); !written) return fail(written.errors());
+    for (const std::string& s : study::verify_findings(*result)) std::printf("%s\n", s.c_str());
+    std::printf("%s/levels.csv\n", options.out.c_str());
+    return 0;
+}
+
 int carry_out(const study::StudyOptions& options)
 {
     plugins::PluginLibrary library;
     for (const Error& e : library.problems()) std::fprintf(stderr, "plab-study: %s\n", e.text().c_str());
     if (options.suite) return run_suite(options, library);
+    if (options.verify_levels) return run_verification(options, library);
     auto blueprint = blueprint::read_blueprint_file(options.scene);
     if (!blueprint) return fail(blueprint.errors());
     auto scene = model::compile(*blueprint, library);

@@ -24,6 +24,8 @@ constexpr const char* kExamples = R"(Examples:
   plab-study --suite -o out                                       the catalogue of this installation; --list shows its size
   plab-study --suite my/suite.json --repeat 1 -o out
   plab-study scenes/city.xml --govern cranes --until 10 -o out    a governor against one level of detail for all
+  plab-study scenes/levels/chains.xml --verify-levels --until 10 -o out    are the true errors of levels below the bound?
+  plab-study run.mcap --verify-levels -o out                      the same of a recorded run
 
 DIR then holds report.html (open it in a browser), results.csv, results.json, reference.csv and the pictures.
 Exit codes: 0 done (a run that fails is a result), 1 nothing could be studied, 2 wrong usage, 130 Ctrl-C, 143 SIGTERM.)";
@@ -157,6 +159,9 @@ void add_study_options(CLI::App& app, StudyOptions& options, Texts& texts, std::
                    "picture against CPU time")
         ->expected(0, 1)
         ->type_name("[ID]");
+    app.add_flag("--verify-levels", options.verify_levels,
+                 "check the governors that keep an error below a bound: the true errors of the levels in a run of the scene, or in a "
+                 "recording (.mcap)");
     app.add_flag("--list", options.list,
                  "print the combinations, or the studies of a suite and their approximate duration, and run nothing");
     app.add_flag("--list-exact", options.list_exact, "print the closed forms that exact:NAME knows");
@@ -180,6 +185,11 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
     options.suite = app.count("--suite") > 0, options.govern = app.count("--govern") > 0;
     if (options.govern && (options.suite || !texts.vary.empty() || !texts.algorithms.empty() || !texts.swaps.empty()))
         return ParseEnd{2, "plab-study: --govern takes its levels from the governor: leave --suite, --vary, --algorithm and --swap out\n"};
+    if (options.verify_levels &&
+        (options.govern || options.suite || options.list || !texts.vary.empty() || !texts.algorithms.empty() || !texts.swaps.empty()))
+        return ParseEnd{2,
+                        "plab-study: --verify-levels runs the scene as it is: leave --govern, --suite, --list, --vary, --algorithm and "
+                        "--swap out\n"};
     if (options.suite && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite has its own scenes: leave SCENE out\n"};
     if (options.suite) options.scene = suite.empty() ? usual_suite() : suite;
     if (options.suite && options.scene.empty())
@@ -188,7 +198,9 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
     if (options.list_exact) return {};
     if (options.scene.empty()) return ParseEnd{2, "plab-study: needs a scene; see plab-study --help\n"};
     if (auto understood = understand(texts, options); !understood) return ParseEnd{2, "plab-study: " + understood.error().text() + "\n"};
-    if (!options.suite && !options.list && options.until < 0) return ParseEnd{2, "plab-study: needs --until T, in simulated seconds\n"};
+    const bool recorded = options.verify_levels && options.scene.ends_with(".mcap");
+    if (!options.suite && !options.list && !recorded && options.until < 0)
+        return ParseEnd{2, "plab-study: needs --until T, in simulated seconds\n"};
     if (!options.list && options.out.empty()) return ParseEnd{2, "plab-study: needs -o DIR, the folder for its results\n"};
     options.command = typed(argc, argv);
     return {};

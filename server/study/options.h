@@ -30,8 +30,9 @@ struct StudyOptions
     double budget = std::numeric_limits<double>::infinity();
     double tolerance = 1e-6;  ///< suite: largest error that counts as solved
     int repeat = 5;
-    bool govern = false;   ///< compares a governor with one level for all
-    std::string governor;  ///< its id; empty: the first one of the scene
+    bool govern = false;         ///< compares a governor with one level for all
+    std::string governor;        ///< its id; empty: the first one of the scene
+    bool verify_levels = false;  ///< checks what governors promise; `scene` may be a recording
     std::string out;
     std::string command;  ///< the command line as typed
 };

@@ -113,7 +113,7 @@ inline const std::vector<Layer>& layers()
          false},
         {"server/study",
          {"server/sdk", "server/model", "server/world", "server/blueprint", "server/plugins", "server/simulation", "server/publish",
-          "server/control", "server/figures", "server/program", "server/completion", "scenes/exact", "idl/values", "idl/json"},
+          "server/control", "server/record", "server/replay", "server/figures", "server/program", "server/completion", "scenes/exact", "idl/values", "idl/json"},
          {"CLI/", "nlohmann/", "time.h", "unistd.h", "sys/utsname.h"},
          false},
         {"scenes/exact", {"server/sdk", "server/model", "server/world", "server/simulation"}, {}},

@@ -193,6 +193,36 @@ TEST_CASE("plabd and plab-study end in the same state with the same figures")
     }
 }
 
+TEST_CASE("the levels of a scene and of its recording are checked with the same result, interval by interval")
+{
+    std::filesystem::create_directories(kFolder);
+    const std::string scene = kFolder + "/levels.xml", recording = kFolder + "/levels.mcap";
+    std::ofstream(scene) << R"(<plab version="1"><scene dt="1/100"/>
+        <component id="ball" type="Shape/Sphere" radius="0.1"/>
+        <component id="post" type="State/Static"/>
+        <component id="bob" type="State/RigidBody" mass="1" shape="ball" position="1.5 0 0" linear_velocity="0 2 0"
+                   solver="Solver/SemiImplicitEuler"/>
+        <component id="spring" type="Constraint/SpringDamper" a="post" b="bob" length="1" stiffness="40"/>
+        <component id="lod" type="Governor/Error" watches="*.solver" bound="1e-3" every="0.1"
+                   levels="Solver/SemiImplicitEuler; Solver/RungeKutta4; Solver/DormandPrince54"/></plab>)";
+    REQUIRE(run({program("plabd"), scene, "--no-bus", "--until", "2", "--record", recording, "--overwrite"}).code == 0);
+    const std::string live = folder("levels_live"), recorded = folder("levels_recorded");
+    const Outcome first = study({scene, "--verify-levels", "--until", "2", "-o", live});
+    REQUIRE_MESSAGE(first.code == 0, first.errors);
+    CHECK(has(first.output, "lod (Governor/Error): 100 % of 8 intervals of 0.25 s"));
+    CHECK(has(first.output, "of bob.solver with Solver/RungeKutta4"));
+    const Outcome second = study({recording, "--verify-levels", "-o", recorded});
+    REQUIRE_MESSAGE(second.code == 0, second.errors);
+    const std::string table = read(live + "/levels.csv");
+    CHECK(has(table, "lod,Governor/Error,m,0.001,0,0.25,1,1,"));
+    CHECK(table == read(recorded + "/levels.csv"));
+    CHECK(study({scene, "--verify-levels", "-o", live}).code == 2);  // how long?
+    CHECK(study({scene, "--verify-levels", "--govern", "--until", "1", "-o", live}).code == 2);
+    const Outcome nothing = study({scene_file("studies/bounce.xml"), "--verify-levels", "--until", "0.1", "-o", live});
+    CHECK(nothing.code == 1);
+    CHECK(has(nothing.errors, "no governor of the scene states a bound"));
+}
+
 TEST_CASE("part of the repository's catalogue: every ladder has its heat-map, and failures solve nothing")
 {
     const std::string where = folder("catalogue");

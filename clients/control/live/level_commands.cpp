@@ -36,6 +36,13 @@ struct LevelOf
     double error = kUnknown;  ///< as the governor measured it, in this unit
     std::string unit;
     double next_look = kUnknown, every = 0;  ///< s
+    struct Tried
+    {
+        long level = 0;
+        std::string algorithm, unit;
+        double error = kUnknown, cost = kUnknown;  ///< against the next finer level; s, of a trial step of what the component acts on
+    };
+    std::vector<Tried> tried;  ///< levels that trial steps have told about, from the cheapest on
 };
 
 const wire::Parameter& parameter_of(const std::vector<wire::Parameter>& parameters, std::string_view name)
@@ -65,6 +72,14 @@ std::optional<LevelOf> level_of(const std::string& id, const std::vector<wire::P
     const wire::Parameter& error = parameter_of(parameters, "level_error");
     out.error = real(error.text), out.unit = error.unit;
     out.next_look = real(parameter(parameters, "level_next_look")), out.every = real(parameter(parameters, "level_every"));
+    for (long k = 0; k < out.levels; ++k)
+    {
+        const std::string of = "." + std::to_string(k);
+        const std::string& name = parameter(parameters, "level_name" + of);
+        if (name.empty()) continue;
+        const wire::Parameter& found = parameter_of(parameters, "level_error" + of);
+        out.tried.push_back({k, name, found.unit, real(found.text), real(parameter(parameters, "level_cost" + of))});
+    }
     return out;
 }
 
@@ -112,6 +127,18 @@ std::string place(const LevelOf& level)
 
 Json json_of(double value) { return std::isnan(value) ? Json() : Json(value); }
 
+Json json_of(const std::vector<LevelOf::Tried>& tried)
+{
+    Json out = Json::array();
+    for (const LevelOf::Tried& t : tried)
+        out.push_back({{"level", t.level},
+                       {"algorithm", t.algorithm},
+                       {"error", json_of(t.error)},
+                       {"error_unit", t.unit},
+                       {"cost", json_of(t.cost)}});
+    return out;
+}
+
 Json json_of(const LevelOf& level, const link::CatalogueContents& now, const link::InteractionMetrics* m)
 {
     return {{"id", level.id},
@@ -124,6 +151,7 @@ Json json_of(const LevelOf& level, const link::CatalogueContents& now, const lin
             {"measured_error", json_of(level.error)},
             {"measured_error_unit", level.unit},
             {"until_next_look", json_of(until_next_look(level, now))},
+            {"tried", json_of(level.tried)},
             {"metrics", m != nullptr ? wire::json_of(*m) : Json()}};
 }
 
@@ -191,6 +219,22 @@ Exit run_levels(Context& c, const LevelsOptions& o)
     return print_again(c, *catalogue, link::Seconds(1), o.live, print_now);
 }
 
+/// What trial steps showed of its level and of those beside it.
+void add_neighbours(const LevelOf& level, Lines& lines)
+{
+    for (const LevelOf::Tried& t : level.tried)
+    {
+        if (level.level >= 0 && std::labs(t.level - level.level) > 1) continue;
+        std::string text = t.algorithm + ": ";
+        if (t.level + 1 == level.levels)
+            text += "the most exact level";
+        else
+            text += std::isnan(t.error) ? "error not known" : "error " + number(t.error) + " " + t.unit + " against the next finer level";
+        if (!std::isnan(t.cost)) text += ", " + duration_text(1e9 * t.cost) + " for a step of it alone";
+        lines.add(t.level == level.level ? "this level" : t.level < level.level ? "cheaper" : "finer", text);
+    }
+}
+
 Exit run_why(Context& c, const std::string& id)
 {
     if (const Exit e = c.connect(); e != Exit::Done) return e;
@@ -222,6 +266,7 @@ Exit run_why(Context& c, const std::string& id)
     if (const double next = until_next_look(*level, now); !std::isnan(next)) lines.add("next look", "in " + seconds_text(next));
     if (m != nullptr)
         lines.add("cost", cost_in_words(*m)), lines.add("error", error_text(*m) + " " + error_unit(*m) + "; " + error_meaning(*m));
+    add_neighbours(*level, lines);
     lines.print(c.console);
     return Exit::Done;
 }

@@ -46,8 +46,8 @@ private:
     const MeasureError& error_;
     world::WorldLookup lookup_;
     std::uint32_t by_ = kNoIndex;
-    const Governor* governor_ = nullptr;  ///< null: the component watches nothing
-    bool chose_ = false;                  ///< the last decision has choices of this component
+    Governor* governor_ = nullptr;  ///< null: the component watches nothing
+    bool chose_ = false;            ///< the last decision has choices of this component
     std::vector<Decision> decisions_;
 };
 
@@ -55,7 +55,7 @@ void LevelBook::Desk::serve(std::uint32_t component)
 {
     by_ = component, governor_ = nullptr, chose_ = false;
     book_.looked_.clear();
-    for (const Governor& g : book_.governors_)
+    for (Governor& g : book_.governors_)
         if (g.component == component) governor_ = &g;
 }
 
@@ -96,7 +96,11 @@ LevelError LevelBook::Desk::error(Row /*row*/, std::size_t index, std::int32_t l
     const auto at = static_cast<std::size_t>(level);
     if (at + 1 == levels.size()) return {0, 0, 0};
     if (at >= levels.size() || !error_) return {};
-    return error_(governor_->watched[index].component, &levels[at], &levels[at + 1], interval);
+    const std::uint32_t component = governor_->watched[index].component;
+    constexpr std::size_t kMostMeasured = 64;
+    const TrialFindings found = error_(component, &levels[at], &levels[at + 1], interval, governor_->trials < kMostMeasured);
+    note_trial(*governor_, index, level, interval, found, book_.trials_[component]);
+    return found.error;
 }
 
 void LevelBook::Desk::tell(Row /*row*/, std::size_t index, double error, std::string_view unit, double next_look)

@@ -144,7 +144,7 @@ Result<void> LevelBook::find_watched()
     std::vector<Governor> before;
     before.swap(governors_);
     std::vector<std::uint32_t> watcher(world_.components().size(), kNoIndex);
-    changes_.resize(world_.components().size()), told_.resize(world_.components().size());
+    changes_.resize(world_.components().size()), told_.resize(world_.components().size()), trials_.resize(world_.components().size());
     for (const std::uint32_t i : stepper_.components())
     {
         const world::Component& c = world_.component(i);
@@ -212,23 +212,97 @@ void LevelBook::note_change(std::uint32_t component, std::string reason, double 
     if (component < changes_.size()) changes_[component] = {world_.id_of(component), std::move(reason), time};
 }
 
-std::vector<Request> LevelBook::measurements(double time, double dt, const StepCost& cost) const
+namespace
+{
+
+double median_of(std::vector<double>& values)
+{
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+bool is_input(const Schema& schema, const char* name)
+{
+    const Field* field = schema.find_field(name);
+    return field && field->is_input;
+}
+
+}  // namespace
+
+void LevelBook::note_exchange(std::uint32_t governor, std::size_t n, const StepCost& cost)
+{
+    for (Governor& g : governors_)
+        if (g.component == governor) g.exchanged = n, g.exchange_cost = cost;
+}
+
+std::vector<Request> LevelBook::measurements(double time, double dt, const std::function<StepCost()>& cost)
 {
     std::vector<Request> out;
-    for (const Governor& g : governors_)
+    for (Governor& g : governors_)
     {
         const Schema& schema = world_.table_of(g.component).schema();
-        const Field* step = schema.find_field("step_cost");
-        if (!step || !step->is_input) continue;
-        const double every = std::max(dt, real_of(world_, g.component, "every"));
-        if (std::floor(time / every + 1e-9) == std::floor((time - dt) / every + 1e-9)) continue;
+        const bool by_wall = text_of(world_, g.component, "clock") == "wall";
+        const auto counted = [&](const StepCost& c) { return by_wall ? c.wall : c.processor; };
         Request request;
         request.trial.budget = TrialChoice::Budget::None;
-        request.operations.push_back(SetOperation{world_.id_of(g.component), "step_cost",
-                                                  Value(text_of(world_, g.component, "clock") == "wall" ? cost.wall : cost.processor)});
-        out.push_back(std::move(request));
+        const auto set = [&](const char* name, Value value) {
+            request.operations.push_back(SetOperation{world_.id_of(g.component), name, std::move(value)});
+        };
+        const double every = std::max(dt, real_of(world_, g.component, "every"));
+        const bool due = std::floor(time / every + 1e-9) != std::floor((time - dt) / every + 1e-9);
+        if (is_input(schema, "step_cost") && (due || real_of(world_, g.component, "step_cost") == 0))
+        {
+            set("step_cost", Value(counted(cost())));
+            Reals trials;
+            for (std::vector<double>& seconds : g.trial_seconds) trials.push_back(median_of(seconds)), seconds.clear();
+            const bool any = std::any_of(trials.begin(), trials.end(), [](double s) { return s > 0; });
+            if (any && is_input(schema, "trial_costs")) set("trial_costs", Value(std::move(trials)));
+        }
+        if (g.exchanged > 0 && is_input(schema, "exchange_cost"))
+            set("exchange_cost", Value(Reals{static_cast<double>(g.exchanged), counted(g.exchange_cost)}));
+        g.exchanged = 0;
+        if (!request.operations.empty()) out.push_back(std::move(request));
     }
     return out;
+}
+
+/// A component that acts on many objects takes part with what it costs for each of them.
+void LevelBook::note_trial(Governor& governor, std::size_t index, std::int32_t level, double interval, const TrialFindings& found,
+                           std::vector<LevelTrial>& known)
+{
+    constexpr std::size_t kMostSamples = 64;
+    const auto objects = static_cast<double>(std::max<std::size_t>(1, governor.watched[index].objects.size()));
+    governor.trial_seconds.resize(governor.ladder.levels.size());
+    known.resize(governor.ladder.levels.size());
+    const auto note = [&](std::size_t l, double seconds)
+    {
+        known[l].level = static_cast<std::int32_t>(l), known[l].text = governor.ladder.levels[l].text;
+        if (seconds <= 0) return;
+        known[l].seconds = seconds;
+        if (governor.trial_seconds[l].size() < kMostSamples) governor.trial_seconds[l].push_back(seconds / objects);
+    };
+    governor.trials += found.seconds > 0 ? 1 : 0;
+    const auto l = static_cast<std::size_t>(level);
+    note(l, found.seconds), note(l + 1, found.finer_seconds);
+    known[l].error = found.error, known[l].interval = interval;
+    if (l + 2 == known.size()) known[l + 1].error = {0, 0, 0};
+}
+
+const LevelBook::Watched* LevelBook::find_watched(const Governor& g, std::uint32_t component) const
+{
+    const auto before = [&](const Watched& w, std::uint32_t c) { return world_.rank(w.component) < world_.rank(c); };
+    const auto found = std::lower_bound(g.watched.begin(), g.watched.end(), component, before);
+    return found != g.watched.end() && found->component == component ? &*found : nullptr;
+}
+
+std::span<const Ref> LevelBook::objects_of(std::uint32_t component) const
+{
+    for (const Governor& g : governors_)
+        if (component < watcher_.size() && watcher_[component] == g.component)
+            if (const Watched* watched = find_watched(g, component)) return watched->objects;
+    return {};
 }
 
 LevelInfo LevelBook::info(const Governor& g, const Watched& w) const
@@ -242,6 +316,8 @@ LevelInfo LevelBook::info(const Governor& g, const Watched& w) const
     out.every = real_of(world_, g.component, "every");
     const Told& told = told_[w.component];
     if (told.by == g.component) out.error = told.error, out.error_unit = told.unit, out.next_look = told.next_look;
+    for (const LevelTrial& trial : trials_[w.component])
+        if (!trial.text.empty() && trial.level < out.levels) out.trials.push_back(trial);
     return out;
 }
 
@@ -259,9 +335,7 @@ std::optional<LevelInfo> LevelBook::level(std::uint32_t component) const
     for (const Governor& g : governors_)
     {
         if (g.component != watcher_[component]) continue;
-        const auto before = [&](const Watched& w, std::uint32_t c) { return world_.rank(w.component) < world_.rank(c); };
-        const auto found = std::lower_bound(g.watched.begin(), g.watched.end(), component, before);
-        if (found != g.watched.end() && found->component == component) return info(g, *found);
+        if (const Watched* watched = find_watched(g, component)) return info(g, *watched);
     }
     return {};
 }

@@ -29,6 +29,23 @@ struct Decision
     std::vector<std::string> reasons;    ///< one for each of them, or for the request
 };
 
+/// What trial steps with a level and with the next finer one showed.
+struct TrialFindings
+{
+    LevelError error;
+    double seconds = 0, finer_seconds = 0;  ///< of these steps, for all objects that they moved; 0: not measured
+};
+
+/// What is known of a level of one component from a trial step, for observers.
+struct LevelTrial
+{
+    std::int32_t level = 0;
+    std::string text;     ///< of the level
+    LevelError error;     ///< within `interval` (s), against the next finer level; NaN: not told
+    double interval = 0;  ///< s
+    double seconds = 0;   ///< of the step; 0: not measured
+};
+
 /// s, what a step costs: time that passes, and time of the processor that the stepping thread used.
 struct StepCost
 {
@@ -47,13 +64,16 @@ struct LevelInfo
     double next_look = std::numeric_limits<double>::quiet_NaN();  ///< s: when its governor measures it again; NaN: at its next look
     double every = 0;                                             ///< s, from one look of its governor to the next
     std::string error_unit;
+    std::vector<LevelTrial> trials;  ///< what the last trial steps showed of its levels, from the cheapest on
 };
 
 class LevelBook
 {
 public:
-    /// Measures how far apart two levels of a component are after a step: see LevelControl::error().
-    using MeasureError = std::function<LevelError(std::uint32_t component, const Level* level, const Level* finer, double interval)>;
+    /// Measures how far apart two levels of a component are after a step: see LevelControl::error(). `with_cost`: also what the steps cost,
+    /// for which they have to be repeated.
+    using MeasureError =
+        std::function<TrialFindings(std::uint32_t component, const Level* level, const Level* finer, double interval, bool with_cost)>;
 
     LevelBook(world::World& world, Stepper& stepper);
     ~LevelBook();
@@ -72,9 +92,12 @@ public:
     /// What was carried out, for observers.
     void note_change(std::uint32_t component, std::string reason, double time);
 
-    /// Inputs for governors that have the field `step_cost` (s), as often as their field `every` (s) states: what steps have cost, by the
-    /// wall clock if their field `clock` says "wall".
-    std::vector<Request> measurements(double time, double dt, const StepCost& cost) const;
+    /// What a transaction of a governor cost that exchanged n components.
+    void note_exchange(std::uint32_t governor, std::size_t n, const StepCost& cost);
+    /// Inputs for governors that have these fields: `step_cost` (s), what steps have cost, as often as their field `every` (s) states and
+    /// once as soon as it is known, and with it `trial_costs` (s for each object, by level); `exchange_cost` after each exchange. By the
+    /// wall clock if their field `clock` says "wall"; trial steps always.
+    std::vector<Request> measurements(double time, double dt, const std::function<StepCost()>& cost);
 
     /// All watched components, by governor and then by id.
     std::vector<LevelInfo> levels() const;
@@ -84,6 +107,8 @@ public:
     std::vector<std::uint32_t> take_changed() { return std::exchange(changed_, {}); }
     bool watches_anything() const { return !governors_.empty(); }
     bool is_governor(std::uint32_t component) const;
+    /// On what a watched component acts, without static objects; empty: no governor watches it.
+    std::span<const Ref> objects_of(std::uint32_t component) const;
 
 private:
     struct Watched
@@ -97,6 +122,11 @@ private:
         std::string watches, written;  ///< the texts from which the rest was derived
         Ladder ladder;
         std::vector<Watched> watched;  ///< in id order
+        // Measured since the last input of that kind.
+        std::vector<std::vector<double>> trial_seconds;  ///< for each object, by level
+        std::size_t trials = 0;                          ///< whose cost was measured: after some of them, steps tell it better
+        std::size_t exchanged = 0;                       ///< components
+        StepCost exchange_cost;
     };
     struct Change
     {
@@ -112,6 +142,10 @@ private:
     };
     class Desk;
 
+    static void note_trial(Governor& governor, std::size_t index, std::int32_t level, double interval, const TrialFindings& found,
+                           std::vector<LevelTrial>& known);
+    const Watched* find_watched(const Governor& governor, std::uint32_t component) const;
+
     world::CommandCall call_at(Tick tick, double time, double dt, Desk& desk) const;
     Result<void> find_watched();
     Result<void> read_governor(Governor& governor) const;
@@ -123,9 +157,10 @@ private:
 
     world::World& world_;
     Stepper& stepper_;
-    std::vector<Governor> governors_;  ///< in id order
-    std::vector<Change> changes_;      ///< by directory index
-    std::vector<Told> told_;           ///< by directory index
+    std::vector<Governor> governors_;              ///< in id order
+    std::vector<Change> changes_;                  ///< by directory index
+    std::vector<Told> told_;                       ///< by directory index
+    std::vector<std::vector<LevelTrial>> trials_;  ///< by directory index
     /// By directory index: what the world returns is not valid any more after a trial, which may copy the directory that a snapshot shares.
     std::vector<std::string> ids_;
     std::vector<std::uint32_t> watcher_, changed_;  ///< governor of each component, by directory index; components

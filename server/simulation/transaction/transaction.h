@@ -25,11 +25,19 @@ public:
     virtual Result<void> rewind(double time) = 0;
 };
 
-/// What the first step with a request gave, for all objects that the request can affect.
+/// What the first step (or steps) with a request gave, for all objects that the request can affect.
 struct FirstStep
 {
     std::vector<ObjectMotion> motion;  ///< bodies first, each in the order of host rows
     double energy = 0;                 ///< J, kinetic and stored
+    double seconds = 0;                ///< that one step takes, the median of some; 0: not measured
+};
+
+/// What a look at the first steps with a request shall tell.
+struct FirstStepChoice
+{
+    int steps = 1;
+    std::uint64_t measure_ns = 0;  ///< time for which the first step may be repeated to measure what it costs; 0: it is not measured
 };
 
 /// A transaction: back up, apply, try, then commit or roll back.
@@ -51,8 +59,8 @@ public:
     Transaction(Run& run, RunContext& context, RunOperations& operations, const Request& request);
     /// Applies, tries and commits the request. On any error everything is as it was before.
     Reply run();
-    /// Makes the first step with the request, and undoes both: they leave no trace.
-    Result<FirstStep> first_step();
+    /// Makes the first step, or steps, with the request, and undoes all: they leave no trace.
+    Result<FirstStep> first_step(const FirstStepChoice& choice);
 
 private:
     Result<void> apply(const Operation& operation);

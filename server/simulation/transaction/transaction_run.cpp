@@ -179,7 +179,7 @@ void Transaction::run_on_scene(bool swaps)
     write_clock(clock);
 }
 
-Result<FirstStep> Transaction::first_step()
+Result<FirstStep> Transaction::first_step(const FirstStepChoice& choice)
 {
     if (auto expanded = expand_patterns(); !expanded) return expanded.errors();
     saved_.begin(*run_, changes_contacts());
@@ -193,10 +193,14 @@ Result<FirstStep> Transaction::first_step()
         Interruption deadline(context_->interruption);
         if (request_->trial.budget == TrialChoice::Budget::Given)
             deadline.ask(std::chrono::nanoseconds(static_cast<std::int64_t>(budget_ns())));
-        TrialResult result = Trial(run_->world(), run_->stepper(), next_step()).run(scope, {}, deadline, context_->progress, 0);
+        const std::uint64_t until = choice.measure_ns > 0 ? now_ns() + choice.measure_ns : 0;
+        TrialStep step = next_step();
+        step.count = choice.steps;
+        TrialResult result = Trial(run_->world(), run_->stepper(), step).run(scope, {}, deadline, context_->progress, until);
         if (result.given_up) reply_.errors = {reason("the trial was interrupted")};
         if (!result.failure.empty()) reply_.errors = {reason(result.failure)};
         out.motion = std::move(result.motion), out.energy = result.outcome.energy;
+        if (result.cost.is_known()) out.seconds = 1e-9 * result.cost.median;
     }
     saved_.restore_world(prepared_);
     if (!reply_.errors.empty()) return reply_.errors;

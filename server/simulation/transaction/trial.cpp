@@ -234,7 +234,12 @@ TrialResult Trial::once(Stepper& part, const TrialScope& scope, const std::vecto
     first_ns_ = now_ns() - begin;
     out.given_up = deadline.has_interrupted();
     out.failure = failure_in(part.events());
-    const Totals then = totals_of(world_, part, step_.start + step_.h, step_.tick + 1);
+    for (int n = 1; n < step_.count && !out.given_up && out.failure.empty(); ++n)
+    {
+        part.step(step_.tick + n, step_.start + n * step_.h, step_.h);
+        out.given_up = deadline.has_interrupted(), out.failure = failure_in(part.events());
+    }
+    const Totals then = totals_of(world_, part, step_.start + step_.count * step_.h, step_.tick + step_.count);
     out.kinetic_after = then.kinetic;
     out.outcome.energy = then.kinetic + then.stored, out.outcome.momentum = then.momentum;
     for (const std::uint32_t c : components) out.errors.push_back(c == kNoIndex ? 0.0 : world_.largest_error(c));

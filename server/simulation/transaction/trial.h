@@ -15,6 +15,7 @@ struct TrialStep
 {
     Tick tick = 0;
     double start = 0, h = 0;  ///< s
+    int count = 1;            ///< steps in a row; objects that others touch before the last one are not noticed
 };
 
 /// How a body or a shaft moves at the end of a trial.

@@ -92,6 +92,19 @@ private:
         add_object("red", kRed, "body"), add_object("blue", kBlue, "body");
         if (options_.with_axle) add_object("axle", kAxle, "shaft");
         add_interaction("Response/Impulse", 0);
+        for (int k = 0; k < options_.governed; ++k) add_governed(k, "Solver/Cheap");
+    }
+    void add_governed(int number, const char* algorithm)
+    {
+        const std::string id = "solver." + std::to_string(number);
+        std::vector<plab_v2_Parameter> parameters(2);
+        for (plab_v2_Parameter& p : parameters) p = {}, p.kind = text("level");
+        parameters[0].name = text("governor"), parameters[0].text = text("lod");
+        parameters[1].name = text("level_algorithm"), parameters[1].text = text(algorithm);
+        plab_v2_Interaction i{};
+        i.component_id = i.name = text(id.c_str()), i.type_name = text(algorithm), i.family = text("Solver"), i.run = run_;
+        point_at(i.parameters, parameters);
+        put(i);
     }
     void add_object(const char* id, std::uint32_t handle, const char* kind)
     {
@@ -136,6 +149,7 @@ private:
         {
             add_journal("swap", "contact.response", "Response/None");
             if (options_.with_catalogue) add_interaction("Response/None", step);
+            for (int k = 0; k < options_.governed; k += 3) add_governed(k, "Solver/Fine");
         }
         if (step % options_.frame_every == 0) add_frame();
         if (options_.with_hashes && step % 10 == 9) add_hashes();

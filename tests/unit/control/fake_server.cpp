@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstring>
 #include <stdexcept>
+#include <tuple>
 
 #include "idl/frame_updates.h"
 
@@ -148,6 +149,16 @@ void FakeServer::publish_catalogue()
     plab_v2_Interaction contact{};
     contact.component_id = contact.name = text("contact"), contact.type_name = text("CDetection/ODE"), contact.family = text("CDetection");
     contact.run = 1, contact.roles = sequence<dds_sequence_plab_v2_Participants>(roles);
+    std::vector<plab_v2_Parameter> levels;
+    for (const auto& [name, value, unit] : {std::tuple("governor", "lod", ""), std::tuple("level", "1", ""), std::tuple("levels", "4", ""),
+                                            std::tuple("level_algorithm", "CDetection/ODE", ""), std::tuple("level_every", "0.5", "s"),
+                                            std::tuple("level_reason", "there is room", ""), std::tuple("level_since", "2", "s"),
+                                            std::tuple("level_name.0", "CDetection/Coarse", ""), std::tuple("level_error.0", "0.25", "m"),
+                                            std::tuple("level_cost.0", "2e-06", "s"), std::tuple("level_name.1", "CDetection/ODE", ""),
+                                            std::tuple("level_error.1", "0.003", "m"), std::tuple("level_name.2", "CDetection/Fine", ""),
+                                            std::tuple("level_cost.2", "5e-05", "s"), std::tuple("level_name.3", "CDetection/Finest", "")})
+        levels.push_back(parameter(name, value, unit, "level"));
+    contact.parameters = sequence<dds_sequence_plab_v2_Parameter>(levels);
     (void)ends_->interactions.write(contact);
     std::vector<plab_v2_Parameter> restitution{parameter("restitution", "0.8", "", "param"),
                                                parameter("code", "function f()\nend", "", "param")};

@@ -195,3 +195,23 @@ TEST_CASE("the command wait waits for readiness or for a step, and not for ever"
     CHECK(never.code == 3);
     CHECK(has(never.err, "did not reach it within the time-out"));
 }
+
+TEST_CASE("why a component has its level: with the cost and the error of the levels beside it, as far as they are known")
+{
+    FakeServer server(test_domain(), "lab");
+    const Outcome why = plabctl("why contact");
+    CHECK(why.code == 0);
+    CHECK(has(why.out, "there is room"));
+    CHECK(has(why.out, "2 of 4, counted from the cheapest"));
+    CHECK(has(why.out, "CDetection/Coarse: error 0.25 m against the next finer level, 2.0 us for a step of it alone"));
+    CHECK(has(why.out, "CDetection/ODE: error 0.003 m against the next finer level"));
+    CHECK(has(why.out, "CDetection/Fine: error not known, 50.0 us for a step of it alone"));
+    CHECK_FALSE(has(why.out, "CDetection/Finest"));  // two levels away
+    const auto json = plabctl("why contact --json").json();
+    REQUIRE(json["tried"].size() == 4);
+    CHECK(json["tried"][0]["cost"] == 2e-6);
+    CHECK(json["tried"][1]["cost"].is_null());
+    CHECK(json["tried"][1]["error"] == 0.003);
+    CHECK(json["tried"][1]["error_unit"] == "m");
+    CHECK(plabctl("why red").code != 0);
+}

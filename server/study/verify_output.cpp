@@ -1,0 +1,69 @@
+// What a check of levels found: in sentences and as a table.
+#include <filesystem>
+
+#include "figures/axes.h"
+#include "plab/csv.h"
+#include "program/text_out.h"
+#include "study/verify.h"
+
+namespace plab::study
+{
+
+using figures::short_number;
+
+std::vector<std::string> verify_findings(const VerifyResult& r)
+{
+    std::vector<std::string> out;
+    for (const VerifiedGovernor& g : r.governors)
+    {
+        const std::string name = g.id + " (" + g.type + "): ";
+        if (g.counted() == 0)
+        {
+            out.push_back(name + "all components had the most exact level in all intervals" +
+                          (g.unit == "pixels" ? " in which a viewer saw them." : "."));
+            continue;
+        }
+        out.push_back(name + short_number(100 * g.share()) + " % of " + std::to_string(g.counted()) + " intervals of " +
+                      short_number(g.interval) + " s have a true error of at most " + short_number(g.bound) + " " + g.unit + " (" +
+                      std::to_string(g.components) + " components, " + std::to_string(r.objects) +
+                      " moving bodies; the governor states a confidence of " + short_number(g.confidence) + ").");
+        const VerifiedLevel& worst = *g.worst();
+        out.push_back(name + "the largest error is " + short_number(worst.error) + " " + g.unit + ", of " + worst.component + " with " +
+                      worst.level + " in the interval from " + short_number(worst.begin) + " s on.");
+    }
+    return out;
+}
+
+namespace
+{
+
+std::string csv_of(const VerifyResult& r)
+{
+    CsvRow rows;
+    rows.put("governor,type,unit,bound,interval_begin,interval,counted,held,worst_error,worst_component,worst_level");
+    rows.end();
+    for (const VerifiedGovernor& g : r.governors)
+        for (const VerifiedInterval& i : g.intervals)
+        {
+            rows.text(g.id).text(g.type).text(g.unit).exact(g.bound).exact(i.begin).exact(g.interval);
+            rows.exact(static_cast<double>(i.counted)).exact(static_cast<double>(i.held));
+            if (i.counted > 0)
+                rows.exact(i.worst.error).text(i.worst.component).text(i.worst.level);
+            else
+                rows.none().none().none();
+            rows.end();
+        }
+    return rows.take();
+}
+
+}  // namespace
+
+Result<void> write_verified(const VerifyResult& r, const std::string& folder)
+{
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) return reason("cannot make the folder " + folder + ": " + error.message());
+    return program::write_file(folder + "/levels.csv", csv_of(r));
+}
+
+}  // namespace plab::study
