@@ -4,15 +4,15 @@
 /// Whoever keeps something derived also keeps the revisions from which it was derived, and derives again only what follows from counts
 /// that have grown since. Motion, and what the commands of a step write, is no change in this sense.
 ///
-///   | count    | of                                                            | what follows                                              |
-///   |----------|---------------------------------------------------------------|-----------------------------------------------------------|
-///   | order    | additions and removals                                        | everything, because ranks change                          |
-///   | solvers  | changes of components that only advance others                | who advances a group, and which groups share a system; not |
-///   |          | (ComponentType::only_advances)                                | the groups, the graph, and the systems themselves         |
-///   | others   | changes of all other components: type, values, participants,  | everything but ranks                                      |
-///   |          | quarantine                                                    |                                                           |
-///   | contacts | those of them on which contacts may depend                    | sizes of bodies, and the contacts of the present state    |
-///   |          | (ComponentType::concerns_contacts)                            |                                                           |
+///   | count    | of                                                          | what follows                                         |
+///   |----------|-------------------------------------------------------------|------------------------------------------------------|
+///   | order    | additions and removals                                      | everything, because ranks change                     |
+///   | solvers  | changes of components that only advance others              | who advances a group, which groups share a system;   |
+///   |          | (ComponentType::only_advances)                              | not the groups, the graph, and the systems           |
+///   | others   | changes of all other components: type, values,              | everything but ranks                                 |
+///   |          | participants, quarantine                                    |                                                      |
+///   | contacts | those of them on which contacts may depend                  | sizes of bodies, contacts of the present state       |
+///   |          | (ComponentType::concerns_contacts)                          |                                                      |
 #pragma once
 
 #include <cstdint>

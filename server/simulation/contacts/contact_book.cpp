@@ -104,16 +104,6 @@ Errors ContactBook::rebuild(bool sizes)
     return {};
 }
 
-bool ContactBook::is_of_present_structure() const { return built_from_ && step_.world.revisions().keeps_contacts_since(*built_from_); }
-
-void ContactBook::take_sizes(const ContactBook& whole)
-{
-    if (!whole.has_sizes_ || !whole.is_of_present_structure()) return;
-    extents_of_body_ = whole.extents_of_body_, radius_of_body_ = whole.radius_of_body_;
-    curve_radius_of_body_ = whole.curve_radius_of_body_;
-    built_from_ = step_.world.revisions(), has_sizes_ = true;
-}
-
 void ContactBook::list_participants()
 {
     const Bodies& bodies = step_.world.host().bodies;
