@@ -1,5 +1,5 @@
-/// Values as CDR (XCDR1, little-endian, with its 4 bytes of encapsulation): for the types of schemas.h, which are Foxglove's and for which
-/// idlc makes no code. Members follow one another in the order of their declaration.
+/// Values as CDR (XCDR1, little-endian, with its 4 bytes of encapsulation): for the types of channels.cpp, which are Foxglove's and for
+/// which idlc makes no code. Members follow one another in the order of their declaration.
 #pragma once
 
 #include <bit>
