@@ -8,7 +8,7 @@ namespace plab::ros
 namespace
 {
 
-// simulation_interfaces/msg/EntityCategory, TagsFilter, Bounds.
+// Constants of simulation_interfaces: categories, how tags are combined, kinds of bounds.
 constexpr std::uint8_t kDynamicObject = 4, kStaticObject = 5;
 constexpr std::uint8_t kAllTags = 1;
 constexpr std::uint8_t kNoBounds = 0, kBoxBounds = 1, kBallBounds = 3;

@@ -9,7 +9,7 @@
 #include <string>
 #include <type_traits>
 
-#include "idl/ros/topics.h"
+#include "idl/ros_topics.h"
 #include "idl/samples.h"
 
 namespace plab::ros

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "idl/domain.h"
-#include "idl/ros/topics.h"
+#include "idl/ros_topics.h"
 
 namespace plab::ros
 {

@@ -87,7 +87,9 @@ void ServiceDesk::handle(const msg::SetSimulationState::Request& request, Answer
             is_paused_at_start_ = false;
             return stop_simulation([answer](const Outcome& outcome) { answer(outcome); });
         case kQuitting:
-            return ask({verb("shutdown")}, reply);
+            // Afterwards there is nobody to answer.
+            answer(Outcome{});
+            return ask({verb("shutdown")}, [](const Outcome&, const link::Reply*) {});
         default:
             return answer(
                 Outcome{Code::IncorrectTransition, "a server always has a world; states are stopped, playing, paused and quitting"});

@@ -133,7 +133,6 @@ inline const std::vector<Layer>& layers()
         {"interactions/*", {"server/sdk"}, {}},
         {"idl/values", {}, {}},  // plain values: files that include them see no DDS
         {"idl/json", {"idl/values"}, {"nlohmann/"}},
-        {"idl/ros", {"idl/topics.h"}, {"dds/"}},
         {"idl/recording",
          {"idl"},
          {"dds/", "zlib.h", "zstd.h", "lz4frame.h", "fcntl.h", "unistd.h", "sys/stat.h", "pthread.h", "semaphore.h"}},
@@ -175,7 +174,7 @@ inline const std::vector<Layer>& layers()
           "clients/control/recording/player"},
          {"CLI/", "nlohmann/", "unistd.h"},
          false},
-        {"clients/ros", {"idl", "idl/values", "idl/ros", "clients/link"}, {"dds/", "regex.h"}},
+        {"clients/ros", {"idl", "idl/values", "clients/link"}, {"dds/", "regex.h"}},
         {"clients/python", {"idl", "idl/json", "idl/recording", "clients/link"}, {"nlohmann/"}, false},
         {"clients/*",
          {"server/program", "idl", "clients/link", "clients/completion"},

@@ -12,7 +12,7 @@
 
 #include "idl/domain.h"
 #include "idl/recording/cdr.h"
-#include "idl/ros/topics.h"
+#include "idl/ros_topics.h"
 
 namespace
 {

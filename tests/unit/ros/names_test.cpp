@@ -1,7 +1,7 @@
 // Names that ROS accepts, whatever ids a scene has.
 #include <doctest/doctest.h>
 
-#include "idl/ros/topics.h"
+#include "idl/ros_topics.h"
 #include "idl/values/ros_names.h"
 #include "ros/names.h"
 

@@ -1,4 +1,4 @@
-#include "idl/ros/topics.h"
+#include "idl/ros_topics.h"
 
 #include <array>
 

@@ -1,8 +1,9 @@
 /// What ROS 2 puts on DDS: names, types and QoS of its topics and services, for whoever has to look like a ROS node.
 ///
-/// Names and type names are those of rmw_cyclonedds_cpp and rmw_fastrtps_cpp: a topic `clock` is `rt/clock`, a service `s` has the topics
-/// `rq/sRequest` and `rr/sReply`, and a message `package/msg/Type` is `package::msg::dds_::Type_`. Type hashes (REP-2016, ROS 2 Iron and
-/// later) travel in the USER_DATA of each endpoint; tests/ros computes them from the definitions of the messages.
+/// Names and type names are those that all of ROS's own implementations use on DDS: a topic `clock` is `rt/clock`, a service `s` has the
+/// topics `rq/sRequest` and `rr/sReply`, and the type of a message has the modules of its package, of msg or srv and dds_, and a '_' behind
+/// it. Type hashes (REP-2016, ROS 2 Iron and later) travel in the USER_DATA of each endpoint; tests/ros computes them from the definitions
+/// of the messages.
 #pragma once
 
 #include <cstdint>
