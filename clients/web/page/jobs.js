@@ -157,6 +157,7 @@ export class Jobs {
     byId('record-now').textContent = recording ? 'Stop' : 'Record';
     byId('record-now').disabled = elsewhere && !recording;
     byId('record-name').disabled = recording !== null;
+    document.body.dataset.shown = this.kindOf(this.shown);
     for (const id of ['step', 'steps', 'reset', 'keep', 'grab', 'push']) byId(id).disabled = elsewhere;
     byId('rate').querySelector('[value=max]').disabled = elsewhere;
   }
