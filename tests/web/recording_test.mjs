@@ -99,6 +99,7 @@ test('a recording is played, and the line of time goes to any moment of it', asy
   await until('the playback is there', async () => (await serverOf(page))?.name === 'play-first');
   await lab.shows(page, kObjects);
   assert.match(await textOf(page, '#elsewhere'), /Recording first: .*Back to lab/s);
+  assert.ok(!/false|null|undefined/.test(await textOf(page, '#elsewhere')));
   await until('it plays', async () => (await playback(page))?.at > (await playback(page)).from);
   await page.evaluate(() => document.activeElement.blur());
   await page.keyboard.press('Space');

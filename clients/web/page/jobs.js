@@ -1,5 +1,5 @@
 // What plab-web does beside the server: recordings, playbacks, branches, and which server this page looks at.
-import { byId, h, isPressed, size } from './dom.js';
+import { byId, h, isPressed, present, size } from './dom.js';
 
 const kReally = 4000; // ms for which a second press deletes
 
@@ -157,6 +157,7 @@ export class Jobs {
     byId('record-now').textContent = recording ? 'Stop' : 'Record';
     byId('record-now').disabled = elsewhere && !recording;
     byId('record-name').disabled = recording !== null;
+    document.body.dataset.shown = this.kindOf(this.shown);
     for (const id of ['step', 'steps', 'reset', 'keep', 'grab', 'push']) byId(id).disabled = elsewhere;
     byId('rate').querySelector('[value=max]').disabled = elsewhere;
   }
@@ -167,6 +168,7 @@ export class Jobs {
     if (key === this.choiceKey) return;
     this.choiceKey = key;
     choice.closest('label').hidden = others.length === 0;
+    byId('server').hidden = others.length > 0; // the choice says it
     choice.replaceChildren(h('option', { value: '' }, this.home || 'the server'), ...others.map((one) => h('option', { value: one.name }, one.kind === 'playback' ? `${one.of} (recording)` : `${one.name} (branch of ${one.of})`)));
     choice.value = this.shown;
   }
@@ -178,10 +180,11 @@ export class Jobs {
     byId('elsewhere').hidden = !one;
     if (!one) return byId('elsewhere').replaceChildren();
     const home = this.home || 'the server', isBranch = one.kind === 'branch';
-    byId('elsewhere').replaceChildren(
+    byId('elsewhere').replaceChildren(...present([
       h('span', {}, isBranch ? `Branch ${one.name} of ${one.of}: nothing that happens here changes ${one.of}.` : `Recording ${one.of}: drag the line of time; nothing can be changed.`),
       h('button', { id: 'back', onclick: () => this.leave(!isBranch) }, `◀ Back to ${home}`),
-      isBranch && h('button', { id: 'end-branch', onclick: () => this.leave(true) }, 'End this branch'));
+      isBranch && h('button', { id: 'end-branch', onclick: () => this.leave(true) }, 'End this branch'),
+    ]));
   }
 
   fillList() {
