@@ -54,6 +54,16 @@ class RecordingTest(lab.LabTest):
             np.testing.assert_array_equal(frames[frame.step].speeds, frame.speeds)
         self.assertIn("request.swap", {event.kind for event in events})
 
+    def test_a_recorder_joins_the_domain_of_its_session(self):
+        other = int(os.environ["PLAB_DOMAIN"]) + 1
+        with plab.Server.start(lab.BALL, domain=other) as server:
+            with self.assertRaises(plab.NoServer):
+                plab.Session(server.name, timeout=0.5)
+            with plab.Session(server.name, domain=other) as session, session.record(self.file):
+                session.step(5)
+        with plab.Recording(self.file) as recording:
+            self.assertEqual([frame.step for frame in recording.frames()][-1], 5)
+
     def test_frames_as_a_table(self):
         with plab.Server.start(lab.PAPER, record=self.file) as server, server.session() as session:
             last = session.step(900)
