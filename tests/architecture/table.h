@@ -167,7 +167,7 @@ inline const std::vector<Layer>& layers()
          {"server/program", "idl", "idl/json", "clients/link", "clients/completion"},
          {"libwebsockets.h", "CLI/", "nlohmann/", "fcntl.h", "signal.h", "spawn.h", "sys/", "unistd.h"},
          false},
-        {"clients/python", {"idl", "idl/json", "idl/recording", "clients/link"}, {"nlohmann/"}, false},
+        {"clients/python/native", {"idl", "idl/json", "idl/recording", "clients/link"}, {"nlohmann/"}, false},
         {"clients/*",
          {"server/program", "idl", "clients/link", "clients/completion"},
          {"CLI/", "nlohmann/", "unistd.h", "sys/", "signal.h"}},
