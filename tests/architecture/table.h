@@ -175,7 +175,7 @@ inline const std::vector<Layer>& layers()
          {"CLI/", "nlohmann/", "unistd.h"},
          false},
         {"clients/ros", {"idl", "idl/values", "clients/link"}, {"dds/", "regex.h"}},
-        {"clients/python", {"idl", "idl/json", "idl/recording", "clients/link"}, {"nlohmann/"}, false},
+        {"clients/python/native", {"idl", "idl/json", "idl/recording", "clients/link"}, {"nlohmann/"}, false},
         {"clients/*",
          {"server/program", "idl", "clients/link", "clients/completion"},
          {"CLI/", "nlohmann/", "unistd.h", "sys/", "signal.h"}},

@@ -23,9 +23,8 @@ with plab.Server.start("scenes/levels/springs.xml") as server, server.session() 
 frame, _ = runs["fine where seen"]
 level = np.array([-1 if id == "drone" else levels["engine" + id[5:]].level for id in frame.bodies])
 figure, (left, right) = plt.subplots(1, 2, figsize=(11, 5.5), layout="constrained")
-for number in sorted(set(level)):
-    size, marker = (120, "^") if number < 0 else (9, "o")
-    left.scatter(*frame.positions[level == number, :2].T, s=size, marker=marker, label=LEVELS[number])
+for number in sorted(set(level), reverse=True):
+    left.scatter(*frame.positions[level == number, :2].T, s=120 if number < 0 else 9, label=LEVELS[number])
 for name, (other, cost) in list(runs.items())[1:]:
     error = np.linalg.norm(other.positions - runs["reference"][0].positions, axis=1)
     right.loglog(1e3 * cost, np.median(error[level == 2]), "o", label=f"{name}: {1e3 * cost:.1f} ms", markersize=10)

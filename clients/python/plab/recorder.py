@@ -15,13 +15,14 @@ from .recording import Recording
 
 _COMPLETE = (0, 130)  # it ended by itself, or by the signal that close() sends
 _WITH_GAPS = 5
+_UNDER_WAY = 0.1  # s: what the server has sent may reach this process before it reaches the recorder
 
 
 class Recorder:
     """``plabctl record`` as a process: ``with session.record("run.mcap"): ...`` After the block the file is complete."""
 
     def __init__(
-        self, path: str | os.PathLike[str], server: str, domain: int | None, state_rate: float | None, overwrite: bool, timeout: float
+        self, path: str | os.PathLike[str], place: list[str], state_rate: float | None, overwrite: bool, timeout: float
     ) -> None:
         self.path = os.fspath(path)
         self._is_closed = False
@@ -29,8 +30,7 @@ class Recorder:
             if not overwrite:
                 raise StartFailed(f"{self.path} is there already; overwrite=True replaces it")
             os.unlink(self.path)
-        arguments = ["record", "--output", self.path, "--server", server]
-        arguments += ["--domain", str(domain)] if domain is not None else []
+        arguments = ["record", "--output", self.path, *place]
         arguments += ["--state-rate", str(state_rate)] if state_rate is not None else []
         self._program = Program("plabctl", arguments)
         try:
@@ -59,6 +59,7 @@ class Recorder:
         if self._is_closed:
             return
         self._is_closed = True
+        time.sleep(_UNDER_WAY)
         code = self._program.end(signal.SIGINT)
         if code == _WITH_GAPS:
             warnings.warn(f"{self.path} has gaps: {self._program.log}", MissedWarning, stacklevel=2)

@@ -45,7 +45,7 @@ class Session:
         own: Server | None = None,
     ) -> None:
         self.timeout = timeout
-        self._own = own
+        self._own, self._domain, self._interface = own, domain, interface
         self._opened: weakref.WeakSet[Any] = weakref.WeakSet()
         self._catalogues: dict[int, _native.Handle] = {}
         self._lock_step: FrameStream | None = None
@@ -204,7 +204,10 @@ class Session:
 
         path: a new file, "run.mcap". state_rate: frames per simulated second at most. ``Server.start(record=...)`` has every step.
         """
-        return Recorder(path, self.server, self._own.domain if self._own else None, state_rate, overwrite, self.timeout)
+        place = ["--server", self.server]
+        place += ["--domain", str(self._domain)] if self._domain is not None else []
+        place += ["--interface", self._interface] if self._interface else []
+        return Recorder(path, place, state_rate, overwrite, self.timeout)
 
     # ---- Requests ----------------------------------------------------------------------------------------------------
 
