@@ -226,8 +226,12 @@ struct WrittenOptions
 
 void add_run_options(CLI::App& app, DaemonOptions& options, WrittenOptions& written)
 {
-    app.add_option("scene", options.scene, "blueprint (XML), or a scene in URDF or MJCF");
-    app.add_flag("--fixed-base", options.fixed_base, "of a scene in URDF or MJCF: what hangs on nothing is fixed to the world");
+    app.add_option("scene", options.scene, "blueprint (XML), or a scene in URDF, SDF or MJCF");
+    app.add_flag("--fixed-base", options.fixed_base, "of a scene in URDF, SDF or MJCF: what hangs on nothing is fixed to the world");
+    app.add_option("--import-path", options.import_folders, "folder in which model://NAME of SDF is looked for (may be repeated)")
+        ->take_all()
+        ->allow_extra_args(false)
+        ->type_name("FOLDER");
     app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")->check(&not_seconds, "");
     app.add_option("--out", options.out, "write the final state as JSON to FILE (- is standard output)")->type_name("FILE");
     app.add_option("--trace", options.trace, "write the trajectories as CSV to FILE")->type_name("FILE");
@@ -262,7 +266,7 @@ void add_task_options(CLI::App& app, DaemonOptions& options, WrittenOptions& wri
     app.add_flag("--expand", written.expand,
                  "print the long form of the blueprint; with --until, of the scene as it is then, without rules");
     app.add_flag("--explain", written.explain, "print what is loaded, resolved and left out, and why; with --until, then");
-    app.add_option("--import", written.imported, "write the URDF or MJCF file FILE as a blueprint, and list what is not carried over")
+    app.add_option("--import", written.imported, "write the URDF, SDF or MJCF file FILE as a blueprint, and list what is not carried over")
         ->type_name("FILE");
     app.add_option("-o", options.blueprint, "with --import: the blueprint to write; without it, standard output")->type_name("SCENE");
     app.add_option("--reference", options.reference,

@@ -42,10 +42,11 @@ Result<model::Blueprint> read_scene(const DaemonOptions& options)
 {
     if (import::format_of_file(options.scene) == import::SceneFormat::Blueprint)
     {
-        if (options.fixed_base) return Error{{options.scene, 0, 0}, {}, "--fixed-base is for scenes in URDF and MJCF"};
+        if (options.fixed_base) return Error{{options.scene, 0, 0}, {}, "--fixed-base is for scenes in URDF, SDF and MJCF"};
+        if (!options.import_folders.empty()) return Error{{options.scene, 0, 0}, {}, "--import-path is for scenes in SDF"};
         return blueprint::read_blueprint_file(options.scene);
     }
-    auto imported = import::import_file(options.scene, {options.fixed_base});
+    auto imported = import::import_file(options.scene, {options.fixed_base, options.import_folders});
     if (!imported) return imported.errors();
     for (const Error& loss : imported->losses) spdlog::warn("{}", loss.text());
     return blueprint::read_blueprint(imported->blueprint, name_of_import(options.scene));
@@ -53,7 +54,7 @@ Result<model::Blueprint> read_scene(const DaemonOptions& options)
 
 int import_scene(plugins::PluginLibrary& library, const DaemonOptions& options)
 {
-    auto imported = import::import_file(options.scene, {options.fixed_base});
+    auto imported = import::import_file(options.scene, {options.fixed_base, options.import_folders});
     if (!imported) return fail(imported.errors());
     auto tree = blueprint::read_blueprint(imported->blueprint, name_of_import(options.scene));
     if (!tree) return fail(tree.errors());

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "import/mesh_file.h"
+#include "import/mjcf_actuator.h"
 #include "model/numbers.h"
 
 namespace plab::import
@@ -16,7 +17,13 @@ constexpr std::array<std::string_view, 5> kOrientations{"quat", "axisangle", "eu
 
 double from_0_to_1(double x) { return std::fmin(1, std::fmax(0, x)); }
 
-bool is_default_of(std::string_view name) { return name == "geom" || name == "joint" || name == "mesh" || name == "material"; }
+/// Elements that share defaults: those of actuators have one set in a class.
+std::string default_of(const std::string& name) { return is_actuator(name) ? "actuator" : name; }
+
+bool is_default_of(std::string_view name)
+{
+    return name == "geom" || name == "joint" || name == "mesh" || name == "material" || is_actuator(name);
+}
 
 }  // namespace
 
@@ -27,8 +34,18 @@ void list_unused_attributes(const XmlElement& e, Document& document)
         document.list_attributes(e, {"name", "class", "type", "size", "fromto", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis",
                                      "mass", "density", "rgba", "material", "contype", "conaffinity", "friction", "mesh"});
     if (e.name == "joint")
-        document.list_attributes(
-            e, {"name", "class", "type", "pos", "axis", "range", "limited", "ref", "springref", "stiffness", "damping", "frictionloss"});
+        document.list_attributes(e, {"name", "class", "type", "pos", "axis", "range", "limited", "ref", "springref", "stiffness", "damping",
+                                     "frictionloss", "armature"});
+    if (e.name == "motor")
+        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited"});
+    if (e.name == "position")
+        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "kp", "kv",
+                                     "timeconst", "dampratio"});
+    if (e.name == "velocity")
+        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "kv"});
+    if (e.name == "general")
+        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "dyntype",
+                                     "gaintype", "gainprm", "biastype", "biasprm"});
     if (e.name == "mesh") document.list_attributes(e, {"name", "class", "file", "scale", "vertex", "face"});
     if (e.name == "material") document.list_attributes(e, {"name", "class", "rgba"});
 }
@@ -49,7 +66,8 @@ MjcfSettings::MjcfSettings(const XmlElement& root, Document& document) : documen
 
 void MjcfSettings::read_compiler(const XmlElement& e)
 {
-    document_.list_attributes(e, {"angle", "coordinate", "eulerseq", "inertiafromgeom", "autolimits", "meshdir", "assetdir"});
+    document_.list_attributes(e,
+                              {"angle", "coordinate", "eulerseq", "inertiafromgeom", "autolimits", "meshdir", "assetdir", "settotalmass"});
     const auto choose = [&](const char* name, const std::string& otherwise, std::initializer_list<std::string_view> allowed)
     {
         const std::string value = document_.text(e, name);
@@ -61,6 +79,7 @@ void MjcfSettings::read_compiler(const XmlElement& e)
     if (choose("coordinate", "local", {"local", "global"}) == "global") document_.error(e, "coordinate=\"global\" is not supported");
     inertia_from_geom_ = choose("inertiafromgeom", inertia_from_geom_, {"auto", "true", "false"});
     auto_limits_ = choose("autolimits", auto_limits_ ? "true" : "false", {"true", "false"}) == "true";
+    total_mass_ = document_.number(e, "settotalmass", total_mass_);
     if (const std::string* const folder = e.find_attribute("assetdir")) mesh_folder_ = *folder;
     if (const std::string* const folder = e.find_attribute("meshdir")) mesh_folder_ = *folder;
     const std::string sequence = document_.text(e, "eulerseq");
@@ -94,7 +113,7 @@ void MjcfSettings::read_class(const XmlElement& e, const Class& parent, const st
             continue;
         }
         list_unused_attributes(child, document_);
-        for (const auto& a : child.attributes) own[child.name][a.name] = a.value;
+        for (const auto& a : child.attributes) own[default_of(child.name)][a.name] = a.value;
     }
     classes_[name] = own;
     for (const XmlElement& child : e.children)
@@ -114,7 +133,7 @@ XmlElement MjcfSettings::resolved(const XmlElement& e, const std::string& inheri
     const std::string name = own ? *own : inherited.empty() ? "main" : inherited;
     const auto found = classes_.find(name);
     if (found == classes_.end()) return document_.error(e, "there is no default class '" + name + "'"), out;
-    const auto defaults = found->second.find(e.name);
+    const auto defaults = found->second.find(default_of(e.name));
     if (defaults == found->second.end()) return out;
     for (const auto& [attribute, value] : defaults->second)
         if (attribute != "class" && !e.find_attribute(attribute)) out.attributes.push_back({attribute, value});

@@ -31,6 +31,8 @@ public:
     bool auto_limits() const { return auto_limits_; }
     bool inertia_from_shapes() const { return inertia_from_geom_ == "true"; }
     bool inertia_never_from_shapes() const { return inertia_from_geom_ == "false"; }
+    /// kg that all bodies have together; not positive: what their own masses sum up to.
+    double total_mass() const { return total_mass_; }
     const std::string& step() const { return step_; }
     const Vec3& gravity() const { return gravity_; }
     std::optional<Vec3> material(const std::string& name) const;
@@ -54,6 +56,7 @@ private:
 
     Document& document_;
     bool degrees_ = true, auto_limits_ = true;
+    double total_mass_ = -1;
     std::string inertia_from_geom_ = "auto", euler_sequence_ = "xyz", mesh_folder_, step_ = "0.002";
     Vec3 gravity_{0, 0, -9.81};
     std::map<std::string, Class> classes_;
@@ -61,7 +64,7 @@ private:
     std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 
-/// Lists the attributes of <geom> and <joint> that are not carried over; for elements and for their defaults.
+/// Lists the attributes of <geom>, <joint>, assets and actuators that are not carried over; for elements and for their defaults.
 void list_unused_attributes(const XmlElement& e, Document& document);
 
 }  // namespace plab::import

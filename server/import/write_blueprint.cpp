@@ -1,9 +1,12 @@
 #include "import/write_blueprint.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "import/component_text.h"
+#include "import/joint_text.h"
+#include "import/step_length.h"
 #include "model/numbers.h"
 
 namespace plab::import
@@ -54,7 +57,7 @@ class Writer
 public:
     Writer(const Robot& robot, const Assembly& assembly, Document& document) : robot_(robot), assembly_(assembly), document_(document)
     {
-        for (const char* own : {"manager", "gravity", "contact", "contact.response", "solver"}) ids_.make(own);
+        for (const char* own : {"manager", "gravity", "contact", "contact.resolution", "contact.response", "solver"}) ids_.make(own);
     }
 
     WrittenScene run()
@@ -64,17 +67,27 @@ public:
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_body(i);
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_joints(i);
         for (const Coupling& coupling : robot_.couplings) write_coupling(coupling);
-        if (moves_)
-            line("<component id=\"gravity\" type=\"Field/Gravity\" between=\"*\"" + attribute("acceleration", robot_.gravity) + "/>");
+        for (const Actuator& actuator : robot_.actuators) write_actuator(actuator);
+        write_gravity();
         write_contacts();
         if (manager_) line("<component id=\"manager\" type=\"Manager/Automatic\"/>");
-        const std::string settings =
-            (robot_.title.empty() ? "" : attribute("title", robot_.title)) + (robot_.step.empty() ? "" : attribute("dt", robot_.step));
+        const std::string settings = (robot_.title.empty() ? "" : attribute("title", robot_.title)) + step();
         out_.blueprint = "<plab version=\"1\">\n  <scene" + settings + ">" + camera(assembly_) + "</scene>\n" + text_ + "</plab>\n";
         return std::move(out_);
     }
 
 private:
+    /// The attribute dt.
+    std::string step()
+    {
+        const StepChoice choice = choose_step(robot_, assembly_);
+        if (!choice.why) return robot_.step.empty() ? "" : attribute("dt", robot_.step);
+        document_.lost(choice.why->where, "<joint> " + quoted(choice.why->name),
+                       "its springs and dampers need steps of " + model::format_real(choice.step) + " s: the scene has these, not " +
+                           (robot_.step.empty() ? "1/240" : robot_.step) + " s");
+        return attribute("dt", choice.step);
+    }
+
     void line(const std::string& component) { text_ += "  " + component + "\n"; }
     const PlacedBody& body(std::size_t i) const { return assembly_.bodies[i]; }
     static std::string quoted(const std::string& name) { return "'" + name + "'"; }
@@ -109,7 +122,8 @@ private:
         std::string head = "<component" + attribute("id", body_ids_[i]) + attribute("type", b.fixed ? "State/Static" : "State/RigidBody");
         if (!(b.X_WB.p == Vec3{})) head += attribute("position", b.X_WB.p);
         if (!(b.X_WB.q == Quat{})) head += attribute("orientation", b.X_WB.q);
-        if (!b.fixed) head += mass_attributes(b.mass), moves_ = true;
+        if (!b.fixed) head += mass_attributes(b.mass);
+        if (!b.fixed && !b.weightless) heavy_.push_back(body_ids_[i]);
         if (frictions_.size() > 1 && collides(b)) head += attribute("material", material_of(friction_[i]));
         std::vector<RobotShape> shapes = b.shapes;
         if (const auto color = take_color(shapes)) head += attribute("color", *color);
@@ -121,20 +135,24 @@ private:
 
     // ---- joints
 
-    /// The role a: "" for the world and bodies that never move.
-    std::string base_role(std::size_t i) const { return i == kWorld || body(i).fixed ? std::string() : attribute("a", body_ids_[i]); }
+    /// "" for the world and bodies that never move.
+    std::string base_of(std::size_t i) const { return i == kWorld || body(i).fixed ? std::string() : body_ids_[i]; }
+    std::string base_role(std::size_t i) const
+    {
+        const std::string base = base_of(i);
+        return base.empty() ? base : attribute("a", base);
+    }
 
     void write_joints(std::size_t i)
     {
         const PlacedBody& b = body(i);
-        std::string base = base_role(b.parent);
+        std::string base = base_of(b.parent);
         for (std::size_t k = 0; k < b.joints.size(); ++k)
         {
             const PlacedJoint& placed = b.joints[k];
-            const bool last = k + 1 == b.joints.size();
-            const std::string held = last ? body_ids_[i] : write_between(i, placed.joint);
-            write_joint(placed, base + attribute("b", held));
-            base = attribute("a", held);
+            const std::string held = k + 1 == b.joints.size() ? body_ids_[i] : write_between(i, placed.joint);
+            write_joint(placed, base, held);
+            base = held;
             ++out_.joints;
         }
     }
@@ -148,38 +166,42 @@ private:
         const std::string id = ids_.make(body_ids_[i] + "." + joint.name);
         line("<component" + attribute("id", id) + attribute("type", "State/RigidBody") + attribute("position", b.X_WB.p) +
              attribute("orientation", b.X_WB.q) + mass_attributes(light) + "/>");
+        if (!b.weightless) heavy_.push_back(id);
         document_.lost(joint.where, "<joint> " + quoted(joint.name),
                        quoted(b.name) + " moves by several joints: between them is a body of " + model::format_real(light.mass) + " kg");
         return id;
     }
 
-    void write_joint(const PlacedJoint& placed, const std::string& roles)
+    void write_joint(const PlacedJoint& placed, const std::string& base, const std::string& held)
     {
         const Joint& j = placed.joint;
-        const std::string id = ids_.make(j.name), anchor = attribute("anchor", placed.anchor_W), axis = attribute("axis", placed.axis_W);
-        if (j.kind == JointKind::Ball)
-            return line("<component" + attribute("id", id) + " type=\"Constraint/Ball\"" + roles + anchor + "/>");
-        const bool slides = j.kind == JointKind::Slide;
-        line("<component" + attribute("id", id) + attribute("type", slides ? "Constraint/Slider" : "Constraint/Hinge") + roles + anchor +
-             axis + "/>");
-        const std::string place = roles + anchor + axis + attribute("along", slides ? "slide" : "turn");
-        if (j.lower > -kInfinity || j.upper < kInfinity)
-        {
-            line("<component" + attribute("id", ids_.make(id + ".limit")) + " type=\"Constraint/Limit\"" + place +
-                 (j.lower > -kInfinity ? attribute("lower", j.lower - j.start) : "") +
-                 (j.upper < kInfinity ? attribute("upper", j.upper - j.start) : "") + " manager=\"manager\"/>");
-            manager_ = true;
-        }
-        if (j.stiffness > 0 || j.damping > 0)
-            line("<component" + attribute("id", ids_.make(id + ".spring")) + " type=\"Constraint/TorsionSpring\"" + place +
-                 attribute("stiffness", j.stiffness) + attribute("damping", j.damping) + attribute("rest", j.rest - j.start) + "/>");
-        if (j.friction > 0)
-        {
-            // A motor that stands still and may slip is Coulomb's friction.
-            line("<component" + attribute("id", ids_.make(id + ".friction")) + " type=\"Constraint/Motor\"" + place + " speed=\"0\"" +
-                 attribute("max_effort", j.friction) + " manager=\"manager\"/>");
-            manager_ = true;
-        }
+        JointText text = joint_text(placed, base, held, ids_);
+        for (const std::string& component : text.lines) line(component);
+        manager_ = manager_ || text.needs_manager;
+        if (j.armature > 0 && j.kind != JointKind::Hinge)
+            document_.lost(j.where, "<joint> " + quoted(j.name),
+                           "armature of a " + std::string(j.kind == JointKind::Slide ? "slide" : "ball joint") +
+                               " is not carried over: only that of a hinge is");
+        places_[j.name] = {std::move(text.place), j.start};
+    }
+
+    void write_actuator(const Actuator& a)
+    {
+        const auto found = places_.find(a.joint);
+        if (found == places_.end()) return document_.error(a.where, quoted(a.name), "there is no joint " + quoted(a.joint));
+        if (found->second.text.empty())
+            return document_.lost(a.where, quoted(a.name), "is not carried over: the ball joint " + quoted(a.joint) + " has no axis");
+        line(actuator_text(a, found->second.text, found->second.start, ids_));
+    }
+
+    void write_gravity()
+    {
+        std::string on;
+        for (const std::string& id : heavy_) on += (on.empty() ? "" : " ") + id;
+        const bool all = std::ranges::none_of(assembly_.bodies, [](const PlacedBody& b) { return !b.fixed && b.weightless; });
+        if (heavy_.empty()) return;
+        line("<component id=\"gravity\" type=\"Field/Gravity\"" + attribute("between", all ? "*" : on) +
+             attribute("acceleration", robot_.gravity) + "/>");
     }
 
     // ---- couplings
@@ -196,6 +218,13 @@ private:
         if (body(b).fixed && a != kWorld) std::swap(a, b);
         if (body(b).fixed || a == b)
             return document_.lost(c.where, quoted(c.name), "holds bodies that do not move relative to one another");
+        if (c.kind == CouplingKind::Loop)
+        {
+            // The coordinate counts from the other body if that one is the base.
+            const Vec3 axis = rotate(body(first->second.body).X_WB.q * first->second.pose.q, c.joint.axis);
+            const PlacedJoint placed{c.joint, anchor, b == first->second.body ? axis : -axis};
+            return ++out_.joints, write_joint(placed, base_of(a), body_ids_[b]);
+        }
         line("<component" + attribute("id", ids_.make(c.name)) +
              attribute("type", c.kind == CouplingKind::Point ? "Constraint/Ball" : "Constraint/Fixed") + base_role(a) +
              attribute("b", body_ids_[b]) + attribute("anchor", anchor) + "/>");
@@ -246,8 +275,11 @@ private:
         }
         list_lost_pairs(members);
         if (between.empty() || !something_moves) return;
+        // A tree of joints moves as one: to go back for each of its impacts, one by one, costs more than all else.
         line("<component id=\"contact\" type=\"CDetection/ODE\"" + attribute("between", between) +
-             (against.empty() ? "" : attribute("against", against)) + " response=\"contact.response\"/>");
+             (against.empty() ? "" : attribute("against", against) + attribute("resolution", "contact.resolution")) +
+             " response=\"contact.response\"/>");
+        if (!against.empty()) line("<component id=\"contact.resolution\" type=\"Resolution/Speculative\"/>");
         line("<component id=\"contact.response\" type=\"Response/Automatic\" manager=\"manager\"" +
              attribute("friction", frictions_.empty() ? 0 : *frictions_.rbegin()) + "/>");
         manager_ = true;
@@ -289,7 +321,14 @@ private:
     std::vector<double> friction_;  ///< of each body
     std::set<double> frictions_;    ///< of bodies that collide
     std::string text_;
-    bool moves_ = false, manager_ = false;
+    struct Place
+    {
+        std::string text;  ///< attributes
+        double start = 0;
+    };
+    std::map<std::string, Place> places_;  ///< by joint
+    std::vector<std::string> heavy_;       ///< ids of the bodies that gravity acts on
+    bool manager_ = false;
     WrittenScene out_;
 };
 

@@ -46,6 +46,8 @@ TEST_CASE("faulty URDF is refused with its place and a reason")
     check("<link name='a'><visual><geometry><sphere radius='nan'/></geometry></visual></link>",
           "robot:2:34: <sphere>: radius must be 1 number, not 'nan'");
     check("<xacro:include filename='x'/><link name='a'/>", "robot:2:1: <xacro:include>: is a macro: expand the file with xacro first");
+    check("<link name='${prefix}_a'/>",
+          "robot:2:1: <link> '${prefix}_a': name=\"${prefix}_a\" is for xacro: expand the file with xacro first");
     CHECK(refusal("<mujoco/>", SceneFormat::Urdf) == "robot:1:1: <mujoco>: is not the root of URDF, which is <robot>");
 }
 
@@ -64,8 +66,7 @@ TEST_CASE("faulty MJCF is refused with its place and a reason")
     CHECK(refusal("<mujoco/>", SceneFormat::Mjcf) == "robot:1:1: <mujoco>: has no <worldbody>");
     CHECK(refusal("<mujoco><compiler coordinate='global'/><worldbody/></mujoco>", SceneFormat::Mjcf) ==
           "robot:1:9: <compiler>: coordinate=\"global\" is not supported");
-    CHECK(refusal("<mujoco>\n<include file='x'/><worldbody/></mujoco>", SceneFormat::Mjcf) ==
-          "robot:2:1: <include>: is not supported: put the files together first");
+    CHECK(refusal("<mujoco>\n<include/><worldbody/></mujoco>", SceneFormat::Mjcf) == "robot:2:1: <include>: needs a file");
     check("<geom type='box' size='1 2'/>", "robot:3:1: <geom>: size needs 3 numbers, not '1 2'");
     check("<geom class='none' size='1'/>", "robot:3:1: <geom>: there is no default class 'none'");
     check("<body><joint/></body>", "robot:3:1: 'body.1': has no mass, but the joint 'body.1.joint' moves it: give it an inertia");
