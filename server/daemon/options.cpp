@@ -134,7 +134,7 @@ std::string why_not_together(const CLI::App& app, bool replay, bool shadow)
     if (!replay && !shadow) return {};
     const std::string what = replay ? "--replay" : "--shadow";
     const std::string given = first_given(app, {"--swap", "--set", "--table", "--history", "--record", "--paused", "--check", "--expand",
-                                                "--explain", "--import", "--reference"});
+                                                "--explain", "--export-mjcf", "--import", "--reference"});
     if (given.empty()) return {};
     if (given == "--swap" || given == "--set")
         return given + " cannot be combined with " + what +
@@ -269,6 +269,8 @@ void add_task_options(CLI::App& app, DaemonOptions& options, WrittenOptions& wri
     app.add_option("--import", written.imported, "write the URDF, SDF or MJCF file FILE as a blueprint, and list what is not carried over")
         ->type_name("FILE");
     app.add_option("-o", options.blueprint, "with --import: the blueprint to write; without it, standard output")->type_name("SCENE");
+    app.add_option("--export-mjcf", options.exported, "write the scene as MJCF to FILE, and list what that cannot say; with --until, then")
+        ->type_name("FILE");
     app.add_option("--reference", options.reference,
                    "print the reference of all component types, of one (Response/Rows, Rows) or of a kind")
         ->expected(0, 1)
@@ -279,8 +281,9 @@ void add_task_options(CLI::App& app, DaemonOptions& options, WrittenOptions& wri
 std::string take_task(bool reference, const WrittenOptions& written, DaemonOptions& options)
 {
     const bool import = !written.imported.empty();
-    if (int(written.check) + int(written.expand) + int(written.explain) + int(reference) + int(import) > 1)
-        return "--check, --expand, --explain, --import and --reference exclude one another";
+    const bool exports = !options.exported.empty();
+    if (int(written.check) + int(written.expand) + int(written.explain) + int(reference) + int(import) + int(exports) > 1)
+        return "--check, --expand, --explain, --export-mjcf, --import and --reference exclude one another";
     if (import && !options.scene.empty()) return "--import FILE and a scene exclude one another";
     if (!import && !options.blueprint.empty()) return "-o requires --import FILE";
     if (import) options.scene = written.imported;
@@ -289,6 +292,7 @@ std::string take_task(bool reference, const WrittenOptions& written, DaemonOptio
                    : written.explain ? Task::Explain
                    : reference       ? Task::Reference
                    : import          ? Task::Import
+                   : exports         ? Task::Export
                                      : Task::Run;
     if (options.scene.empty() && options.load.empty() && options.replay.file.empty() && options.task != Task::Reference)
         return "needs a scene; see plabd --help";

@@ -23,6 +23,7 @@ enum class Task
     Replay,     ///< replay a recorded run
     Shadow,     ///< simulate from a snapshot with and without another algorithm
     Import,     ///< write the scene of another program as a blueprint
+    Export,     ///< write the scene for another program
 };
 
 /// --record and its further options.
@@ -67,6 +68,7 @@ struct DaemonOptions
     std::string scene;
     std::string blueprint;                    ///< of Task::Import: where to write it; "" and "-": standard output
     bool fixed_base = false;                  ///< of a scene of another program
+    std::string exported;                     ///< file of Task::Export
     std::vector<std::string> import_folders;  ///< likewise
     std::string reference;                    ///< types to describe; "": all
     double until = -1;                        ///< s; < 0: until a signal

@@ -8,6 +8,7 @@
 
 #include "blueprint/reader.h"
 #include "daemon/ending.h"
+#include "export/mjcf.h"
 #include "import/import.h"
 #include "simulation/simulation.h"
 
@@ -70,6 +71,16 @@ int import_scene(plugins::PluginLibrary& library, const DaemonOptions& options)
     for (const Error& loss : imported->losses) std::fprintf(stderr, "%s\n", loss.text().c_str());
     std::fprintf(stderr, "%s: %zu bodies, %zu joints; %zu not carried over as they are\n", options.scene.c_str(), imported->bodies,
                  imported->joints, imported->losses.size());
+    return 0;
+}
+
+int export_scene(const simulation::Simulation& simulation, const DaemonOptions& options)
+{
+    const exported::ExportedScene scene = exported::write_mjcf(simulation.world(), simulation.dt());
+    if (auto written = write_whole(options.exported, scene.text); !written) return fail(written.errors());
+    for (const Error& loss : scene.losses) std::fprintf(stderr, "%s\n", loss.text().c_str());
+    std::fprintf(stderr, "%s: %zu bodies, %zu joints; %zu not carried over as they are\n", options.exported.c_str(), scene.bodies,
+                 scene.joints, scene.losses.size());
     return 0;
 }
 

@@ -25,6 +25,15 @@ bool is_default_of(std::string_view name)
     return name == "geom" || name == "joint" || name == "mesh" || name == "material" || is_actuator(name);
 }
 
+/// However many there are; none with an error if one is faulty.
+std::vector<double> all_numbers(const XmlElement& e, std::string_view attribute, Document& document)
+{
+    const std::string* const text = e.find_attribute(attribute);
+    std::vector<double> out(text ? text->size() / 2 + 1 : 0);
+    out.resize(document.numbers(e, attribute, out, 1));
+    return out;
+}
+
 }  // namespace
 
 void list_unused_attributes(const XmlElement& e, Document& document)
@@ -224,12 +233,37 @@ void MjcfSettings::read_assets(const XmlElement& e)
     }
 }
 
+/// vertex and face.
+void MjcfSettings::read_inline_mesh(const XmlElement& e, const std::string& name)
+{
+    if (!e.find_attribute("face")) return document_.lost(e, "is not carried over: it needs a face");
+    const std::vector<double> points = all_numbers(e, "vertex", document_), corners = all_numbers(e, "face", document_);
+    const Vec3 scale = document_.vector(e, "scale", {1, 1, 1});
+    if (points.size() / 3 > kMostMeshVertices || corners.size() / 3 > kMostMeshTriangles)
+        return document_.error(e, "has more than 100,000 vertices or 200,000 triangles");
+    auto mesh = std::make_shared<TriangleMesh>();
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3)
+        mesh->vertices.push_back({scale.x * points[i], scale.y * points[i + 1], scale.z * points[i + 2]});
+    for (const double corner : corners)
+    {
+        if (!(corner >= 0 && corner < double(mesh->vertices.size()) && corner == std::floor(corner)))
+            return document_.error(e, "face must name vertices by their numbers, from 0");
+        mesh->triangles.push_back(static_cast<std::uint32_t>(corner));
+    }
+    if (mesh->triangles.empty() || points.size() % 3 != 0 || corners.size() % 3 != 0)
+        return document_.error(e, "vertex and face must be triples of numbers");
+    if (scale.x * scale.y * scale.z < 0)
+        for (std::size_t i = 0; i < mesh->triangles.size(); i += 3) std::swap(mesh->triangles[i + 1], mesh->triangles[i + 2]);
+    meshes_[name] = std::move(mesh);
+}
+
 void MjcfSettings::read_mesh(const XmlElement& e)
 {
     const std::string file = document_.text(e, "file");
     std::string name = document_.text(e, "name");
     if (name.empty()) name = std::filesystem::path(file).stem().string();
-    if (file.empty()) return document_.lost(e, "is not carried over: only meshes in files are");
+    if (e.find_attribute("vertex")) return read_inline_mesh(e, name);
+    if (file.empty()) return document_.lost(e, "is not carried over: only meshes in files, or with vertex and face, are");
     const std::string path = find_mesh_file(document_.file(), mesh_folder_, file);
     if (path.empty()) return document_.lost(e, "the mesh '" + file + "' is missing: its shapes are left out");
     auto mesh = read_mesh_file(path, document_.vector(e, "scale", {1, 1, 1}));

@@ -52,6 +52,7 @@ private:
     void read_class(const XmlElement& e, const Class& parent, const std::string& name);
     void read_assets(const XmlElement& e);
     void read_mesh(const XmlElement& e);
+    void read_inline_mesh(const XmlElement& e, const std::string& name);
     Quat euler(const Vec3& angles);
 
     Document& document_;

@@ -57,7 +57,8 @@ class Writer
 public:
     Writer(const Robot& robot, const Assembly& assembly, Document& document) : robot_(robot), assembly_(assembly), document_(document)
     {
-        for (const char* own : {"manager", "gravity", "contact", "contact.resolution", "contact.response", "solver"}) ids_.make(own);
+        for (const char* own : {"manager", "gravity", "contact", "contact.hinged", "contact.resolution", "contact.response", "solver"})
+            ids_.make(own);
     }
 
     WrittenScene run()
@@ -251,35 +252,60 @@ private:
 
     // ---- contacts
 
-    /// The links of a tree do not collide with one another: joints hold parts that overlap. So they are `against`; what is alone, or never
-    /// moves, is `between`.
-    void write_contacts()
+    /// Ids of bodies that collide.
+    struct Groups
     {
+        std::string between, against;  ///< alone, or never moving; links of trees
+        std::string hinged, free;      ///< alone and held at a point of the world; all that moves otherwise
+        std::size_t moving = 0, held = 0;
+    };
+
+    static void add_id(std::string& list, const std::string& id) { list += (list.empty() ? "" : " ") + id; }
+
+    /// The links of a tree do not collide with one another: joints hold parts that overlap. So they are `against`; what is alone, or never
+    /// moves, is `between`. What a joint holds at a point of the world overlaps what is there, but collides with all that moves.
+    Groups group_bodies()
+    {
+        Groups out;
         std::vector<std::size_t> members(assembly_.bodies.size());
         for (const PlacedBody& b : assembly_.bodies) members[b.tree] += b.fixed ? 0 : 1;
-        std::string between, against;
-        bool something_moves = false;
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i)
         {
             const PlacedBody& b = body(i);
+            const bool alone = members[b.tree] == 1;
             if (!collides(b) || (b.fixed && !robot_.base_collides)) continue;
             if (hangs_at_a_point(b))
             {
                 document_.lost(b.where, quoted(b.name),
-                               "does not collide: a joint holds it at a point of the world, where it may overlap it");
+                               std::string("does not collide") + (alone ? " with what never moves" : "") +
+                                   ": a joint holds it at a point of the world, where it may overlap it");
+                if (alone) add_id(out.hinged, body_ids_[i]), ++out.held;
                 continue;
             }
-            something_moves = something_moves || !b.fixed;
-            std::string& role = b.fixed || members[b.tree] == 1 ? between : against;
-            role += (role.empty() ? "" : " ") + body_ids_[i];
+            if (!b.fixed) add_id(out.free, body_ids_[i]), ++out.moving;
+            add_id(b.fixed || alone ? out.between : out.against, body_ids_[i]);
         }
         list_lost_pairs(members);
-        if (between.empty() || !something_moves) return;
+        return out;
+    }
+
+    void write_contacts()
+    {
+        const Groups groups = group_bodies();
+        const bool usual = !groups.between.empty() && groups.moving > 0,
+                   hinged = groups.held > 1 || (groups.held == 1 && groups.moving > 0);
+        if (!usual && !hinged) return;
         // A tree of joints moves as one: to go back for each of its impacts, one by one, costs more than all else.
-        line("<component id=\"contact\" type=\"CDetection/ODE\"" + attribute("between", between) +
-             (against.empty() ? "" : attribute("against", against) + attribute("resolution", "contact.resolution")) +
-             " response=\"contact.response\"/>");
-        if (!against.empty()) line("<component id=\"contact.resolution\" type=\"Resolution/Speculative\"/>");
+        const bool trees = !groups.against.empty() || hinged;
+        const auto detection = [&](const char* id, const std::string& between, const std::string& against)
+        {
+            line("<component" + attribute("id", id) + attribute("type", "CDetection/ODE") + attribute("between", between) +
+                 (against.empty() ? "" : attribute("against", against)) + (trees ? attribute("resolution", "contact.resolution") : "") +
+                 attribute("response", "contact.response") + "/>");
+        };
+        if (usual) detection("contact", groups.between, groups.against);
+        if (hinged) detection("contact.hinged", groups.hinged, groups.free);
+        if (trees) line("<component id=\"contact.resolution\" type=\"Resolution/Speculative\"/>");
         line("<component id=\"contact.response\" type=\"Response/Automatic\" manager=\"manager\"" +
              attribute("friction", frictions_.empty() ? 0 : *frictions_.rbegin()) + "/>");
         manager_ = true;

@@ -32,6 +32,7 @@ inline const std::vector<Layer>& layers()
         {"server/import",
          {"server/sdk", "server/model", "server/blueprint", "server/plugins", "server/objects/shapes", "server/import/meshes"},
          {}},
+        {"server/export", {"server/sdk", "server/model", "server/world", "server/import"}, {}},
         {"server/plugins/manifest_main", {"server/sdk", "server/model", "server/plugins", "server/program"}, {}},
         {"server/plugins", {"server/sdk", "server/model"}, {"dlfcn.h"}, false},
         {"server/completion", {"server/sdk", "server/model", "server/blueprint", "server/plugins", "server/program"}, {"unistd.h"}, false},
@@ -108,9 +109,9 @@ inline const std::vector<Layer>& layers()
          {"server/sdk", "server/model", "server/world", "server/simulation", "server/publish", "server/control", "server/record"},
          {}},
         {"server/daemon",
-         {"server/sdk", "server/model", "server/world", "server/blueprint", "server/import", "server/plugins", "server/simulation",
-          "server/publish", "server/control", "server/bus", "server/record", "server/replay", "server/program", "server/completion",
-          "idl/values", "idl/json"},
+         {"server/sdk", "server/model", "server/world", "server/blueprint", "server/import", "server/export", "server/plugins",
+          "server/simulation", "server/publish", "server/control", "server/bus", "server/record", "server/replay", "server/program",
+          "server/completion", "idl/values", "idl/json"},
          {"spdlog/", "CLI/", "nlohmann/", "unistd.h", "poll.h", "pthread.h", "sys/eventfd.h"},
          false},
         {"server/study",
@@ -180,8 +181,8 @@ inline const std::vector<Layer>& layers()
         {"tests/bus/foreign", {"server", "clients", "idl", "tests"}, {"doctest/", "fastdds/", "plabPubSubTypes.h"}, false},
         {"tests",
          {"server", "interactions", "clients", "idl", "scenes"},
-         {"doctest/", "nlohmann/", "dds/", "Eigen/", "unsupported/Eigen/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h", "sys/",
-          "malloc.h", "poll.h", "termios.h", "arpa/", "netinet/"}},
+         {"doctest/", "nlohmann/", "assimp/", "dds/", "Eigen/", "unsupported/Eigen/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h",
+          "sys/", "malloc.h", "poll.h", "termios.h", "arpa/", "netinet/"}},
     };
     return table;
 }

@@ -6,8 +6,8 @@
 // FILE: MJCF or URDF; BLUEPRINT: what plabd --import made of it; TRACE: of plabd --trace, with these controls of its actuators.
 // Exit code 1 and a line for each difference.
 import loadMujoco from 'mujoco-js';
-import { readFileSync } from 'node:fs';
-import { basename } from 'node:path';
+import { readdirSync, readFileSync } from 'node:fs';
+import { basename, dirname, join } from 'node:path';
 
 const [file, blueprint, trace, ...controls] = process.argv.slice(2);
 const differences = [];
@@ -34,7 +34,14 @@ const number = (component, field, otherwise) => (component?.[field] === undefine
 // ---- what MuJoCo has
 
 const mujoco = await loadMujoco();
+// The file, and what it may include: XML files beside it and in folders there.
 const path = '/' + basename(file).replace(/\.mjcf$/, '.xml');
+for (const entry of readdirSync(dirname(file), { recursive: true })) {
+    if (!entry.endsWith('.xml')) continue;
+    const folders = dirname(entry).split('/');
+    folders.forEach((_, i) => { try { mujoco.FS.mkdir('/' + folders.slice(0, i + 1).join('/')); } catch { /* it is there */ } });
+    mujoco.FS.writeFile('/' + entry, readFileSync(join(dirname(file), entry)));
+}
 mujoco.FS.writeFile(path, readFileSync(file));
 const model = mujoco.MjModel.loadFromXML(path);
 const data = new mujoco.MjData(model);

@@ -188,6 +188,25 @@ TEST_CASE("models are included from the folders of --import-path, with a name an
     CHECK(reasons(without).find("there is no 'model://crate': name the folder that holds it with --import-path") != std::string::npos);
 }
 
+TEST_CASE("the ball of gate.world opens the gate, and the lamp hangs on")
+{
+    const auto imported = imported_file("gate.world");
+    CHECK(imported.losses.size() == 2);
+    CHECK(lists(imported, "'swing::leaf': does not collide with what never moves"));
+    CHECK(lists(imported, "'lamp::shade' moves by several joints"));
+    Scene scene = imported_scene(imported);
+    CHECK(scene.simulation().dt() == 0.002);
+    CHECK(scene.real("ball::ball", "mass") == doctest::Approx(4.0 / 3 * std::numbers::pi * 0.027 * 60));
+    // Along the road, which is turned by 0.3 rad.
+    CHECK(scene.ask(simulation::SetOperation{"ball::ball", "linear_velocity", Value(Vec3{2.5 * std::cos(0.3), 2.5 * std::sin(0.3), 0})})
+              .done);
+    double widest = 0;
+    while (scene.simulation().time() < 2) scene.step(), widest = std::fmax(widest, std::fabs(scene.real("swing::hinge", "angle")));
+    CHECK(widest > 0.3);
+    CHECK(widest < 1.5 + 1e-2);
+    CHECK(distance(scene.vec("lamp::shade", "position"), {1.5, -1, 1.6}) < 1e-6);
+}
+
 TEST_CASE("mass by density of the collisions")
 {
     const auto imported = imported_text(

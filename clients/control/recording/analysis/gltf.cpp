@@ -32,7 +32,11 @@ struct GltfObject
     std::vector<std::string> shapes;
 };
 
-Pose pose_of(const plab_v2_Vector& p, const plab_v2_Rotation& q) { return {{p.x, p.y, p.z}, normalized(Quat{q.w, q.x, q.y, q.z})}; }
+Pose pose_of(const plab_v2_Vector& p, const plab_v2_Rotation& r)
+{
+    const Quat q{r.w, r.x, r.y, r.z};
+    return {{p.x, p.y, p.z}, norm(q) > 0 ? normalized(q) : Quat{}};
+}
 
 Json list(const Vec3& v) { return Json::array({float(v.x), float(v.y), float(v.z)}); }
 Json list(const Quat& q) { return Json::array({float(q.x), float(q.y), float(q.z), float(q.w)}); }

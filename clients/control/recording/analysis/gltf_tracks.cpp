@@ -25,7 +25,7 @@ void Tracks::put(std::uint32_t handle, const Vec3& p, const Quat& q)
     // Of two quaternions for a rotation the one on the side of the last: a viewer takes the shorter way between them.
     const float* const last = track.poses.empty() ? nullptr : &track.poses[track.poses.size() - 7];
     const bool flip = last != nullptr && q.x * last[3] + q.y * last[4] + q.z * last[5] + q.w * last[6] < 0;
-    const double s = (flip ? -1 : 1) / norm(q);
+    const double length = norm(q), s = (flip ? -1 : 1) / (length > 0 ? length : 1);
     const double values[7] = {p.x, p.y, p.z, s * q.x, s * q.y, s * q.z, s * q.w};
     const std::size_t frame = times_.size() - 1;
     // Where it was not there, it keeps the nearest known pose.
