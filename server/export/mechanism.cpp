@@ -72,40 +72,33 @@ private:
     {
         for (const ComponentView& c : body_components_)
             if (!bodies_.dynamic(c.host())) add_body(c.host(), c, kWorld, nullptr);
-        // First what hangs on the world, then what is free.
+        // First what hangs on the world, then what hangs on that, then what is free.
+        std::vector<std::uint32_t> waiting;
         for (FoundJoint& joint : joints_)
-            if (!joint.in_tree && (joint.a == kNoIndex) != (joint.b == kNoIndex)) grow(joint);
-        for (const ComponentView& c : body_components_)
-            if (!rows_.contains(c.host())) add_body(c.host(), c, kWorld, nullptr), grow_from(c.host());
-    }
-
-    void grow(FoundJoint& joint)
-    {
-        const std::uint32_t child = joint.a == kNoIndex || rows_.contains(joint.a) ? joint.b : joint.a;
-        const std::uint32_t parent = child == joint.b ? joint.a : joint.b;
-        if (child == kNoIndex || rows_.contains(child)) return;  // closes a loop
-        joint.in_tree = true;
-        add_body(child, component_of(child), parent == kNoIndex ? kWorld : rows_.at(parent), &joint);
-        grow_from(child);
-    }
-
-    void grow_from(std::uint32_t from)
-    {
-        for (std::vector<std::uint32_t> waiting{from}; !waiting.empty();)
         {
-            const std::uint32_t at = waiting.back();
-            waiting.pop_back();
-            for (const std::size_t j : joints_of_[at])
+            const std::uint32_t child = joint.a == kNoIndex ? joint.b : joint.a;
+            if ((joint.a == kNoIndex) == (joint.b == kNoIndex) || rows_.contains(child)) continue;  // between bodies, or closes a loop
+            joint.in_tree = true;
+            add_body(child, component_of(child), kWorld, &joint), waiting.push_back(child);
+        }
+        grow_from(std::move(waiting));
+        for (const ComponentView& c : body_components_)
+            if (!rows_.contains(c.host())) add_body(c.host(), c, kWorld, nullptr), grow_from({c.host()});
+    }
+
+    /// Breadth first.
+    void grow_from(std::vector<std::uint32_t> waiting)
+    {
+        for (std::size_t next = 0; next < waiting.size(); ++next)
+            for (const std::size_t j : joints_of_[waiting[next]])
             {
                 FoundJoint& joint = joints_[j];
-                if (joint.in_tree) continue;
-                const std::uint32_t other = joint.a == at ? joint.b : joint.a;
-                if (other == kNoIndex || rows_.contains(other)) continue;
+                const std::uint32_t at = waiting[next], other = joint.a == at ? joint.b : joint.a;
+                if (joint.in_tree || other == kNoIndex || rows_.contains(other)) continue;
                 joint.in_tree = true;
                 add_body(other, component_of(other), rows_.at(at), &joint);
                 waiting.push_back(other);
             }
-        }
     }
 
     const ComponentView& component_of(std::uint32_t host) const { return body_components_[numbers_.at(host)]; }
@@ -132,16 +125,17 @@ private:
         out.anchor = found.view.vector(forward ? "point_b" : "point_a");
         if (found.kind != JointKind::Hinge && found.kind != JointKind::Slide) return out;
         out.axis = rotate(found.view.rotation(forward ? "frame_b" : "frame_a"), {0, 0, 1}) * (forward ? 1 : -1);
-        out.value = found.kind == JointKind::Hinge ? found.view.real("angle") : travel(found.view, found.a, found.b);
+        out.value = found.view.real(found.kind == JointKind::Hinge ? "angle" : "travelled");
         return out;
     }
 
-    /// Of the points of a slider along its axis, m.
-    double travel(const ComponentView& c, std::uint32_t a, std::uint32_t b) const
+    /// The present coordinate of a component along a joint: as it counts, rad or m.
+    double present(const ComponentView& c) const
     {
-        const auto frame = [&](std::uint32_t host) { return host == kNoIndex ? Pose{} : bodies_.pose(host); };
-        const Vec3 d = frame(b) * c.vector("point_b") - frame_of_a(c, a) * c.vector("point_a");
-        return dot(d, rotate(frame_of_a(c, a).q, rotate(c.rotation("frame_a"), {0, 0, 1})));
+        if (c.text("along") != "slide") return c.real("angle");
+        const std::uint32_t a = moving(c.participant("a")), b = moving(c.participant("b"));
+        const Pose X_WA = frame_of_a(c, a), X_WB = b == kNoIndex ? Pose{} : bodies_.pose(b);
+        return dot(X_WB * c.vector("point_b") - X_WA * c.vector("point_a"), rotate(X_WA.q, c.vector("travel_axis")));
     }
 
     /// The body of role a, which may be one that does not move.
@@ -192,11 +186,10 @@ private:
         return nullptr;
     }
 
-    /// q of the joint where the component's coordinate is x, both counted in the joint's sense.
+    /// q of the joint where the component's coordinate is x.
     double on_joint(const ComponentView& c, const Joint& joint, double sign, double x) const
     {
-        const double now = joint.kind == JointKind::Hinge ? c.real("angle") : sign * joint.value;
-        return joint.value + sign * (x - now);
+        return joint.value + sign * (x - present(c));
     }
 
     void read_component(const ComponentView& c)

@@ -59,6 +59,13 @@ private:
         };
         std::vector<Open> open;
         for (const std::size_t root : roots_)
+        {
+            // MuJoCo's world has this name, and shapes of its own.
+            if (const Body& b = mechanism_.bodies[root]; b.is_static && b.name == "world")
+            {
+                for (const Ref shape : world_.host().bodies.shapes[b.host]) write_shape(b, shape.index, b.X_PB, indent(0));
+                continue;
+            }
             for (begin_body(root, 0), open.push_back({root, 0}); !open.empty();)
             {
                 Open& top = open.back();
@@ -70,6 +77,7 @@ private:
                 else
                     open.pop_back(), text_ += indent(open.size()) + "</body>\n";
             }
+        }
     }
 
     static std::string indent(std::size_t depth) { return std::string(4 + 2 * depth, ' '); }

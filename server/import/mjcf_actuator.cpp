@@ -56,8 +56,6 @@ bool read_law(const XmlElement& e, Actuator& out, Document& document)
 
 }  // namespace
 
-bool is_actuator(std::string_view name) { return name == "motor" || name == "position" || name == "velocity" || name == "general"; }
-
 void read_actuators(const XmlElement& section, MjcfSettings& settings, std::vector<Actuator>& out, Document& document)
 {
     for (const XmlElement& own : section.children)

@@ -8,8 +8,4 @@ namespace plab::import
 
 /// All of `section` that acts on a joint and has no state of its own; the rest is listed.
 void read_actuators(const XmlElement& section, MjcfSettings& settings, std::vector<Actuator>& out, Document& document);
-
-/// Whether an element of this name is an actuator that can be carried over.
-bool is_actuator(std::string_view name);
-
 }  // namespace plab::import

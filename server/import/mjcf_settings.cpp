@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "import/mesh_file.h"
-#include "import/mjcf_actuator.h"
 #include "model/numbers.h"
 
 namespace plab::import
@@ -35,6 +34,8 @@ std::vector<double> all_numbers(const XmlElement& e, std::string_view attribute,
 }
 
 }  // namespace
+
+bool is_actuator(std::string_view name) { return name == "motor" || name == "position" || name == "velocity" || name == "general"; }
 
 void list_unused_attributes(const XmlElement& e, Document& document)
 {

@@ -65,6 +65,8 @@ private:
     std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 
+/// Whether an element of this name is an actuator that can be carried over.
+bool is_actuator(std::string_view name);
 /// Lists the attributes of <geom>, <joint>, assets and actuators that are not carried over; for elements and for their defaults.
 void list_unused_attributes(const XmlElement& e, Document& document);
 

@@ -8,14 +8,16 @@
 #include "import/joint_text.h"
 #include "import/step_length.h"
 #include "model/numbers.h"
+#include "plab/symmetric.h"
 
 namespace plab::import
 {
 namespace
 {
 
-/// A body that moves by several joints gets bodies between them, of this share of its mass and inertia.
-constexpr double kBetweenShare = 1e-6;
+/// A body that moves by several joints gets bodies between them, of this share of its mass and largest moment. Lighter ones would cost
+/// digits where a rotor is geared to them: rows on loops have a compliance relative to the mobility of what they hold.
+constexpr double kBetweenShare = 1e-5;
 
 /// Gives a body the largest red, green and blue of its shapes, and each shape what is left: their products are the shapes' colours.
 /// Viewers that show one colour for a body show that one. None if no shape has a colour.
@@ -162,8 +164,9 @@ private:
     std::string write_between(std::size_t i, const Joint& joint)
     {
         const PlacedBody& b = body(i);
-        MassProperties light = b.mass;
-        light.mass *= kBetweenShare, light.inertia = light.inertia * kBetweenShare;
+        const Vec3 moments = symmetric_axes(b.mass.inertia).values;
+        const double moment = kBetweenShare * std::max({moments.x, moments.y, moments.z});
+        const MassProperties light{kBetweenShare * b.mass.mass, joint.anchor, Mat3::diagonal(moment, moment, moment)};
         const std::string id = ids_.make(body_ids_[i] + "." + joint.name);
         line("<component" + attribute("id", id) + attribute("type", "State/RigidBody") + attribute("position", b.X_WB.p) +
              attribute("orientation", b.X_WB.q) + mass_attributes(light) + "/>");

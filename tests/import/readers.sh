@@ -42,6 +42,5 @@ compare "$folder/walker.mjcf"
 compare "$folder/crawler.mjcf" 0.2 hip_fl_motor=0.8 hip_br_motor=-0.5
 for model in ${MODELS:-}; do compare "$(realpath "$model")"; done
 check_film "$folder/walker.mjcf" 1
-check_film "$folder/gate.world" 1
 check_film "$folder/../fan_and_balloons.xml" 1
 echo "import_readers: passed"

@@ -79,8 +79,8 @@ TEST_CASE("joints whose b is nearer to the world, loops, welds, gears, and what 
 {
     const auto body = [](const std::string& id, const std::string& x, const std::string& more = "")
     {
-        return "<component id='" + id + "' type='State/RigidBody' position='" + x + " 0 1' mass='1' inertia='0.1 0.1 0.1'>" + more +
-               "</component>";
+        return "<component id='" + id + "' type='State/RigidBody' position='" + x +
+               " 0 1' mass='1' center_of_mass='0 0 0' inertia='0.1 0.1 0.1'>" + more + "</component>";
     };
     Scene scene(
         body("p", "0", "<component id='ball' type='Shape/Sphere' radius='0.1'/>") + body("q", "1") + body("r", "2") + body("w", "3") +

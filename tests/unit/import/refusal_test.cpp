@@ -1,4 +1,5 @@
 // Faulty files: a message with place and reason, and no crash whatever the bytes.
+#include <array>
 #include <random>
 
 #include "unit/import/imported.h"
@@ -116,14 +117,21 @@ TEST_CASE("random input ends in a scene or in an error")
              "</link><joint name='j' type='revolute'><parent link='a'/><child link='b'/><axis xyz='0 1 0'/><limit lower='-1' upper='1'/>"
              "<mimic joint='j'/></joint>"),
         mjcf("<body name='a'><freejoint/><geom type='capsule' fromto='0 0 0 0 0 1' size='0.1'/><body><joint range='0 1'/>"
-             "<geom size='0.1'/></body></body>")};
+             "<geom size='0.1'/></body></body>"),
+        "<sdf version='1.9'><world name='w'><frame name='f'><pose>0 0 1 0 0 0</pose></frame><model name='m'><pose relative_to='f'>1 0 0 0 "
+        "0 0</pose>"
+        "<link name='a'/><link name='b'><pose relative_to='a'>0 0 1 0 0 0</pose><collision "
+        "name='c'><geometry><sphere><radius>0.1</radius></sphere>"
+        "</geometry></collision></link><joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>0 1 "
+        "0</xyz></axis></joint>"
+        "<joint name='k' type='ball'><parent>world</parent><child>b</child></joint></model></world></sdf>"};
     const std::string words[] = {"'",     "<",      ">",     "/", "1e30", "-1", "0", "nan", " ", "<body>", "<link name='a'>",
                                  "fixed", "planar", "1e-30", "="};
     std::size_t accepted = 0;
     for (int i = 0; i < 6000; ++i)
     {
-        const bool first = i % 2 == 0;
-        std::string text = models[first ? 0 : 1];
+        const auto kind = std::size_t(i) % 3;
+        std::string text = models[kind];
         if (i % 7 == 0)
         {
             text.resize(random() % 200);
@@ -137,7 +145,7 @@ TEST_CASE("random input ends in a scene or in an error")
             else
                 text.erase(at, random() % 20);
         }
-        const auto imported = import_robot(text, first ? SceneFormat::Urdf : SceneFormat::Mjcf);
+        const auto imported = import_robot(text, std::array{SceneFormat::Urdf, SceneFormat::Mjcf, SceneFormat::Sdf}[kind]);
         accepted += imported.ok() ? 1 : 0;
         CHECK((imported.ok() ? blueprint::read_blueprint(imported->blueprint, "b").ok() : !imported.error().reason.empty()));
     }

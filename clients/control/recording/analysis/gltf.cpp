@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "control/recording/analysis/gltf_file.h"
@@ -129,7 +130,7 @@ private:
         const std::array key{float(shown.x), float(shown.y), float(shown.z)};
         const auto [found, fresh] = materials_.try_emplace(key, materials_.size());
         if (fresh)
-            file_.json["materials"].push_back(
+            file_.json()["materials"].push_back(
                 {{"pbrMetallicRoughness",
                   {{"baseColorFactor", {key[0], key[1], key[2], 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0.7}}}});
         return found->second;
@@ -137,15 +138,15 @@ private:
 
     void write_nodes()
     {
-        file_.json["asset"] = {{"version", "2.0"}, {"generator", "plabctl export"}};
-        file_.json["scene"] = 0;
-        file_.json["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+        file_.json()["asset"] = {{"version", "2.0"}, {"generator", "plabctl export"}};
+        file_.json()["scene"] = 0;
+        file_.json()["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
         nodes_.push_back({{"name", "scene"}, {"rotation", Json::array({-std::sqrt(0.5f), 0, 0, std::sqrt(0.5f)})}});
         for (const auto& [handle, object] : objects_) write_object(object);
         if (!children_.empty()) nodes_[0]["children"] = children_;
-        file_.json["nodes"] = nodes_;
+        file_.json()["nodes"] = nodes_;
         if (!channels_.empty())
-            file_.json["animations"] = Json::array({{{"name", "run"}, {"channels", channels_}, {"samplers", samplers_}}});
+            file_.json()["animations"] = Json::array({{{"name", "run"}, {"channels", channels_}, {"samplers", samplers_}}});
     }
 
     void write_object(const GltfObject& object)

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 namespace plab::analysis
 {
@@ -31,13 +32,22 @@ void append(std::string& out, std::uint32_t value)
 
 }  // namespace
 
+struct GltfFile::Parts
+{
+    Json json = Json::object(), accessors = Json::array(), views = Json::array(), meshes = Json::array();
+};
+
+GltfFile::GltfFile() : parts_(std::make_unique<Parts>()) {}
+GltfFile::~GltfFile() = default;
+GltfFile::Json& GltfFile::json() { return parts_->json; }
+
 std::size_t GltfFile::add_view(const void* data, std::size_t bytes, int target)
 {
     Json view{{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes}};
     if (target != 0) view["target"] = target;
-    views_.push_back(std::move(view));
+    parts_->views.push_back(std::move(view));
     buffer_.append(static_cast<const char*>(data), bytes);  // all elements have 4 bytes or a multiple: always aligned
-    return views_.size() - 1;
+    return parts_->views.size() - 1;
 }
 
 std::size_t GltfFile::add_floats(std::span<const float> values, int width, bool bounds)
@@ -57,38 +67,39 @@ std::size_t GltfFile::add_floats(std::span<const float> values, int width, bool 
         }
         accessor["min"] = least, accessor["max"] = most;
     }
-    accessors_.push_back(std::move(accessor));
-    return accessors_.size() - 1;
+    parts_->accessors.push_back(std::move(accessor));
+    return parts_->accessors.size() - 1;
 }
 
 std::size_t GltfFile::add_indices(std::span<const std::uint32_t> values)
 {
-    accessors_.push_back({{"bufferView", add_view(values.data(), values.size_bytes(), kIndices)},
-                          {"componentType", kUnsigned},
-                          {"count", values.size()},
-                          {"type", "SCALAR"}});
-    return accessors_.size() - 1;
+    parts_->accessors.push_back({{"bufferView", add_view(values.data(), values.size_bytes(), kIndices)},
+                                 {"componentType", kUnsigned},
+                                 {"count", values.size()},
+                                 {"type", "SCALAR"}});
+    return parts_->accessors.size() - 1;
 }
 
 std::size_t GltfFile::add_mesh(const GltfSurface& surface, std::size_t material)
 {
     const std::size_t points = add_floats(floats_of(surface.points), 3, true), normals = add_floats(floats_of(surface.normals), 3, false);
-    views_[accessors_[points]["bufferView"].get<std::size_t>()]["target"] = kVertices;
-    views_[accessors_[normals]["bufferView"].get<std::size_t>()]["target"] = kVertices;
+    parts_->views[parts_->accessors[points]["bufferView"].get<std::size_t>()]["target"] = kVertices;
+    parts_->views[parts_->accessors[normals]["bufferView"].get<std::size_t>()]["target"] = kVertices;
     const std::size_t triangles = add_indices(surface.triangles);
-    meshes_.push_back(
+    parts_->meshes.push_back(
         {{"primitives",
           Json::array({{{"attributes", {{"POSITION", points}, {"NORMAL", normals}}}, {"indices", triangles}, {"material", material}}})}});
-    return meshes_.size() - 1;
+    return parts_->meshes.size() - 1;
 }
 
 Result<void> GltfFile::write(const std::string& path)
 {
     // A list must not be empty in this format.
+    Json& json = parts_->json;
     if (!buffer_.empty()) json["buffers"] = Json::array({{{"byteLength", buffer_.size()}}});
-    if (!views_.empty()) json["bufferViews"] = views_;
-    if (!accessors_.empty()) json["accessors"] = accessors_;
-    if (!meshes_.empty()) json["meshes"] = meshes_;
+    if (!parts_->views.empty()) json["bufferViews"] = parts_->views;
+    if (!parts_->accessors.empty()) json["accessors"] = parts_->accessors;
+    if (!parts_->meshes.empty()) json["meshes"] = parts_->meshes;
     std::string text = json.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     if (text.size() + buffer_.size() + 28 > kMostBytes)

@@ -4,7 +4,8 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 
@@ -19,6 +20,11 @@ class GltfFile
 public:
     using Json = nlohmann::ordered_json;
 
+    GltfFile();
+    ~GltfFile();
+    GltfFile(const GltfFile&) = delete;
+    GltfFile& operator=(const GltfFile&) = delete;
+
     /// Numbers of accessors. `width`: floats in each element, 1 to 4; `bounds`: state the least and largest, as positions and times must.
     std::size_t add_floats(std::span<const float> values, int width, bool bounds);
     std::size_t add_indices(std::span<const std::uint32_t> values);
@@ -26,16 +32,16 @@ public:
     std::size_t add_mesh(const GltfSurface& surface, std::size_t material);
 
     /// Everything but accessors, buffers and meshes: asset, scenes, nodes, materials, animations.
-    Json json = Json::object();
-    std::size_t bytes() const { return buffer_.size(); }
+    Json& json();
     /// The file. Errors: it cannot be written, or is larger than the format allows (4 GiB).
     Result<void> write(const std::string& path);
 
 private:
     std::size_t add_view(const void* data, std::size_t bytes, int target);
 
+    struct Parts;
     std::string buffer_;
-    Json accessors_ = Json::array(), views_ = Json::array(), meshes_ = Json::array();
+    std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace plab::analysis
