@@ -241,7 +241,7 @@ private:
         for (const Words& w : words)
             if (w.tree != tree && (w.type != 0 || w.affinity != 0))
                 matches += (s.contact_type & w.affinity) != 0 || (w.type & s.contact_affinity) != 0 ? 1 : 0, ++others;
-        s.collides = others == 0 ? s.contact_type != 0 || s.contact_affinity != 0 : matches > 0;
+        s.collides = settings_.collisions() && (others == 0 ? s.contact_type != 0 || s.contact_affinity != 0 : matches > 0);
         if (matches > 0 && matches < others)
             document_.lost(s.where, "<geom>", "contype and conaffinity let it collide with some shapes only: here it collides with all");
     }

@@ -103,8 +103,15 @@ void MjcfSettings::read_compiler(const XmlElement& e)
 void MjcfSettings::read_option(const XmlElement& e)
 {
     document_.list_attributes(e, {"timestep", "gravity"});
-    document_.list_children(e, {});
+    document_.list_children(e, {"flag"});
     gravity_ = document_.vector(e, "gravity", gravity_);
+    for (const XmlElement& flag : e.children)
+    {
+        if (flag.name != "flag") continue;
+        document_.list_attributes(flag, {"contact", "gravity", "energy"});
+        if (document_.text(flag, "contact") == "disable") collisions_ = false;
+        if (document_.text(flag, "gravity") == "disable") gravity_ = {};
+    }
     if (!e.find_attribute("timestep")) return;
     const double step = document_.positive(e, "timestep");
     if (step > 0 && (step < 1e-9 || step > 3600)) document_.error(e, "timestep must be from 1e-9 s to 3600 s");

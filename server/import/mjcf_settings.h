@@ -33,6 +33,8 @@ public:
     bool inertia_never_from_shapes() const { return inertia_from_geom_ == "false"; }
     /// kg that all bodies have together; not positive: what their own masses sum up to.
     double total_mass() const { return total_mass_; }
+    /// Whether anything collides.
+    bool collisions() const { return collisions_; }
     const std::string& step() const { return step_; }
     const Vec3& gravity() const { return gravity_; }
     std::optional<Vec3> material(const std::string& name) const;
@@ -56,7 +58,7 @@ private:
     Quat euler(const Vec3& angles);
 
     Document& document_;
-    bool degrees_ = true, auto_limits_ = true;
+    bool degrees_ = true, auto_limits_ = true, collisions_ = true;
     double total_mass_ = -1;
     std::string inertia_from_geom_ = "auto", euler_sequence_ = "xyz", mesh_folder_, step_ = "0.002";
     Vec3 gravity_{0, 0, -9.81};

@@ -103,6 +103,10 @@ TEST_CASE("a shape whose contype and conaffinity match no other is only seen")
     };
     const auto bounces = [](const import::ImportedScene& imported) { return imported.blueprint.find("CDetection") != std::string::npos; };
     CHECK(bounces(shapes("contype='0' conaffinity='1'")));
+    CHECK(!bounces(
+        imported_text("<mujoco><option><flag contact='disable'/></option><worldbody><geom type='plane' size='1 1 1'/><body pos='0 0 1'>"
+                      "<freejoint/><geom size='0.1'/></body></worldbody></mujoco>",
+                      SceneFormat::Mjcf)));
     CHECK(!bounces(shapes("contype='1' conaffinity='0'")));
     CHECK(!bounces(shapes("contype='4' conaffinity='2'")));
     CHECK(lists(shapes("contype='1' conaffinity='3'"), "collide with some shapes only") == false);
