@@ -4,6 +4,7 @@
 
 #include "angular_velocity/couplings.h"
 #include "grab/grab.h"
+#include "joints/actuator.h"
 #include "joints/distance.h"
 #include "joints/gear.h"
 #include "joints/motor.h"
@@ -180,6 +181,17 @@ void register_coordinates(Registrar& registrar)
         .cost("1 force")
         .limits("explicit solvers: unstable for steps beyond 2 sqrt(J/k) and 2 J/c")
         .source("Hooke's law, Kelvin-Voigt body");
+    registrar.component<ActuatorRows>("Constraint/Actuator", "a force about a hinge's axis, or along a slider's, as a control demands")
+        .family("Constraint/Actuator")
+        .command<&prepare_actuator>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&begin_turning<ActuatorRows>>(Phase::Drive, kStart, kStartDoc)
+        .command<&apply_actuator>(Phase::Force, "Constraint/Force", "adds gear (gain u + bias) along the coordinate")
+        .command<&finish_actuator>(Phase::Finish, kFinish, "position, rate and effort at the end of the step")
+        .accuracy("the solver's order")
+        .strengths("motors and servos of a robot, with gear ratio and limits; its input is one number that requests and scripts set")
+        .cost("1 force")
+        .limits("explicit solvers: unstable for steps beyond 2 sqrt(J/k) and 2 J/c, k and c the negative biases times gear^2")
+        .source("MuJoCo's actuation model (E. Todorov, T. Erez, Y. Tassa, MuJoCo, IROS 2012)");
     registrar.component<LimitRows>("Constraint/Limit", "keeps an angle, a travel or a distance within bounds")
         .family("Constraint/Limit")
         .command<&prepare_limit>(Phase::Prepare, kPrepare, kPlaced)

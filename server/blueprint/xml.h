@@ -16,11 +16,12 @@ namespace plab::blueprint
 /// Longest name of an element, attribute or component, in bytes.
 inline constexpr std::size_t kLongestName = 200;
 
-/// Line and column start at 1, columns count characters; line 0: no place.
+/// Line and column start at 1, columns count characters; line 0: no place. `file`: for documents that consist of several, which of them.
 struct TextPosition
 {
     std::uint32_t line = 0;
     std::uint32_t column = 0;
+    std::uint32_t file = 0;
 };
 
 struct XmlAttribute

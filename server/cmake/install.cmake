@@ -26,8 +26,9 @@ foreach(plugin ${plugins})
 endforeach()
 
 install(TARGETS plabd plab-bus plab-bus-ros plabctl plab-log RUNTIME DESTINATION bin COMPONENT server)
-# No plugins for scenes: plabd loads them by their names, and starts the plab-bus beside it, when it joins the bus or records.
-install(TARGETS plab_bus plab_record LIBRARY DESTINATION lib/plab COMPONENT server)
+# No plugins for scenes: plabd loads them by their names, and starts the plab-bus beside it, when it joins the bus or records,
+# or when a scene has meshes in files.
+install(TARGETS plab_bus plab_record plab_meshes LIBRARY DESTINATION lib/plab COMPONENT server)
 install(DIRECTORY scenes DESTINATION share/plab COMPONENT server PATTERN "*.md" EXCLUDE PATTERN exact EXCLUDE)
 install(TARGETS plab-view RUNTIME DESTINATION bin COMPONENT viewer)
 install(TARGETS plab-web plab-foxglove RUNTIME DESTINATION bin COMPONENT web)

@@ -66,6 +66,7 @@ int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::DaemonOptio
     simulation.let_measure(true);
     simulation.history().configure(plab::daemon::history_of(options));
     if (auto restored = simulation.restore(snapshot->snapshot); !restored) return plab::daemon::fail(restored.errors());
+    if (options.task == plab::daemon::Task::Export) return plab::daemon::export_scene(simulation, options);
     if (options.until >= 0 && options.until < simulation.time() - 0.5 * simulation.dt())
     {
         std::fprintf(stderr, "plabd: --until %.9g is before the snapshot, which is at %.9g s: --until counts from the start of the run\n",
@@ -125,6 +126,9 @@ int carry_out(const plab::daemon::DaemonOptions& options)
                 plab::blueprint::write_long_form(options.until > 0 ? plab::daemon::frozen_scene(simulation) : *scene, library).c_str(),
                 stdout);
             return 0;
+        case plab::daemon::Task::Export:
+            run_until(simulation, options.until);
+            return plab::daemon::export_scene(simulation, options);
         case plab::daemon::Task::Explain:
             run_until(simulation, options.until);
             std::fputs(plab::daemon::explain(simulation, library).c_str(), stdout);

@@ -173,7 +173,7 @@ std::string why_not_together(const CLI::App& app, bool replay, bool shadow)
     if (!replay && !shadow) return {};
     const std::string what = replay ? "--replay" : "--shadow";
     const std::string given = first_given(app, {"--swap", "--set", "--table", "--history", "--record", "--paused", "--check", "--expand",
-                                                "--explain", "--import", "--reference"});
+                                                "--explain", "--export-mjcf", "--import", "--reference"});
     if (given.empty()) return {};
     if (given == "--swap" || given == "--set")
         return given + " cannot be combined with " + what +
@@ -265,8 +265,12 @@ struct WrittenOptions
 
 void add_run_options(CLI::App& app, DaemonOptions& options, WrittenOptions& written)
 {
-    app.add_option("scene", options.scene, "blueprint (XML), or a scene in URDF or MJCF");
-    app.add_flag("--fixed-base", options.fixed_base, "of a scene in URDF or MJCF: what hangs on nothing is fixed to the world");
+    app.add_option("scene", options.scene, "blueprint (XML), or a scene in URDF, SDF or MJCF");
+    app.add_flag("--fixed-base", options.fixed_base, "of a scene in URDF, SDF or MJCF: what hangs on nothing is fixed to the world");
+    app.add_option("--import-path", options.import_folders, "folder in which model://NAME of SDF is looked for (may be repeated)")
+        ->take_all()
+        ->allow_extra_args(false)
+        ->type_name("FOLDER");
     app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")->check(&not_seconds, "");
     app.add_option("--out", options.out, "write the final state as JSON to FILE (- is standard output)")->type_name("FILE");
     app.add_option("--trace", options.trace, "write the trajectories as CSV to FILE")->type_name("FILE");
@@ -301,9 +305,11 @@ void add_task_options(CLI::App& app, DaemonOptions& options, WrittenOptions& wri
     app.add_flag("--expand", written.expand,
                  "print the long form of the blueprint; with --until, of the scene as it is then, without rules");
     app.add_flag("--explain", written.explain, "print what is loaded, resolved and left out, and why; with --until, then");
-    app.add_option("--import", written.imported, "write the URDF or MJCF file FILE as a blueprint, and list what is not carried over")
+    app.add_option("--import", written.imported, "write the URDF, SDF or MJCF file FILE as a blueprint, and list what is not carried over")
         ->type_name("FILE");
     app.add_option("-o", options.blueprint, "with --import: the blueprint to write; without it, standard output")->type_name("SCENE");
+    app.add_option("--export-mjcf", options.exported, "write the scene as MJCF to FILE, and list what that cannot say; with --until, then")
+        ->type_name("FILE");
     app.add_option("--reference", options.reference,
                    "print the reference of all component types, of one (Response/Rows, Rows) or of a kind")
         ->expected(0, 1)
@@ -314,8 +320,9 @@ void add_task_options(CLI::App& app, DaemonOptions& options, WrittenOptions& wri
 std::string take_task(bool reference, const WrittenOptions& written, DaemonOptions& options)
 {
     const bool import = !written.imported.empty();
-    if (int(written.check) + int(written.expand) + int(written.explain) + int(reference) + int(import) > 1)
-        return "--check, --expand, --explain, --import and --reference exclude one another";
+    const bool exports = !options.exported.empty();
+    if (int(written.check) + int(written.expand) + int(written.explain) + int(reference) + int(import) + int(exports) > 1)
+        return "--check, --expand, --explain, --export-mjcf, --import and --reference exclude one another";
     if (import && !options.scene.empty()) return "--import FILE and a scene exclude one another";
     if (!import && !options.blueprint.empty()) return "-o requires --import FILE";
     if (import) options.scene = written.imported;
@@ -324,6 +331,7 @@ std::string take_task(bool reference, const WrittenOptions& written, DaemonOptio
                    : written.explain ? Task::Explain
                    : reference       ? Task::Reference
                    : import          ? Task::Import
+                   : exports         ? Task::Export
                                      : Task::Run;
     if (options.scene.empty() && options.load.empty() && options.replay.file.empty() && options.task != Task::Reference)
         return "needs a scene; see plabd --help";

@@ -23,6 +23,7 @@ enum class Task
     Replay,     ///< replay a recorded run
     Shadow,     ///< simulate from a snapshot with and without another algorithm
     Import,     ///< write the scene of another program as a blueprint
+    Export,     ///< write the scene for another program
 };
 
 /// --record and its further options.
@@ -65,14 +66,16 @@ struct DaemonOptions
 {
     Task task = Task::Run;
     std::string scene;
-    std::string blueprint;    ///< of Task::Import: where to write it; "" and "-": standard output
-    bool fixed_base = false;  ///< of a scene of another program
-    std::string reference;    ///< types to describe; "": all
-    double until = -1;        ///< s; < 0: until a signal
-    std::string out;          ///< JSON of the final state; "-" is standard output
-    std::string trace;        ///< CSV over time
-    double every = 0;         ///< s between trace rows; 0: each step
-    double rate = -1;         ///< 1: real time; 0: as fast as possible; < 0: not given
+    std::string blueprint;                    ///< of Task::Import: where to write it; "" and "-": standard output
+    bool fixed_base = false;                  ///< of a scene of another program
+    std::string exported;                     ///< file of Task::Export
+    std::vector<std::string> import_folders;  ///< likewise
+    std::string reference;                    ///< types to describe; "": all
+    double until = -1;                        ///< s; < 0: until a signal
+    std::string out;                          ///< JSON of the final state; "-" is standard output
+    std::string trace;                        ///< CSV over time
+    double every = 0;                         ///< s between trace rows; 0: each step
+    double rate = -1;                         ///< 1: real time; 0: as fast as possible; < 0: not given
     int threads = 1;
     std::size_t max_components = model::CompileLimits().components;
     double error_share = 0.01;  ///< of real time for shadow steps

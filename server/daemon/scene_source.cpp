@@ -8,6 +8,7 @@
 
 #include "blueprint/reader.h"
 #include "daemon/ending.h"
+#include "export/mjcf.h"
 #include "import/import.h"
 #include "simulation/simulation.h"
 
@@ -42,10 +43,11 @@ Result<model::Blueprint> read_scene(const DaemonOptions& options)
 {
     if (import::format_of_file(options.scene) == import::SceneFormat::Blueprint)
     {
-        if (options.fixed_base) return Error{{options.scene, 0, 0}, {}, "--fixed-base is for scenes in URDF and MJCF"};
+        if (options.fixed_base) return Error{{options.scene, 0, 0}, {}, "--fixed-base is for scenes in URDF, SDF and MJCF"};
+        if (!options.import_folders.empty()) return Error{{options.scene, 0, 0}, {}, "--import-path is for scenes in SDF"};
         return blueprint::read_blueprint_file(options.scene);
     }
-    auto imported = import::import_file(options.scene, {options.fixed_base});
+    auto imported = import::import_file(options.scene, {options.fixed_base, options.import_folders});
     if (!imported) return imported.errors();
     for (const Error& loss : imported->losses) spdlog::warn("{}", loss.text());
     return blueprint::read_blueprint(imported->blueprint, name_of_import(options.scene));
@@ -53,7 +55,7 @@ Result<model::Blueprint> read_scene(const DaemonOptions& options)
 
 int import_scene(plugins::PluginLibrary& library, const DaemonOptions& options)
 {
-    auto imported = import::import_file(options.scene, {options.fixed_base});
+    auto imported = import::import_file(options.scene, {options.fixed_base, options.import_folders});
     if (!imported) return fail(imported.errors());
     auto tree = blueprint::read_blueprint(imported->blueprint, name_of_import(options.scene));
     if (!tree) return fail(tree.errors());
@@ -69,6 +71,16 @@ int import_scene(plugins::PluginLibrary& library, const DaemonOptions& options)
     for (const Error& loss : imported->losses) std::fprintf(stderr, "%s\n", loss.text().c_str());
     std::fprintf(stderr, "%s: %zu bodies, %zu joints; %zu not carried over as they are\n", options.scene.c_str(), imported->bodies,
                  imported->joints, imported->losses.size());
+    return 0;
+}
+
+int export_scene(const simulation::Simulation& simulation, const DaemonOptions& options)
+{
+    const exported::ExportedScene scene = exported::write_mjcf(simulation.world(), simulation.dt());
+    if (auto written = write_whole(options.exported, scene.text); !written) return fail(written.errors());
+    for (const Error& loss : scene.losses) std::fprintf(stderr, "%s\n", loss.text().c_str());
+    std::fprintf(stderr, "%s: %zu bodies, %zu joints; %zu not carried over as they are\n", options.exported.c_str(), scene.bodies,
+                 scene.joints, scene.losses.size());
     return 0;
 }
 

@@ -49,6 +49,10 @@ private:
         out_.frames[body.name] = frame;
         if (!welded) start_body(body, parent, in_parent);
         PlacedBody& target = out_.bodies[frame.body];
+        if (body.mass.mass > 0 && target.mass.mass > 0 && body.weightless != target.weightless)
+            document_.lost(body.where, "'" + body.name + "'",
+                           "is fixed to '" + target.name + "', of which gravity acts on a part only: here on all of it");
+        if (body.mass.mass > 0 && !body.weightless) target.weightless = false;
         target.mass = sum(target.mass, body.mass.mass > 0 ? shapes::posed(body.mass, frame.pose) : MassProperties{});
         for (RobotShape shape : body.shapes)
         {

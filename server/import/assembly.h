@@ -23,6 +23,7 @@ struct PlacedBody
     std::string name;
     std::size_t parent = kWorld;  ///< the body that it hangs on; kWorld for free bodies and those that never move
     bool fixed = false;           ///< never moves
+    bool weightless = true;       ///< gravity acts on none of its parts
     Pose X_WB;
     std::vector<PlacedJoint> joints;
     MassProperties mass;  ///< in B

@@ -15,11 +15,6 @@ using model::format_real;
 
 std::string triple(const Vec3& v) { return format_real(v.x) + " " + format_real(v.y) + " " + format_real(v.z); }
 
-std::string component(const std::string& id, std::string_view type, const std::string& attributes)
-{
-    return "<component" + attribute("id", id) + attribute("type", type) + attributes + "/>";
-}
-
 std::string mesh_attributes(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles, bool collides)
 {
     std::string points, corners;
@@ -86,6 +81,11 @@ std::string attribute(std::string_view name, const Vec3& v) { return attribute(n
 std::string attribute(std::string_view name, const Quat& q)
 {
     return attribute(name, format_real(q.w) + " " + format_real(q.x) + " " + format_real(q.y) + " " + format_real(q.z));
+}
+
+std::string component(const std::string& id, std::string_view type, const std::string& attributes)
+{
+    return "<component" + attribute("id", id) + attribute("type", type) + attributes + "/>";
 }
 
 std::string shape_component(const RobotShape& shape, const std::string& id)

@@ -33,6 +33,8 @@ std::string attribute(std::string_view name, double value);
 std::string attribute(std::string_view name, const Vec3& v);
 std::string attribute(std::string_view name, const Quat& q);
 
+/// <component id type attributes/>
+std::string component(const std::string& id, std::string_view type, const std::string& attributes);
 /// One <component> of kind Shape. Shapes that do not collide are triangles, as pLab has no others that are only seen.
 std::string shape_component(const RobotShape& shape, const std::string& id);
 /// mass, center_of_mass and inertia.

@@ -47,41 +47,59 @@ std::string Document::title_of(const XmlElement& e)
 
 void Document::error(TextPosition where, std::string element, std::string why)
 {
-    if (errors_.size() < kMostErrors) errors_.push_back({{file_, where.line, where.column}, std::move(element), std::move(why)});
+    if (errors_.size() < kMostErrors) errors_.push_back({{file_of(where), where.line, where.column}, std::move(element), std::move(why)});
 }
 
 void Document::lost(TextPosition where, std::string element, std::string why)
 {
-    losses_.push_back({{file_, where.line, where.column}, std::move(element), std::move(why)});
+    losses_.push_back({where, {{file_of(where), where.line, where.column}, std::move(element), std::move(why)}});
 }
 
 Errors Document::losses() const
 {
-    Errors sorted = losses_;
-    std::ranges::stable_sort(sorted, {}, [](const Error& e) { return std::tuple(e.where.line, e.where.column); });
-    return sorted;
+    auto sorted = losses_;
+    std::ranges::stable_sort(sorted, {}, [](const auto& loss) { return std::tuple(loss.first.file, loss.first.line, loss.first.column); });
+    Errors out;
+    for (auto& loss : sorted) out.push_back(std::move(loss.second));
+    return out;
 }
 
-std::size_t Document::numbers(const XmlElement& e, std::string_view attribute, std::span<double> out, std::size_t least)
+std::uint32_t Document::add_file(std::string file)
 {
-    const std::string* const text = e.find_attribute(attribute);
-    if (!text) return 0;
-    std::string_view rest = *text;
+    files_.push_back(std::move(file));
+    return static_cast<std::uint32_t>(files_.size() - 1);
+}
+
+std::size_t Document::read_numbers(const XmlElement& e, std::string_view what, const std::string& text, std::span<double> out,
+                                   std::size_t least)
+{
+    std::string_view rest = text;
     std::size_t n = 0;
     for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++n)
     {
         const auto value = n < out.size() ? read_number(word) : std::nullopt;
         if (!value)
         {
-            error(e, std::string(attribute) + " must be " + (least == out.size() ? "" : "up to ") + std::to_string(out.size()) +
-                         (out.size() == 1 ? " number" : " numbers") + ", not " + shown(*text));
+            error(e, std::string(what) + " must be " + (least == out.size() ? "" : "up to ") + std::to_string(out.size()) +
+                         (out.size() == 1 ? " number" : " numbers") + ", not " + shown(text));
             return 0;
         }
         out[n] = *value;
     }
     if (n >= least) return n;
-    error(e, std::string(attribute) + " needs " + std::to_string(least) + (least == 1 ? " number" : " numbers") + ", not " + shown(*text));
+    error(e, std::string(what) + " needs " + std::to_string(least) + (least == 1 ? " number" : " numbers") + ", not " + shown(text));
     return 0;
+}
+
+std::size_t Document::numbers(const XmlElement& e, std::string_view attribute, std::span<double> out, std::size_t least)
+{
+    const std::string* const text = e.find_attribute(attribute);
+    return text ? read_numbers(e, attribute, *text, out, least) : 0;
+}
+
+std::size_t Document::numbers_inside(const XmlElement& e, std::span<double> out, std::size_t least)
+{
+    return read_numbers(e, "its text", std::string(trimmed(e.text)), out, least);
 }
 
 double Document::number(const XmlElement& e, std::string_view attribute, double otherwise)
@@ -151,6 +169,12 @@ bool Document::check_mass(TextPosition where, const std::string& element, double
     if (!(std::min({m.x, m.y, m.z}) > 0)) return refuse("inertia must be positive" + text);
     if (largest > (sum - largest) * (1 + 1e-9)) return refuse("inertia violates the triangle inequality, so no body can have it" + text);
     return true;
+}
+
+std::string_view trimmed(std::string_view text)
+{
+    const std::size_t begin = text.find_first_not_of(kBlanks);
+    return begin == std::string_view::npos ? std::string_view() : text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
 }
 
 const XmlElement* find_child(const XmlElement& e, std::string_view name)

@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "blueprint/xml.h"
 #include "plab/vector.h"
@@ -22,9 +24,15 @@ public:
     /// At most this many errors are kept.
     static constexpr std::size_t kMostErrors = 100;
 
-    explicit Document(std::string file) : file_(std::move(file)) {}
+    explicit Document(std::string file) : files_{std::move(file)} {}
 
-    const std::string& file() const { return file_; }
+    /// The file that was asked for.
+    const std::string& file() const { return files_.front(); }
+    /// The one that holds this place.
+    const std::string& file_of(TextPosition where) const { return files_[where.file < files_.size() ? where.file : 0]; }
+    /// A file that another one includes; its number, for places in it.
+    std::uint32_t add_file(std::string file);
+    std::size_t files() const { return files_.size(); }
     void error(TextPosition where, std::string element, std::string why);
     void error(const XmlElement& e, std::string why) { error(e.where, title_of(e), std::move(why)); }
     void lost(TextPosition where, std::string element, std::string why);
@@ -46,6 +54,8 @@ public:
     /// A direction of unit length; an error for the zero vector.
     Vec3 direction(const XmlElement& e, std::string_view attribute, const Vec3& otherwise);
     std::string text(const XmlElement& e, std::string_view attribute) const;
+    /// As numbers(), of the text inside e.
+    std::size_t numbers_inside(const XmlElement& e, std::span<double> out, std::size_t least);
 
     /// Lists the attributes of e that are not among `known`.
     void list_attributes(const XmlElement& e, std::initializer_list<std::string_view> known);
@@ -63,9 +73,15 @@ public:
     bool check_mass(TextPosition where, const std::string& element, double mass, const Mat3& inertia);
 
 private:
-    std::string file_;
-    Errors errors_, losses_;
+    std::size_t read_numbers(const XmlElement& e, std::string_view what, const std::string& text, std::span<double> out, std::size_t least);
+
+    std::vector<std::string> files_;
+    Errors errors_;
+    std::vector<std::pair<TextPosition, Error>> losses_;
 };
+
+/// Without blanks at its ends.
+std::string_view trimmed(std::string_view text);
 
 const XmlElement* find_child(const XmlElement& e, std::string_view name);
 

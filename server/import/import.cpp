@@ -1,11 +1,12 @@
 #include "import/import.h"
 
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "import/document.h"
 #include "import/mjcf.h"
+#include "import/sdf.h"
+#include "import/source.h"
 #include "import/urdf.h"
 #include "import/write_blueprint.h"
 
@@ -14,44 +15,15 @@ namespace plab::import
 namespace
 {
 
-/// Keeps the whole document as a tree.
-class TreeSink : public blueprint::XmlSink
+struct Format
 {
-public:
-    bool begin(const XmlElement&) override { return false; }
-    void child(XmlElement) override {}
-    void end(XmlElement root) override { root_ = std::move(root); }
-    const XmlElement& root() const { return root_; }
-
-private:
-    XmlElement root_;
+    SceneFormat format;
+    std::string_view name, root, extension, other_extension;
 };
 
-constexpr std::size_t kMostBytes = std::size_t{16} << 20;
-
-blueprint::XmlLimits limits()
-{
-    blueprint::XmlLimits out;
-    out.bytes = kMostBytes, out.depth = 200, out.elements = 200'000, out.text = std::size_t{4} << 20;
-    return out;
-}
-
-Result<std::string> read_bytes(const std::string& path, std::size_t most)
-{
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) return Error{{path, 0, 0}, {}, "is a folder, not a file"};
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return Error{{path, 0, 0}, {}, "cannot be opened"};
-    // One byte more than allowed shows that there are too many.
-    std::string bytes;
-    char buffer[1 << 16];
-    while (file && bytes.size() <= most)
-    {
-        file.read(buffer, sizeof buffer);
-        bytes.append(buffer, static_cast<std::size_t>(file.gcount()));
-    }
-    return bytes;
-}
+constexpr Format kFormats[] = {{SceneFormat::Urdf, "URDF", "robot", ".urdf", ".xacro"},
+                               {SceneFormat::Sdf, "SDF", "sdf", ".sdf", ".world"},
+                               {SceneFormat::Mjcf, "MJCF", "mujoco", ".mjcf", ".mjcf"}};
 
 }  // namespace
 
@@ -72,28 +44,28 @@ std::string_view first_element(std::string_view text)
 SceneFormat format_of_file(const std::string& path)
 {
     const std::string extension = std::filesystem::path(path).extension().string();
-    if (extension == ".urdf") return SceneFormat::Urdf;
-    if (extension == ".mjcf") return SceneFormat::Mjcf;
+    for (const Format& f : kFormats)
+        if (extension == f.extension || extension == f.other_extension) return f.format;
     const auto start = read_bytes(path, std::size_t{1} << 16);
     const std::string_view root = start ? first_element(*start) : std::string_view();
-    return root == "robot" ? SceneFormat::Urdf : root == "mujoco" ? SceneFormat::Mjcf : SceneFormat::Blueprint;
+    for (const Format& f : kFormats)
+        if (root == f.root) return f.format;
+    return SceneFormat::Blueprint;
 }
 
 Result<ImportedScene> import_text(std::string_view text, const std::string& file, SceneFormat format, const ImportOptions& options)
 {
     Document document(file);
-    TreeSink tree;
-    blueprint::parse_xml(text, limits(), tree, document.errors());
-    for (Error& error : document.errors()) error.where.file = file;
+    XmlElement root = read_tree(text, 0, document);
     if (document.failed()) return document.errors();
-    const char* const wanted = format == SceneFormat::Urdf ? "robot" : "mujoco";
-    if (tree.root().name != wanted)
-        return Error{{file, tree.root().where.line, tree.root().where.column},
-                     blueprint::in_tags(tree.root().name),
-                     "is not the root of " + std::string(format == SceneFormat::Urdf ? "URDF" : "MJCF") + ", which is " +
-                         blueprint::in_tags(wanted)};
-    Robot robot = format == SceneFormat::Urdf ? read_urdf(tree.root(), options.fixed_base, document)
-                                              : read_mjcf(tree.root(), options.fixed_base, document);
+    const auto wanted = std::ranges::find(kFormats, format, &Format::format);
+    if (wanted == std::end(kFormats) || root.name != wanted->root)
+        return Error{{file, root.where.line, root.where.column},
+                     blueprint::in_tags(root.name),
+                     "is not the root of " + std::string(wanted->name) + ", which is " + blueprint::in_tags(wanted->root)};
+    Robot robot = format == SceneFormat::Urdf  ? read_urdf(root, options.fixed_base, document)
+                  : format == SceneFormat::Sdf ? read_sdf(root, options.folders, options.fixed_base, document)
+                                               : read_mjcf(std::move(root), options.fixed_base, document);
     if (document.failed()) return document.errors();
     if (options.part)
         for (RobotBody& body : robot.bodies)
@@ -108,10 +80,10 @@ Result<ImportedScene> import_text(std::string_view text, const std::string& file
 Result<ImportedScene> import_file(const std::string& path, const ImportOptions& options)
 {
     const SceneFormat format = format_of_file(path);
-    const auto text = read_bytes(path, kMostBytes);
+    const auto text = read_bytes(path, kMostSourceBytes);
     if (!text) return text.errors();
     if (format == SceneFormat::Blueprint)
-        return Error{{path, 0, 0}, {}, "is neither URDF (<robot>) nor MJCF (<mujoco>), by its name and its first element"};
+        return Error{{path, 0, 0}, {}, "is neither URDF (<robot>), SDF (<sdf>) nor MJCF (<mujoco>), by its name and its first element"};
     return import_text(*text, path, format, options);
 }
 

@@ -1,9 +1,10 @@
-/// Scenes of other programs (URDF, MJCF) as blueprints. server/docs/importing.md states what is carried over and what is listed.
+/// Scenes of other programs (URDF, SDF, MJCF) as blueprints. server/docs/importing.md states what is carried over and what is listed.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "plab/result.h"
 #include "plab/vector.h"
@@ -21,7 +22,8 @@ struct Part
 
 struct ImportOptions
 {
-    bool fixed_base = false;  ///< bodies that hang on nothing do not move
+    bool fixed_base = false;           ///< bodies that hang on nothing do not move
+    std::vector<std::string> folders;  ///< in which SDF's model://NAME is looked for, beside the folders above the file
     std::optional<Part> part{};
 };
 
@@ -37,10 +39,12 @@ enum class SceneFormat
 {
     Blueprint,
     Urdf,
+    Sdf,
     Mjcf,
 };
 
-/// By the file's name (.urdf, .mjcf), else by its first element (<robot>, <mujoco>). Files that cannot be read count as blueprints.
+/// By the file's name (.urdf, .sdf, .world, .mjcf), else by its first element (<robot>, <sdf>, <mujoco>). Files that cannot be read count
+/// as blueprints.
 SceneFormat format_of_file(const std::string& path);
 /// The name of the first element of an XML text; "" if there is none in its first 64 kB.
 std::string_view first_element(std::string_view text);

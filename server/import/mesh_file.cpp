@@ -1,12 +1,11 @@
 #include "import/mesh_file.h"
 
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <algorithm>
 #include <array>
-#include <assimp/Importer.hpp>
 #include <filesystem>
+
+#include "import/meshes/mesh_module.h"
+#include "plugins/library.h"
 
 namespace plab::import
 {
@@ -32,22 +31,12 @@ Result<void> check_size(const std::string& path)
     return {};
 }
 
-void append(const aiMesh& part, const Vec3& scale, TriangleMesh& out)
+/// meshes.so, loaded when the first mesh is read; a failure is reported for each of them.
+Result<ReadMesh*> mesh_reader()
 {
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    for (unsigned i = 0; i < part.mNumVertices; ++i)
-    {
-        const aiVector3D& v = part.mVertices[i];
-        out.vertices.push_back({scale.x * double(v.x), scale.y * double(v.y), scale.z * double(v.z)});
-    }
-    const bool mirrored = scale.x * scale.y * scale.z < 0;
-    for (unsigned i = 0; i < part.mNumFaces; ++i)
-    {
-        const aiFace& face = part.mFaces[i];
-        if (face.mNumIndices != 3) continue;  // points and lines
-        const unsigned second = mirrored ? 2 : 1;
-        for (const unsigned corner : {0U, second, 3 - second}) out.triangles.push_back(first + face.mIndices[corner]);
-    }
+    static const auto module = plugins::open_module("meshes", kReadMeshEntry, plugins::PluginLibrary::default_directories());
+    if (!module) return module.errors();
+    return reinterpret_cast<ReadMesh*>(module->entry);
 }
 
 }  // namespace
@@ -55,21 +44,11 @@ void append(const aiMesh& part, const Vec3& scale, TriangleMesh& out)
 Result<std::shared_ptr<const TriangleMesh>> read_mesh_file(const std::string& path, const Vec3& scale)
 {
     if (auto size = check_size(path); !size) return size.errors();
-    Assimp::Importer importer;
-    // Nothing but positions and triangles; vertices that formats repeat for each triangle become one.
-    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                                            aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                                            aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
-    const aiScene* const scene = importer.ReadFile(
-        path, aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);
-    if (!scene) return reason("the mesh " + path + " cannot be read: " + importer.GetErrorString());
+    const auto reader = mesh_reader();
+    if (!reader) return reason("the mesh " + path + " cannot be read: " + reader.error().reason);
     auto mesh = std::make_shared<TriangleMesh>();
-    for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(*scene->mMeshes[i], scale, *mesh);
-    if (mesh->triangles.empty()) return reason("the mesh " + path + " has no triangles");
-    if (mesh->vertices.size() > kMostMeshVertices || mesh->triangles.size() / 3 > kMostMeshTriangles)
-        return reason("the mesh " + path + " has more than 100,000 vertices or 200,000 triangles");
-    if (!std::ranges::all_of(mesh->vertices, [](const Vec3& v) { return is_finite(v); }))
-        return reason("the mesh " + path + " has vertices that are not finite");
+    Error error;
+    if (!(*reader)(path, scale, *mesh, error)) return reason("the mesh " + path + " " + error.reason);
     return std::shared_ptr<const TriangleMesh>(std::move(mesh));
 }
 

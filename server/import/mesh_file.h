@@ -1,4 +1,4 @@
-/// Triangles from files: STL, OBJ, glTF. mesh_file.cpp is the only file that sees the library that reads them (Assimp).
+/// Triangles from files: STL, OBJ, glTF.
 #pragma once
 
 #include <memory>
@@ -11,12 +11,10 @@
 namespace plab::import
 {
 
-/// Limits of a file of triangles.
 inline constexpr std::size_t kMostMeshBytes = std::size_t{64} << 20;
-inline constexpr std::size_t kMostMeshVertices = 100'000;
-inline constexpr std::size_t kMostMeshTriangles = 200'000;
 
-/// All triangles of the file as one mesh, in the file's axes and lengths, each length times `scale` (a mirror image keeps its outside).
+/// Limits are in meshes/mesh_module.h. All triangles of the file as one mesh, in the file's axes and lengths, each length times `scale` (a
+/// mirror image keeps its outside).
 Result<std::shared_ptr<const TriangleMesh>> read_mesh_file(const std::string& path, const Vec3& scale);
 
 /// Where a mesh that `document` names is: relative to the document's folder and `folder`; package://NAME/REST in the folder itself or the

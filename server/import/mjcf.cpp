@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "import/mjcf_actuator.h"
 #include "import/mjcf_geom.h"
+#include "import/mjcf_include.h"
 #include "import/mjcf_settings.h"
 #include "objects/shapes/volume_integration.h"
 
@@ -23,19 +25,18 @@ public:
     Robot read()
     {
         document_.list_attributes(root_, {"model"});
-        document_.list_children(root_,
-                                {"compiler", "option", "default", "asset", "worldbody", "contact", "equality", "actuator", "include"});
+        document_.list_children(root_, {"compiler", "option", "default", "asset", "worldbody", "contact", "equality", "actuator"});
         robot_.title = document_.text(root_, "model");
         robot_.step = settings_.step(), robot_.gravity = settings_.gravity(), robot_.base_collides = true;
         bool world = false;
         for (const XmlElement& e : root_.children)
         {
-            if (e.name == "include") document_.error(e, "is not supported: put the files together first");
             if (e.name == "worldbody") read_body(e, kWorld, ""), world = true;
-            if (e.name == "actuator") document_.list_children(e, {});
+            if (e.name == "actuator") read_actuators(e, settings_, robot_.actuators, document_);
         }
         if (!world) document_.error(root_, "has no <worldbody>");
         match_contacts();
+        set_total_mass();
         for (const XmlElement& e : root_.children)
             if (e.name == "equality")
                 for (const XmlElement& child : e.children) read_equality(child);
@@ -72,7 +73,8 @@ private:
         if (!body_names_.insert(body.name).second) document_.error(e, "there are two bodies of this name");
         std::string childclass = document_.text(e, "childclass");
         if (childclass.empty()) childclass = inherited;
-        document_.list_attributes(e, {"name", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "childclass"});
+        document_.list_attributes(e, {"name", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "childclass", "gravcomp"});
+        read_gravity(e, body);
         document_.list_children(e, {"inertial", "joint", "freejoint", "geom", "body"});
         document_.list_repeated(e, {"joint", "freejoint", "geom", "body"});
         body.pose = settings_.pose(e);
@@ -81,6 +83,23 @@ private:
         robot_.bodies.push_back(std::move(body));
         for (const XmlElement& child : e.children)
             if (child.name == "body") read_body(child, index, childclass);
+    }
+
+    /// gravcomp: the share of gravity that does not act.
+    void read_gravity(const XmlElement& e, RobotBody& body)
+    {
+        const double share = document_.number(e, "gravcomp", 0);
+        body.weightless = share == 1;
+        if (share != 0 && share != 1) document_.lost(e, "gravcomp is carried over only if it is 1: gravity acts");
+    }
+
+    void set_total_mass()
+    {
+        double sum = 0;
+        for (const RobotBody& body : robot_.bodies) sum += body.mass.mass;
+        const double factor = settings_.total_mass() / sum;
+        if (!(sum > 0 && settings_.total_mass() > 0)) return;
+        for (RobotBody& body : robot_.bodies) body.mass.mass *= factor, body.mass.inertia = body.mass.inertia * factor;
     }
 
     void read_joints(const XmlElement& e, const std::string& childclass, RobotBody& body)
@@ -94,13 +113,24 @@ private:
                 read_joint(child, childclass, body);
             else
             {
-                document_.list_attributes(child, {"name", "type", "class"});
+                list_free_joint(child, childclass);
                 if (body.parent != 0) document_.error(child, "a body that moves freely must be a child of <worldbody>");
                 body.free = !fixed_base_;
                 if (fixed_base_) document_.lost(child, "does not move: --fixed-base");
             }
         }
         if (body.free && !body.joints.empty()) document_.error(e, "has other joints beside a free one");
+    }
+
+    /// What acts on a free joint of MuJoCo, and is not zero. Its pose and its range count for nothing there either.
+    void list_free_joint(const XmlElement& own, const std::string& childclass)
+    {
+        document_.list_attributes(own, {"name", "type", "class", "pos", "align", "limited", "range", "margin", "group", "armature",
+                                        "damping", "stiffness", "frictionloss"});
+        const XmlElement e = own.name == "joint" ? settings_.resolved(own, childclass) : own;
+        for (const char* const name : {"armature", "damping", "stiffness", "frictionloss"})
+            if (document_.number(e, name, 0) != 0)
+                document_.lost(own, std::string(name) + "='" + document_.text(e, name) + "' of a free joint is not carried over");
     }
 
     void read_joint(const XmlElement& own, const std::string& childclass, RobotBody& body)
@@ -120,9 +150,9 @@ private:
         joint.zero = joint.start = unit(document_.number(e, "ref", 0));
         joint.rest = unit(document_.number(e, "springref", 0));
         joint.stiffness = document_.number(e, "stiffness", 0), joint.damping = document_.number(e, "damping", 0);
-        joint.friction = document_.number(e, "frictionloss", 0);
-        if (joint.stiffness < 0 || joint.damping < 0 || joint.friction < 0)
-            document_.error(e, "stiffness, damping and frictionloss must not be negative");
+        joint.friction = document_.number(e, "frictionloss", 0), joint.armature = document_.number(e, "armature", 0);
+        if (joint.stiffness < 0 || joint.damping < 0 || joint.friction < 0 || joint.armature < 0)
+            document_.error(e, "stiffness, damping, frictionloss and armature must not be negative");
         if (!joint_names_.insert(joint.name).second) document_.error(e, "there are two joints of this name");
         read_range(e, unit, joint);
         if (joint.kind == JointKind::Ball && (joint.stiffness > 0 || joint.damping > 0 || joint.friction > 0))
@@ -211,7 +241,7 @@ private:
         for (const Words& w : words)
             if (w.tree != tree && (w.type != 0 || w.affinity != 0))
                 matches += (s.contact_type & w.affinity) != 0 || (w.type & s.contact_affinity) != 0 ? 1 : 0, ++others;
-        s.collides = others == 0 ? s.contact_type != 0 || s.contact_affinity != 0 : matches > 0;
+        s.collides = settings_.collisions() && (others == 0 ? s.contact_type != 0 || s.contact_affinity != 0 : matches > 0);
         if (matches > 0 && matches < others)
             document_.lost(s.where, "<geom>", "contype and conaffinity let it collide with some shapes only: here it collides with all");
     }
@@ -268,6 +298,10 @@ private:
 
 }  // namespace
 
-Robot read_mjcf(const XmlElement& root, bool fixed_base, Document& document) { return MjcfReader(root, fixed_base, document).read(); }
+Robot read_mjcf(XmlElement root, bool fixed_base, Document& document)
+{
+    put_together(root, document);
+    return MjcfReader(root, fixed_base, document).read();
+}
 
 }  // namespace plab::import

@@ -8,6 +8,6 @@ namespace plab::import
 {
 
 /// `root`: <mujoco>. Errors and losses go into `document`; after an error the result is incomplete.
-Robot read_mjcf(const XmlElement& root, bool fixed_base, Document& document);
+Robot read_mjcf(XmlElement root, bool fixed_base, Document& document);
 
 }  // namespace plab::import

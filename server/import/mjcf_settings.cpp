@@ -16,9 +16,26 @@ constexpr std::array<std::string_view, 5> kOrientations{"quat", "axisangle", "eu
 
 double from_0_to_1(double x) { return std::fmin(1, std::fmax(0, x)); }
 
-bool is_default_of(std::string_view name) { return name == "geom" || name == "joint" || name == "mesh" || name == "material"; }
+/// Elements that share defaults: those of actuators have one set in a class.
+std::string default_of(const std::string& name) { return is_actuator(name) ? "actuator" : name; }
+
+bool is_default_of(std::string_view name)
+{
+    return name == "geom" || name == "joint" || name == "mesh" || name == "material" || is_actuator(name);
+}
+
+/// However many there are; none with an error if one is faulty.
+std::vector<double> all_numbers(const XmlElement& e, std::string_view attribute, Document& document)
+{
+    const std::string* const text = e.find_attribute(attribute);
+    std::vector<double> out(text ? text->size() / 2 + 1 : 0);
+    out.resize(document.numbers(e, attribute, out, 1));
+    return out;
+}
 
 }  // namespace
+
+bool is_actuator(std::string_view name) { return name == "motor" || name == "position" || name == "velocity" || name == "general"; }
 
 void list_unused_attributes(const XmlElement& e, Document& document)
 {
@@ -27,8 +44,18 @@ void list_unused_attributes(const XmlElement& e, Document& document)
         document.list_attributes(e, {"name", "class", "type", "size", "fromto", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis",
                                      "mass", "density", "rgba", "material", "contype", "conaffinity", "friction", "mesh"});
     if (e.name == "joint")
-        document.list_attributes(
-            e, {"name", "class", "type", "pos", "axis", "range", "limited", "ref", "springref", "stiffness", "damping", "frictionloss"});
+        document.list_attributes(e, {"name", "class", "type", "pos", "axis", "range", "limited", "ref", "springref", "stiffness", "damping",
+                                     "frictionloss", "armature"});
+    if (e.name == "motor")
+        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited"});
+    if (e.name == "position")
+        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "kp", "kv",
+                                     "timeconst", "dampratio"});
+    if (e.name == "velocity")
+        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "kv"});
+    if (e.name == "general")
+        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "dyntype",
+                                     "gaintype", "gainprm", "biastype", "biasprm"});
     if (e.name == "mesh") document.list_attributes(e, {"name", "class", "file", "scale", "vertex", "face"});
     if (e.name == "material") document.list_attributes(e, {"name", "class", "rgba"});
 }
@@ -49,7 +76,8 @@ MjcfSettings::MjcfSettings(const XmlElement& root, Document& document) : documen
 
 void MjcfSettings::read_compiler(const XmlElement& e)
 {
-    document_.list_attributes(e, {"angle", "coordinate", "eulerseq", "inertiafromgeom", "autolimits", "meshdir", "assetdir"});
+    document_.list_attributes(e,
+                              {"angle", "coordinate", "eulerseq", "inertiafromgeom", "autolimits", "meshdir", "assetdir", "settotalmass"});
     const auto choose = [&](const char* name, const std::string& otherwise, std::initializer_list<std::string_view> allowed)
     {
         const std::string value = document_.text(e, name);
@@ -61,6 +89,7 @@ void MjcfSettings::read_compiler(const XmlElement& e)
     if (choose("coordinate", "local", {"local", "global"}) == "global") document_.error(e, "coordinate=\"global\" is not supported");
     inertia_from_geom_ = choose("inertiafromgeom", inertia_from_geom_, {"auto", "true", "false"});
     auto_limits_ = choose("autolimits", auto_limits_ ? "true" : "false", {"true", "false"}) == "true";
+    total_mass_ = document_.number(e, "settotalmass", total_mass_);
     if (const std::string* const folder = e.find_attribute("assetdir")) mesh_folder_ = *folder;
     if (const std::string* const folder = e.find_attribute("meshdir")) mesh_folder_ = *folder;
     const std::string sequence = document_.text(e, "eulerseq");
@@ -74,8 +103,15 @@ void MjcfSettings::read_compiler(const XmlElement& e)
 void MjcfSettings::read_option(const XmlElement& e)
 {
     document_.list_attributes(e, {"timestep", "gravity"});
-    document_.list_children(e, {});
+    document_.list_children(e, {"flag"});
     gravity_ = document_.vector(e, "gravity", gravity_);
+    for (const XmlElement& flag : e.children)
+    {
+        if (flag.name != "flag") continue;
+        document_.list_attributes(flag, {"contact", "gravity", "energy"});
+        if (document_.text(flag, "contact") == "disable") collisions_ = false;
+        if (document_.text(flag, "gravity") == "disable") gravity_ = {};
+    }
     if (!e.find_attribute("timestep")) return;
     const double step = document_.positive(e, "timestep");
     if (step > 0 && (step < 1e-9 || step > 3600)) document_.error(e, "timestep must be from 1e-9 s to 3600 s");
@@ -94,7 +130,7 @@ void MjcfSettings::read_class(const XmlElement& e, const Class& parent, const st
             continue;
         }
         list_unused_attributes(child, document_);
-        for (const auto& a : child.attributes) own[child.name][a.name] = a.value;
+        for (const auto& a : child.attributes) own[default_of(child.name)][a.name] = a.value;
     }
     classes_[name] = own;
     for (const XmlElement& child : e.children)
@@ -114,7 +150,7 @@ XmlElement MjcfSettings::resolved(const XmlElement& e, const std::string& inheri
     const std::string name = own ? *own : inherited.empty() ? "main" : inherited;
     const auto found = classes_.find(name);
     if (found == classes_.end()) return document_.error(e, "there is no default class '" + name + "'"), out;
-    const auto defaults = found->second.find(e.name);
+    const auto defaults = found->second.find(default_of(e.name));
     if (defaults == found->second.end()) return out;
     for (const auto& [attribute, value] : defaults->second)
         if (attribute != "class" && !e.find_attribute(attribute)) out.attributes.push_back({attribute, value});
@@ -205,12 +241,37 @@ void MjcfSettings::read_assets(const XmlElement& e)
     }
 }
 
+/// vertex and face.
+void MjcfSettings::read_inline_mesh(const XmlElement& e, const std::string& name)
+{
+    if (!e.find_attribute("face")) return document_.lost(e, "is not carried over: it needs a face");
+    const std::vector<double> points = all_numbers(e, "vertex", document_), corners = all_numbers(e, "face", document_);
+    const Vec3 scale = document_.vector(e, "scale", {1, 1, 1});
+    if (points.size() / 3 > kMostMeshVertices || corners.size() / 3 > kMostMeshTriangles)
+        return document_.error(e, "has more than 100,000 vertices or 200,000 triangles");
+    auto mesh = std::make_shared<TriangleMesh>();
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3)
+        mesh->vertices.push_back({scale.x * points[i], scale.y * points[i + 1], scale.z * points[i + 2]});
+    for (const double corner : corners)
+    {
+        if (!(corner >= 0 && corner < double(mesh->vertices.size()) && corner == std::floor(corner)))
+            return document_.error(e, "face must name vertices by their numbers, from 0");
+        mesh->triangles.push_back(static_cast<std::uint32_t>(corner));
+    }
+    if (mesh->triangles.empty() || points.size() % 3 != 0 || corners.size() % 3 != 0)
+        return document_.error(e, "vertex and face must be triples of numbers");
+    if (scale.x * scale.y * scale.z < 0)
+        for (std::size_t i = 0; i < mesh->triangles.size(); i += 3) std::swap(mesh->triangles[i + 1], mesh->triangles[i + 2]);
+    meshes_[name] = std::move(mesh);
+}
+
 void MjcfSettings::read_mesh(const XmlElement& e)
 {
     const std::string file = document_.text(e, "file");
     std::string name = document_.text(e, "name");
     if (name.empty()) name = std::filesystem::path(file).stem().string();
-    if (file.empty()) return document_.lost(e, "is not carried over: only meshes in files are");
+    if (e.find_attribute("vertex")) return read_inline_mesh(e, name);
+    if (file.empty()) return document_.lost(e, "is not carried over: only meshes in files, or with vertex and face, are");
     const std::string path = find_mesh_file(document_.file(), mesh_folder_, file);
     if (path.empty()) return document_.lost(e, "the mesh '" + file + "' is missing: its shapes are left out");
     auto mesh = read_mesh_file(path, document_.vector(e, "scale", {1, 1, 1}));

@@ -31,6 +31,10 @@ public:
     bool auto_limits() const { return auto_limits_; }
     bool inertia_from_shapes() const { return inertia_from_geom_ == "true"; }
     bool inertia_never_from_shapes() const { return inertia_from_geom_ == "false"; }
+    /// kg that all bodies have together; not positive: what their own masses sum up to.
+    double total_mass() const { return total_mass_; }
+    /// Whether anything collides.
+    bool collisions() const { return collisions_; }
     const std::string& step() const { return step_; }
     const Vec3& gravity() const { return gravity_; }
     std::optional<Vec3> material(const std::string& name) const;
@@ -50,10 +54,12 @@ private:
     void read_class(const XmlElement& e, const Class& parent, const std::string& name);
     void read_assets(const XmlElement& e);
     void read_mesh(const XmlElement& e);
+    void read_inline_mesh(const XmlElement& e, const std::string& name);
     Quat euler(const Vec3& angles);
 
     Document& document_;
-    bool degrees_ = true, auto_limits_ = true;
+    bool degrees_ = true, auto_limits_ = true, collisions_ = true;
+    double total_mass_ = -1;
     std::string inertia_from_geom_ = "auto", euler_sequence_ = "xyz", mesh_folder_, step_ = "0.002";
     Vec3 gravity_{0, 0, -9.81};
     std::map<std::string, Class> classes_;
@@ -61,7 +67,9 @@ private:
     std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 
-/// Lists the attributes of <geom> and <joint> that are not carried over; for elements and for their defaults.
+/// Whether an element of this name is an actuator that can be carried over.
+bool is_actuator(std::string_view name);
+/// Lists the attributes of <geom>, <joint>, assets and actuators that are not carried over; for elements and for their defaults.
 void list_unused_attributes(const XmlElement& e, Document& document);
 
 }  // namespace plab::import

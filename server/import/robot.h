@@ -1,4 +1,4 @@
-/// What URDF and MJCF have in common: rigid bodies in trees, the joints between them, and their shapes. SI units and radians.
+/// What URDF, SDF and MJCF have in common: rigid bodies in trees, the joints between them, and their shapes. SI units and radians.
 ///
 /// Frames: W the world, B a body, P its parent. Poses hold where all joints have the value `zero`.
 #pragma once
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "blueprint/xml.h"
+#include "import/meshes/mesh_module.h"
 #include "plab/tables.h"
 #include "plab/vector.h"
 
@@ -42,13 +43,19 @@ struct Joint
     double stiffness = 0, rest = 0;  ///< N m/rad or N/m; q without force
     double damping = 0;              ///< N m s/rad or N s/m
     double friction = 0;             ///< largest dry friction, N m or N
+    double armature = 0;             ///< inertia of a rotor as the joint feels it, kg m^2 or kg: it adds 1/2 armature q'^2 to the energy
     blueprint::TextPosition where;
 };
 
-struct TriangleMesh
+/// A force along the coordinate q of a joint that somebody controls: with l = gear q and a control u within its bounds,
+/// F = gain u + bias.x + bias.y l + bias.z l' within its bounds, and gear F (N m or N) acts.
+struct Actuator
 {
-    std::vector<Vec3> vertices;  ///< m
-    std::vector<std::uint32_t> triangles;
+    std::string name, joint;
+    double gear = 1, gain = 1;
+    Vec3 bias;
+    double control_lower = -kInfinity, control_upper = kInfinity, force_lower = -kInfinity, force_upper = kInfinity;
+    blueprint::TextPosition where;
 };
 
 enum class ShapeKind
@@ -81,6 +88,7 @@ struct RobotBody
     std::size_t parent = kWorld;
     Pose pose;                  ///< X_PB
     bool free = false;          ///< moves freely in the world, wherever it begins
+    bool weightless = false;    ///< gravity does not act on it
     std::vector<Joint> joints;  ///< from the parent outwards; none and not free: fixed to the parent
     MassProperties mass;        ///< in B
     std::vector<RobotShape> shapes;
@@ -92,6 +100,7 @@ enum class CouplingKind
     Gear,   ///< first, second: joints; q_second changes by `factor` times what q_first changes
     Point,  ///< first, second: bodies (second may be empty: the world) that share the point `anchor` of the first
     Weld,   ///< first, second: bodies that do not move relative to one another
+    Loop,   ///< first, second: bodies (second may be empty: the world) between which `joint`, in the frame of the first, closes a loop
 };
 
 struct Coupling
@@ -100,6 +109,7 @@ struct Coupling
     std::string name, first, second;
     double factor = 1;
     Vec3 anchor;
+    Joint joint;
     blueprint::TextPosition where;
 };
 
@@ -111,6 +121,7 @@ struct Robot
     bool base_collides = false;     ///< bodies that never move collide with the others
     std::vector<RobotBody> bodies;  ///< parents come first
     std::vector<Coupling> couplings;
+    std::vector<Actuator> actuators;
 };
 
 }  // namespace plab::import

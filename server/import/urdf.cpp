@@ -1,8 +1,10 @@
 #include "import/urdf.h"
 
+#include <algorithm>
 #include <map>
 #include <numbers>
 
+#include "import/link_shapes.h"
 #include "import/mesh_file.h"
 #include "import/urdf_joint.h"
 
@@ -29,12 +31,12 @@ public:
 
     Robot read()
     {
+        if (refuse_macros(root_)) return {};
         document_.list_attributes(root_, {"name", "version", "xmlns:xacro"});
         document_.list_children(root_, {"link", "joint", "material"});
         robot_.title = document_.text(root_, "name");
         for (const XmlElement& e : root_.children)
         {
-            if (e.name.starts_with("xacro:")) document_.error(e, "is a macro: expand the file with xacro first");
             if (e.name == "material") read_material(e);
         }
         for (const XmlElement& e : root_.children)
@@ -56,6 +58,17 @@ private:
         std::vector<std::string> children;
         bool placed = false;
     };
+
+    /// The first thing that only xacro understands, as an error: without it, the robot would be another one.
+    bool refuse_macros(const XmlElement& e)
+    {
+        constexpr const char* kExpand = ": expand the file with xacro first";
+        if (e.name.starts_with("xacro:")) return document_.error(e, std::string("is a macro") + kExpand), true;
+        for (const auto& a : e.attributes)
+            if (a.value.find("${") != std::string::npos || a.value.find("$(") != std::string::npos)
+                return document_.error(e, a.name + "=\"" + a.value.substr(0, 60) + "\" is for xacro" + kExpand), true;
+        return std::ranges::any_of(e.children, [&](const XmlElement& child) { return refuse_macros(child); });
+    }
 
     /// A material's colour; a definition inside a link holds for the whole file.
     std::optional<Vec3> read_material(const XmlElement& e)
@@ -94,7 +107,7 @@ private:
         for (const XmlElement& child : e.children)
             if (child.name == "visual" || child.name == "collision")
                 if (auto shape = read_shape(child)) (child.name == "visual" ? seen : felt).push_back(std::move(*shape));
-        link.body.shapes = joined_shapes(std::move(seen), std::move(felt), name);
+        link.body.shapes = joined_shapes(std::move(seen), std::move(felt), name, document_);
         if (!links_.emplace(name, std::move(link)).second) return document_.error(e, "there are two links of this name");
         names_.push_back(name);
     }
@@ -175,30 +188,6 @@ private:
         return true;
     }
 
-    /// A shape that is both seen and felt is one shape of pLab; other shapes that collide are drawn as well.
-    std::vector<RobotShape> joined_shapes(std::vector<RobotShape> seen, std::vector<RobotShape> felt, const std::string& link)
-    {
-        for (RobotShape& shape : felt)
-        {
-            const auto same = std::ranges::find_if(
-                seen,
-                [&](const RobotShape& s)
-                {
-                    const bool one_mesh = s.mesh && shape.mesh ? s.mesh->vertices == shape.mesh->vertices : s.mesh == shape.mesh;
-                    return !s.collides && s.kind == shape.kind && s.pose == shape.pose && s.size == shape.size && one_mesh;
-                });
-            if (same != seen.end())
-                same->collides = true, same->friction = shape.friction;
-            else
-            {
-                if (!seen.empty())
-                    document_.lost(shape.where, "<collision> of link '" + link + "'", "is drawn as well: what collides in pLab is seen");
-                seen.push_back(std::move(shape));
-            }
-        }
-        return seen;
-    }
-
     void read_joint(const XmlElement& e)
     {
         auto joint = read_urdf_joint(e, document_);
@@ -268,7 +257,7 @@ private:
                 continue;
             }
             follower->second->start = joint.multiplier * lead->second->start + joint.offset;
-            robot_.couplings.push_back({CouplingKind::Gear, name + ".mimic", joint.mimics, name, joint.multiplier, {}, joint.where});
+            robot_.couplings.push_back({CouplingKind::Gear, name + ".mimic", joint.mimics, name, joint.multiplier, {}, {}, joint.where});
         }
     }
 

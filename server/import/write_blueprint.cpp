@@ -1,18 +1,23 @@
 #include "import/write_blueprint.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "import/component_text.h"
+#include "import/joint_text.h"
+#include "import/step_length.h"
 #include "model/numbers.h"
+#include "plab/symmetric.h"
 
 namespace plab::import
 {
 namespace
 {
 
-/// A body that moves by several joints gets bodies between them, of this share of its mass and inertia.
-constexpr double kBetweenShare = 1e-6;
+/// A body that moves by several joints gets bodies between them, of this share of its mass and largest moment. Lighter ones would cost
+/// digits where a rotor is geared to them: rows on loops have a compliance relative to the mobility of what they hold.
+constexpr double kBetweenShare = 1e-5;
 
 /// Gives a body the largest red, green and blue of its shapes, and each shape what is left: their products are the shapes' colours.
 /// Viewers that show one colour for a body show that one. None if no shape has a colour.
@@ -55,7 +60,8 @@ public:
     Writer(const Robot& robot, const Assembly& assembly, const std::string& group, Document& document)
         : robot_(robot), assembly_(assembly), group_(group), document_(document), ids_(group.empty() ? "" : group + "/")
     {
-        for (const char* own : {"manager", "gravity", "contact", "contact.response", "solver"}) ids_.make(own);
+        for (const char* own : {"manager", "gravity", "contact", "contact.hinged", "contact.resolution", "contact.response", "solver"})
+            ids_.make(own);
     }
 
     WrittenScene run()
@@ -65,14 +71,13 @@ public:
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_body(i);
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_joints(i);
         for (const Coupling& coupling : robot_.couplings) write_coupling(coupling);
+        for (const Actuator& actuator : robot_.actuators) write_actuator(actuator);
         if (!body_ids_.empty()) out_.root = body_ids_.front();
         if (!group_.empty()) return write_group();
-        if (moves_)
-            line("<component id=\"gravity\" type=\"Field/Gravity\" between=\"*\"" + attribute("acceleration", robot_.gravity) + "/>");
+        write_gravity();
         write_contacts();
         write_manager();
-        const std::string settings =
-            (robot_.title.empty() ? "" : attribute("title", robot_.title)) + (robot_.step.empty() ? "" : attribute("dt", robot_.step));
+        const std::string settings = (robot_.title.empty() ? "" : attribute("title", robot_.title)) + step();
         out_.blueprint = "<plab version=\"1\">\n  <scene" + settings + ">" + camera(assembly_) + "</scene>\n" + text_ + "</plab>\n";
         return std::move(out_);
     }
@@ -86,10 +91,20 @@ private:
     }
     void write_manager()
     {
-        if (manager_) line("<component" + attribute("id", manager_id()) + " type=\"Manager/Automatic\"/>");
+        if (manager_) line("<component" + attribute("id", ids_.prefix() + "manager") + " type=\"Manager/Automatic\"/>");
     }
-    std::string manager_id() const { return ids_.prefix() + "manager"; }
-    std::string manager_role() const { return attribute("manager", manager_id()); }
+
+    /// The attribute dt.
+    std::string step()
+    {
+        const StepChoice choice = choose_step(robot_, assembly_);
+        if (!choice.why) return robot_.step.empty() ? "" : attribute("dt", robot_.step);
+        document_.lost(choice.why->where, "<joint> " + quoted(choice.why->name),
+                       "its springs and dampers need steps of " + model::format_real(choice.step) + " s: the scene has these, not " +
+                           (robot_.step.empty() ? "1/240" : robot_.step) + " s");
+        return attribute("dt", choice.step);
+    }
+
     void line(const std::string& component) { text_ += "  " + component + "\n"; }
     const PlacedBody& body(std::size_t i) const { return assembly_.bodies[i]; }
     static std::string quoted(const std::string& name) { return "'" + name + "'"; }
@@ -124,7 +139,8 @@ private:
         std::string head = "<component" + attribute("id", body_ids_[i]) + attribute("type", b.fixed ? "State/Static" : "State/RigidBody");
         if (!(b.X_WB.p == Vec3{})) head += attribute("position", b.X_WB.p);
         if (!(b.X_WB.q == Quat{})) head += attribute("orientation", b.X_WB.q);
-        if (!b.fixed) head += mass_attributes(b.mass), moves_ = true;
+        if (!b.fixed) head += mass_attributes(b.mass);
+        if (!b.fixed && !b.weightless) heavy_.push_back(body_ids_[i]);
         if (frictions_.size() > 1 && collides(b)) head += attribute("material", material_of(friction_[i]));
         std::vector<RobotShape> shapes = b.shapes;
         if (const auto color = take_color(shapes)) head += attribute("color", *color);
@@ -136,20 +152,24 @@ private:
 
     // ---- joints
 
-    /// The role a: "" for the world and bodies that never move.
-    std::string base_role(std::size_t i) const { return i == kWorld || body(i).fixed ? std::string() : attribute("a", body_ids_[i]); }
+    /// "" for the world and bodies that never move.
+    std::string base_of(std::size_t i) const { return i == kWorld || body(i).fixed ? std::string() : body_ids_[i]; }
+    std::string base_role(std::size_t i) const
+    {
+        const std::string base = base_of(i);
+        return base.empty() ? base : attribute("a", base);
+    }
 
     void write_joints(std::size_t i)
     {
         const PlacedBody& b = body(i);
-        std::string base = base_role(b.parent);
+        std::string base = base_of(b.parent);
         for (std::size_t k = 0; k < b.joints.size(); ++k)
         {
             const PlacedJoint& placed = b.joints[k];
-            const bool last = k + 1 == b.joints.size();
-            const std::string held = last ? body_ids_[i] : write_between(i, placed.joint);
-            write_joint(placed, base + attribute("b", held));
-            base = attribute("a", held);
+            const std::string held = k + 1 == b.joints.size() ? body_ids_[i] : write_between(i, placed.joint);
+            write_joint(placed, base, held);
+            base = held;
             ++out_.joints;
         }
     }
@@ -158,43 +178,48 @@ private:
     std::string write_between(std::size_t i, const Joint& joint)
     {
         const PlacedBody& b = body(i);
-        MassProperties light = b.mass;
-        light.mass *= kBetweenShare, light.inertia = light.inertia * kBetweenShare;
+        const Vec3 moments = symmetric_axes(b.mass.inertia).values;
+        const double moment = kBetweenShare * std::max({moments.x, moments.y, moments.z});
+        const MassProperties light{kBetweenShare * b.mass.mass, joint.anchor, Mat3::diagonal(moment, moment, moment)};
         const std::string id = ids_.make(body_ids_[i] + "." + joint.name);
         line("<component" + attribute("id", id) + attribute("type", "State/RigidBody") + attribute("position", b.X_WB.p) +
              attribute("orientation", b.X_WB.q) + mass_attributes(light) + "/>");
+        if (!b.weightless) heavy_.push_back(id);
         document_.lost(joint.where, "<joint> " + quoted(joint.name),
                        quoted(b.name) + " moves by several joints: between them is a body of " + model::format_real(light.mass) + " kg");
         return id;
     }
 
-    void write_joint(const PlacedJoint& placed, const std::string& roles)
+    void write_joint(const PlacedJoint& placed, const std::string& base, const std::string& held)
     {
         const Joint& j = placed.joint;
-        const std::string id = ids_.make(j.name), anchor = attribute("anchor", placed.anchor_W), axis = attribute("axis", placed.axis_W);
-        if (j.kind == JointKind::Ball)
-            return line("<component" + attribute("id", id) + " type=\"Constraint/Ball\"" + roles + anchor + "/>");
-        const bool slides = j.kind == JointKind::Slide;
-        line("<component" + attribute("id", id) + attribute("type", slides ? "Constraint/Slider" : "Constraint/Hinge") + roles + anchor +
-             axis + "/>");
-        const std::string place = roles + anchor + axis + attribute("along", slides ? "slide" : "turn");
-        if (j.lower > -kInfinity || j.upper < kInfinity)
-        {
-            line("<component" + attribute("id", ids_.make(id + ".limit")) + " type=\"Constraint/Limit\"" + place +
-                 (j.lower > -kInfinity ? attribute("lower", j.lower - j.start) : "") +
-                 (j.upper < kInfinity ? attribute("upper", j.upper - j.start) : "") + manager_role() + "/>");
-            manager_ = true;
-        }
-        if (j.stiffness > 0 || j.damping > 0)
-            line("<component" + attribute("id", ids_.make(id + ".spring")) + " type=\"Constraint/TorsionSpring\"" + place +
-                 attribute("stiffness", j.stiffness) + attribute("damping", j.damping) + attribute("rest", j.rest - j.start) + "/>");
-        if (j.friction > 0)
-        {
-            // A motor that stands still and may slip is Coulomb's friction.
-            line("<component" + attribute("id", ids_.make(id + ".friction")) + " type=\"Constraint/Motor\"" + place + " speed=\"0\"" +
-                 attribute("max_effort", j.friction) + manager_role() + "/>");
-            manager_ = true;
-        }
+        JointText text = joint_text(placed, base, held, ids_);
+        for (const std::string& component : text.lines) line(component);
+        manager_ = manager_ || text.needs_manager;
+        if (j.armature > 0 && j.kind != JointKind::Hinge)
+            document_.lost(j.where, "<joint> " + quoted(j.name),
+                           "armature of a " + std::string(j.kind == JointKind::Slide ? "slide" : "ball joint") +
+                               " is not carried over: only that of a hinge is");
+        places_[j.name] = {std::move(text.place), j.start};
+    }
+
+    void write_actuator(const Actuator& a)
+    {
+        const auto found = places_.find(a.joint);
+        if (found == places_.end()) return document_.error(a.where, quoted(a.name), "there is no joint " + quoted(a.joint));
+        if (found->second.text.empty())
+            return document_.lost(a.where, quoted(a.name), "is not carried over: the ball joint " + quoted(a.joint) + " has no axis");
+        line(actuator_text(a, found->second.text, found->second.start, ids_));
+    }
+
+    void write_gravity()
+    {
+        std::string on;
+        for (const std::string& id : heavy_) on += (on.empty() ? "" : " ") + id;
+        const bool all = std::ranges::none_of(assembly_.bodies, [](const PlacedBody& b) { return !b.fixed && b.weightless; });
+        if (heavy_.empty()) return;
+        line("<component id=\"gravity\" type=\"Field/Gravity\"" + attribute("between", all ? "*" : on) +
+             attribute("acceleration", robot_.gravity) + "/>");
     }
 
     // ---- couplings
@@ -211,6 +236,13 @@ private:
         if (body(b).fixed && a != kWorld) std::swap(a, b);
         if (body(b).fixed || a == b)
             return document_.lost(c.where, quoted(c.name), "holds bodies that do not move relative to one another");
+        if (c.kind == CouplingKind::Loop)
+        {
+            // The coordinate counts from the other body if that one is the base.
+            const Vec3 axis = rotate(body(first->second.body).X_WB.q * first->second.pose.q, c.joint.axis);
+            const PlacedJoint placed{c.joint, anchor, b == first->second.body ? axis : -axis};
+            return ++out_.joints, write_joint(placed, base_of(a), body_ids_[b]);
+        }
         line("<component" + attribute("id", ids_.make(c.name)) +
              attribute("type", c.kind == CouplingKind::Point ? "Constraint/Ball" : "Constraint/Fixed") + base_role(a) +
              attribute("b", body_ids_[b]) + attribute("anchor", anchor) + "/>");
@@ -237,32 +269,60 @@ private:
 
     // ---- contacts
 
-    /// The links of a tree do not collide with one another: joints hold parts that overlap. So they are `against`; what is alone, or never
-    /// moves, is `between`.
-    void write_contacts()
+    /// Ids of bodies that collide.
+    struct Groups
     {
+        std::string between, against;  ///< alone, or never moving; links of trees
+        std::string hinged, free;      ///< alone and held at a point of the world; all that moves otherwise
+        std::size_t moving = 0, held = 0;
+    };
+
+    static void add_id(std::string& list, const std::string& id) { list += (list.empty() ? "" : " ") + id; }
+
+    /// The links of a tree do not collide with one another: joints hold parts that overlap. So they are `against`; what is alone, or never
+    /// moves, is `between`. What a joint holds at a point of the world overlaps what is there, but collides with all that moves.
+    Groups group_bodies()
+    {
+        Groups out;
         std::vector<std::size_t> members(assembly_.bodies.size());
         for (const PlacedBody& b : assembly_.bodies) members[b.tree] += b.fixed ? 0 : 1;
-        std::string between, against;
-        bool something_moves = false;
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i)
         {
             const PlacedBody& b = body(i);
+            const bool alone = members[b.tree] == 1;
             if (!collides(b) || (b.fixed && !robot_.base_collides)) continue;
             if (hangs_at_a_point(b))
             {
                 document_.lost(b.where, quoted(b.name),
-                               "does not collide: a joint holds it at a point of the world, where it may overlap it");
+                               std::string("does not collide") + (alone ? " with what never moves" : "") +
+                                   ": a joint holds it at a point of the world, where it may overlap it");
+                if (alone) add_id(out.hinged, body_ids_[i]), ++out.held;
                 continue;
             }
-            something_moves = something_moves || !b.fixed;
-            std::string& role = b.fixed || members[b.tree] == 1 ? between : against;
-            role += (role.empty() ? "" : " ") + body_ids_[i];
+            if (!b.fixed) add_id(out.free, body_ids_[i]), ++out.moving;
+            add_id(b.fixed || alone ? out.between : out.against, body_ids_[i]);
         }
         list_lost_pairs(members);
-        if (between.empty() || !something_moves) return;
-        line("<component id=\"contact\" type=\"CDetection/ODE\"" + attribute("between", between) +
-             (against.empty() ? "" : attribute("against", against)) + " response=\"contact.response\"/>");
+        return out;
+    }
+
+    void write_contacts()
+    {
+        const Groups groups = group_bodies();
+        const bool usual = !groups.between.empty() && groups.moving > 0,
+                   hinged = groups.held > 1 || (groups.held == 1 && groups.moving > 0);
+        if (!usual && !hinged) return;
+        // A tree of joints moves as one: to go back for each of its impacts, one by one, costs more than all else.
+        const bool trees = !groups.against.empty() || hinged;
+        const auto detection = [&](const char* id, const std::string& between, const std::string& against)
+        {
+            line("<component" + attribute("id", id) + attribute("type", "CDetection/ODE") + attribute("between", between) +
+                 (against.empty() ? "" : attribute("against", against)) + (trees ? attribute("resolution", "contact.resolution") : "") +
+                 attribute("response", "contact.response") + "/>");
+        };
+        if (usual) detection("contact", groups.between, groups.against);
+        if (hinged) detection("contact.hinged", groups.hinged, groups.free);
+        if (trees) line("<component id=\"contact.resolution\" type=\"Resolution/Speculative\"/>");
         line("<component id=\"contact.response\" type=\"Response/Automatic\" manager=\"manager\"" +
              attribute("friction", frictions_.empty() ? 0 : *frictions_.rbegin()) + "/>");
         manager_ = true;
@@ -305,7 +365,14 @@ private:
     std::vector<double> friction_;  ///< of each body
     std::set<double> frictions_;    ///< of bodies that collide
     std::string text_;
-    bool moves_ = false, manager_ = false;
+    struct Place
+    {
+        std::string text;  ///< attributes
+        double start = 0;
+    };
+    std::map<std::string, Place> places_;  ///< by joint
+    std::vector<std::string> heavy_;       ///< ids of the bodies that gravity acts on
+    bool manager_ = false;
     WrittenScene out_;
 };
 

@@ -40,6 +40,10 @@ struct SparseNode
     std::uint32_t size = 0;
     bool negative = false;  ///< a joint: its diagonal is 0 or less. To be eliminated after its bodies
     bool early = false;     ///< of a joint: the last of its bodies may come after it
+    /// Of such a joint: only this body may. The bodies on the side of the ground are held by what is between them and the ground, so that
+    /// without the body on the other side the pivot of the joint would be singular.
+    static constexpr std::uint32_t kAnyBody = UINT32_MAX;
+    std::uint32_t last = kAnyBody;
     friend bool operator==(const SparseNode&, const SparseNode&) = default;
 };
 

@@ -27,9 +27,13 @@ void SparseBlocks::analyse(std::span<const SparseNode> nodes, std::span<const Sp
 /// The pivot of a joint is regular once enough of its bodies have been eliminated: in a tree at least one and all but one, in a loop all.
 bool SparseBlocks::eligible(std::uint32_t i) const
 {
-    if (!nodes_[i].negative) return true;
-    const auto bodies = std::count_if(neighbours_[i].begin(), neighbours_[i].end(), [&](std::uint32_t j) { return !nodes_[j].negative; });
-    return regular_[i] != 0 && bodies <= (nodes_[i].early ? 1 : 0);
+    const SparseNode& node = nodes_[i];
+    if (!node.negative) return true;
+    if (regular_[i] == 0) return false;
+    std::uint32_t bodies = 0, remaining = SparseNode::kAnyBody;
+    for (const std::uint32_t j : neighbours_[i])
+        if (!nodes_[j].negative) ++bodies, remaining = j;
+    return bodies == 0 || (bodies == 1 && node.early && (node.last == SparseNode::kAnyBody || node.last == remaining));
 }
 
 /// The heap has the least degree on top, and the lower number among equals. A node has one entry for each degree that it has had, and

@@ -10,31 +10,15 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 pair=$(realpath "${1:?usage: readers.sh RECORDING_PAIR WORK}")
 work=$(realpath "${2:?usage: readers.sh RECORDING_PAIR WORK}")
 
-fail() { echo "recording_readers: failed: $*" >&2; exit 1; }
-skip() { echo "recording_readers: skipped: $*"; exit 77; }
-
-# The packages of package-lock.json, into WORK; again only when that file has changed.
-install_packages() {
-    cmp --quiet "$here/package-lock.json" "$work/node_modules/.installed" && return
-    cp "$here/package.json" "$here/package-lock.json" "$work"
-    if ! (cd "$work" && npm ci --ignore-scripts --no-audit --no-fund) >"$work/npm.log" 2>&1; then
-        ! grep --quiet --extended-regexp 'ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ECONNRESET|ETIMEDOUT|ENETUNREACH|network' "$work/npm.log" ||
-            skip "npm's registry cannot be reached; $work/npm.log has the details"
-        tail -n 20 "$work/npm.log"
-        fail "npm ci"
-    fi
-    cp "$here/package-lock.json" "$work/node_modules/.installed"
-}
+TEST_NAME=recording_readers
+source "$here/../support/npm.sh"
 
 compare() {
     "$pair" dump "$1" >"$work/dump.jsonl" || fail "our own reader does not read $1"
     (cd "$work" && timeout 60 node compare.mjs "$1" "$work/dump.jsonl") || fail "$1"
 }
 
-command -v node >/dev/null || skip "no node here (Debian's package nodejs)"
-command -v npm >/dev/null || skip "no npm here (Debian's package npm)"
-mkdir -p "$work"
-install_packages
+install_packages "$here" "$work"
 cp "$here/compare.mjs" "$work"
 for compression in none lz4 zstd; do
     timeout 60 "$pair" write "$work/$compression.mcap" "$compression" || fail "cannot write with compression $compression"

@@ -1,6 +1,7 @@
 // Gears between bodies and shafts, planetary trains, motors and springs on joints (catalogue: F6, F8).
 #include <numbers>
 
+#include "support/gravity.h"
 #include "support/joints.h"
 
 using namespace plab;
@@ -80,6 +81,25 @@ TEST_CASE("F8: a pendulum geared to a flywheel swings with the inertia of both, 
     MESSAGE("errors after a period: ", coarse, " ", fine);
     CHECK(fine < 1e-6);
     CHECK(std::log2(coarse / fine) > 3.7);
+}
+
+TEST_CASE("a wheel geared to a hinge beyond a slider and a hinge: what the joints hold does not fall")
+{
+    // Hinge and gear are a loop, the rest is a tree that hangs on the ground: its elimination must not begin there.
+    const auto bar = [](const std::string& id, double x)
+    {
+        return "<component id='" + id + "' type='State/RigidBody' position='" + std::to_string(x) +
+               " 0 0' mass='35' center_of_mass='-0.5 0 0' inertia='0.2 3.9 3.9'/>";
+    };
+    Scene s(std::string(kGravity) + bar("cart", 0) + bar("first", 0) + bar("second", -1) +
+                component("slide", "Constraint/Slider", "b='cart' anchor='0 0 0' axis='1 0 0'") +
+                component("hinge", "Constraint/Hinge", "a='cart' b='first' anchor='0 0 0' axis='0 0 1'") +
+                component("knee", "Constraint/Hinge", "a='first' b='second' anchor='-1 0 0' axis='0 0 1'") +
+                "<component id='wheel' type='State/Shaft' inertia='0.1'/>" +
+                component("gear", "Constraint/Gear", "driver='second' driven='wheel' carrier='first' driver_axis='0 0 1'"),
+            "dt='0.01'");
+    s.run(1);
+    for (const char* const id : {"cart", "first", "second"}) CHECK(std::fabs(s.vec(id, "position").z) < 1e-9);
 }
 
 TEST_CASE("F9: forces between helical teeth: 1000 N m at a pitch radius of 2 m, 20 deg of pressure, 10 deg of helix")

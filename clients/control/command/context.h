@@ -50,6 +50,8 @@ public:
     Settings settings;
     Console console;
     Action action;  ///< of the selected command; main runs it after the command line is parsed
+    /// Writes a scene ("": the server's) as MJCF; of the commands on servers, for `export`, which is one on recordings.
+    std::function<Exit(Context&, const std::string& scene, const std::string& out)> export_mjcf;
 
     /// Joins and finds the server, within timeout(otherwise). Prints errors and returns the exit code; Done: session() is
     /// available.

@@ -320,10 +320,34 @@ void add_shadow(const Command& app, Context& context)
     command.add_option("--for", o->seconds, "simulated seconds, default 1").check(link::check_positive).type_name("SECONDS");
 }
 
+/// plabctl export --mjcf: plabd, which knows the types, writes the file.
+Exit export_mjcf(Context& c, const std::string& scene, const std::string& out)
+{
+    std::vector<std::string> arguments{"--export-mjcf", out};
+    std::optional<TemporaryFile> file;
+    if (!scene.empty())
+        arguments.push_back(scene);
+    else
+    {
+        if (const Exit e = c.connect(); e != Exit::Done) return e;
+        auto snapshot = present(c);
+        if (!snapshot) return c.fail(Exit::NoServer, snapshot.errors());
+        auto written = TemporaryFile::write(snapshot->data.data(), snapshot->data.size());
+        if (!written) return c.fail(Exit::Failed, written.errors());
+        file.emplace(written.take());
+        arguments.insert(arguments.end(), {"--load", file->path()});
+    }
+    auto code = run_plabd(arguments, c.stop());
+    if (!code) return c.fail(Exit::Failed, code.errors());
+    if (c.stopped()) return Exit::Interrupted;
+    return *code == 0 ? Exit::Done : Exit::Failed;
+}
+
 }  // namespace
 
 void add_past_commands(const Command& app, Context& context)
 {
+    context.export_mjcf = &export_mjcf;
     add_snapshot(app, context);
     add_command(app, context,
                 {"snapshots", "list the snapshots that the server keeps, and how far it can be rewound", "  plabctl snapshots\n"},

@@ -2,8 +2,10 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "control/recording/analysis/export.h"
+#include "control/recording/analysis/gltf.h"
 #include "control/recording/analysis/summary.h"
 #include "control/recording/commands.h"
 #include "control/recording/summary_text.h"
@@ -42,22 +44,39 @@ struct ExportArguments
 {
     std::string file;
     bool csv = false;
+    std::string gltf, mjcf;
+    std::optional<double> every;
     analysis::ExportOptions options;
 };
 
+/// Why these options do not go together; "" if they do.
+std::string contradiction(const Context& c, const ExportArguments& o)
+{
+    if (int(o.csv) + int(c.settings.json) + int(!o.gltf.empty()) + int(!o.mjcf.empty()) != 1)
+        return "export needs either --csv, --json, --gltf FILE or --mjcf FILE";
+    if (!o.mjcf.empty() && (o.options.span.from || o.options.span.to || o.every || !o.options.topics.empty() || !o.options.out.empty()))
+        return "--mjcf excludes the options for recordings";
+    if (o.mjcf.empty() && o.file.empty()) return "export needs a recording";
+    if (o.options.span.from && o.options.span.to && *o.options.span.to < *o.options.span.from) return "--to is before --from";
+    if (o.gltf.empty()) return o.every ? "--every requires --gltf" : "";
+    if (!o.options.topics.empty() || !o.options.out.empty()) return "--gltf has a file of its own, and no topics";
+    return o.every && !(*o.every >= 0) ? "--every must not be negative" : "";
+}
+
 Exit run_export(Context& c, const ExportArguments& o)
 {
-    if (o.csv == c.settings.json) return c.fail(Exit::Usage, "export needs either --csv or --json");
-    if (o.options.span.from && o.options.span.to && *o.options.span.to < *o.options.span.from)
-        return c.fail(Exit::Usage, "--to is before --from");
-    const bool is_printed = o.options.out.empty() || o.options.out == "-";
+    if (const std::string why = contradiction(c, o); !why.empty()) return c.fail(Exit::Usage, why);
+    if (!o.mjcf.empty()) return c.export_mjcf(c, o.file, o.mjcf);
+    const std::string& out = o.gltf.empty() ? o.options.out : o.gltf;
+    const bool is_printed = out.empty() || out == "-";
     Work work(c, "export " + o.file, is_printed);
     auto log = Log::open(o.file, work.watch());
     if (!log && !c.stopped()) return c.fail(Exit::Failed, log.errors());
-    auto done = !log    ? Result<analysis::Exported>(log.errors())
-                : o.csv ? analysis::export_csv(*log, o.options)
-                        : analysis::export_json(*log, o.options);
-    if (c.stopped()) return work.interrupted(is_printed ? "the output is incomplete" : o.options.out + " is not written");
+    auto done = !log              ? Result<analysis::Exported>(log.errors())
+                : !o.gltf.empty() ? analysis::export_gltf(*log, {o.options.span, o.gltf, o.every.value_or(1.0 / 60)})
+                : o.csv           ? analysis::export_csv(*log, o.options)
+                                  : analysis::export_json(*log, o.options);
+    if (c.stopped()) return work.interrupted(is_printed ? "the output is incomplete" : out + " is not written");
     if (!done) return c.fail(Exit::Failed, done.errors());
     work.end();
     return warn(c, done->troubles);
@@ -104,16 +123,22 @@ void add_file_commands(const Command& app, Context& context)
              *info);
 
     auto e = std::make_shared<ExportArguments>();
-    const Command exported =
-        add_command(app, context,
-                    {"export", "export a recording as tables (CSV) or lines of JSON",
-                     "  plabctl export run.mcap --csv > states.csv                one row per object and frame\n"
-                     "  plabctl export run.mcap --csv --topic events --from 2 --to 3\n"
-                     "  plabctl export run.mcap --csv -o tables/                  one file per topic that has a table\n"
-                     "  plabctl export run.mcap --json -o run.jsonl               everything, one message per line\n"},
-                    [e](Context& c) { return run_export(c, *e); });
-    add_file(exported, e->file);
+    const Command exported = add_command(
+        app, context,
+        {"export", "export a recording as tables (CSV), lines of JSON, or a film in three dimensions (glTF); or a scene as MJCF",
+         "  plabctl export run.mcap --csv > states.csv                one row per object and frame\n"
+         "  plabctl export run.mcap --csv --topic events --from 2 --to 3\n"
+         "  plabctl export run.mcap --csv -o tables/                  one file per topic that has a table\n"
+         "  plabctl export run.mcap --json -o run.jsonl               everything, one message per line\n"
+         "  plabctl export run.mcap --gltf run.glb                    shapes and their motion, for viewers and Blender\n"
+         "  plabctl export --mjcf scene.xml                           the server's scene as it is, for MuJoCo\n"
+         "  plabctl export scenes/imported/gate.world --mjcf scene.xml\n"},
+        [e](Context& c) { return run_export(c, *e); });
+    exported.add_option("file", e->file, "recording (MCAP); of --mjcf a scene, or the server's without one").type_name("FILE");
     exported.add_flag("--csv", e->csv, "tables; the column names include the unit");
+    exported.add_option("--gltf", e->gltf, "binary glTF 2.0 with an animation").type_name("FILE");
+    exported.add_option("--mjcf", e->mjcf, "the scene as MJCF; what that cannot say is listed").type_name("FILE");
+    exported.add_option("--every", e->every, "of --gltf: least time between key frames, s; default 1/60").type_name("SECONDS");
     exported.add_option("--topic", e->options.topics, "this topic (may be repeated): states, events, ..").repeated().type_name("TOPIC");
     exported.add_option("-o,--output", e->options.out, "file, or for tables a folder (an existing one, or a path that ends with '/')")
         .type_name("PATH");

@@ -64,6 +64,22 @@ void keep_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const 
     rows.position[row] = c.x, rows.speed_now[row] = c.speed;
 }
 
+void add_effort(const Coordinate& c, double effort, const Bodies& bodies, const Shafts& shafts, Wrenches& wrenches)
+{
+    for (std::uint32_t k = 0; k < c.row.count; ++k)
+    {
+        const RowBlock& block = c.row.blocks[k];
+        if (block.participant.facet == Facet::Shaft)
+        {
+            if (shafts.dynamic(block.participant.index)) wrenches.add_shaft_torque(block.participant, block.angular.x * effort);
+            continue;
+        }
+        if (!bodies.dynamic(block.participant.index)) continue;
+        wrenches.add_force(block.participant, block.linear * effort);
+        wrenches.add_torque(block.participant, block.angular * effort);
+    }
+}
+
 void MotorRows::describe(Schema& s)
 {
     describe_coordinate(s, {"turn", "slide"});
@@ -133,20 +149,8 @@ void apply_torsion(const StepContext& step, Rows which, const TorsionSpringRows&
     for (const Row row : which)
     {
         const Coordinate c = coordinate_of(rows, row, bodies, shafts, step.time);
-        const double effort = effort_of(rows, row, c);
         wrenches.begin(step.component_of_row[row]);
-        for (std::uint32_t k = 0; k < c.row.count; ++k)
-        {
-            const RowBlock& block = c.row.blocks[k];
-            if (block.participant.facet == Facet::Shaft)
-            {
-                if (shafts.dynamic(block.participant.index)) wrenches.add_shaft_torque(block.participant, block.angular.x * effort);
-                continue;
-            }
-            if (!bodies.dynamic(block.participant.index)) continue;
-            wrenches.add_force(block.participant, block.linear * effort);
-            wrenches.add_torque(block.participant, block.angular * effort);
-        }
+        add_effort(c, effort_of(rows, row, c), bodies, shafts, wrenches);
     }
 }
 

@@ -35,6 +35,8 @@ struct Coordinate
     ConstraintRow row;
 };
 Coordinate coordinate_of(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
+/// Adds `effort` (N m or N) along the coordinate to the wrench that has been begun.
+void add_effort(const Coordinate& c, double effort, const Bodies& bodies, const Shafts& shafts, Wrenches& wrenches);
 /// Phase::Drive and Phase::Finish of coordinates that count turns.
 void begin_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
 void keep_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);

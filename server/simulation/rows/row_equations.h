@@ -139,6 +139,7 @@ private:
         bool grounded = false;  ///< also attached to something that is not dynamic
         bool compliant = false;
         bool loop = false;
+        std::uint32_t toward_ground = kNoIndex;  ///< the member on the side of the ground; none: the ground itself, or there is none
     };
     struct Participant
     {
@@ -170,6 +171,7 @@ private:
     void list_held(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces);
     bool same_pattern(std::span<const ConstraintRow> rows) const;
     void find_loops();
+    void find_ground(std::uint32_t ground);
     void fill(Slot& slot, const ConstraintRow& row);
     void fill_masses();
     void factor(double implied, double others);

@@ -76,7 +76,7 @@ private:
             return known->second;
         }
         const auto joint = static_cast<std::uint32_t>(out_.joints_.size());
-        out_.joints_.push_back({members, 0, grounded, false, false});
+        out_.joints_.push_back({members, 0, grounded, false, false, kNoIndex});
         piece_of_joint_.push_back(piece);
         open_joint_[key] = joint;
         return joint;
@@ -94,7 +94,7 @@ private:
         const auto count = static_cast<std::uint32_t>(out_.members_.size());
         std::vector<linear::SparseNode> nodes;
         for (const Member& m : out_.members_) nodes.push_back({out_.size_of(m), false, false});
-        for (const Joint& j : out_.joints_) nodes.push_back({j.rows, true, !j.loop});
+        for (const Joint& j : out_.joints_) nodes.push_back({j.rows, true, !j.loop, j.toward_ground});
         for (linear::SparseEdge& e : edges_) e.a += count;
         out_.factors_.analyse(nodes, edges_);
         for (auto* v : {&out_.rhs_, &out_.x_, &out_.r_, &out_.before_, &out_.blunt_, &out_.scale_})
@@ -200,7 +200,32 @@ void RowEquations::find_loops()
     const auto bridge = graph.find();
     for (std::size_t e = 0; e < bridge.size(); ++e)
         if (bridge[e] == 0) joints_[joint_of_edge[e]].loop = joints_[joint_of_edge[e]].compliant = true;
+    find_ground(ground);
     any_compliant_ = std::any_of(joints_.begin(), joints_.end(), [](const Joint& j) { return j.compliant; });
+}
+
+/// Breadth first from the ground: the member by which a joint is reached is the one on its side.
+void RowEquations::find_ground(std::uint32_t ground)
+{
+    std::vector<std::vector<std::uint32_t>> joints_of(members_.size());
+    std::vector<std::uint8_t> reached(ground, 0);
+    std::vector<std::uint32_t> waiting;  // members
+    const auto leave = [&](std::uint32_t joint)
+    {
+        for (const std::uint32_t m : joints_[joint].members)
+            if (reached[m] == 0) reached[m] = 1, waiting.push_back(m);
+    };
+    for (std::uint32_t j = 0; j < joints_.size(); ++j)
+        for (const std::uint32_t m : joints_[j].members) joints_of[m].push_back(j);
+    for (std::uint32_t j = 0; j < joints_.size(); ++j)
+        if (joints_[j].grounded) reached[members_.size() + j] = 1, leave(j);
+    for (std::size_t next = 0; next < waiting.size(); ++next)
+        for (const std::uint32_t j : joints_of[waiting[next]])
+        {
+            if (reached[members_.size() + j] != 0) continue;
+            reached[members_.size() + j] = 1, joints_[j].toward_ground = waiting[next];
+            leave(j);
+        }
 }
 
 RowEquations::Participants RowEquations::participants_of(const ConstraintRow& row) const

@@ -1,4 +1,5 @@
 // Faulty files: a message with place and reason, and no crash whatever the bytes.
+#include <array>
 #include <random>
 
 #include "unit/import/imported.h"
@@ -46,6 +47,8 @@ TEST_CASE("faulty URDF is refused with its place and a reason")
     check("<link name='a'><visual><geometry><sphere radius='nan'/></geometry></visual></link>",
           "robot:2:34: <sphere>: radius must be 1 number, not 'nan'");
     check("<xacro:include filename='x'/><link name='a'/>", "robot:2:1: <xacro:include>: is a macro: expand the file with xacro first");
+    check("<link name='${prefix}_a'/>",
+          "robot:2:1: <link> '${prefix}_a': name=\"${prefix}_a\" is for xacro: expand the file with xacro first");
     CHECK(refusal("<mujoco/>", SceneFormat::Urdf) == "robot:1:1: <mujoco>: is not the root of URDF, which is <robot>");
 }
 
@@ -64,8 +67,7 @@ TEST_CASE("faulty MJCF is refused with its place and a reason")
     CHECK(refusal("<mujoco/>", SceneFormat::Mjcf) == "robot:1:1: <mujoco>: has no <worldbody>");
     CHECK(refusal("<mujoco><compiler coordinate='global'/><worldbody/></mujoco>", SceneFormat::Mjcf) ==
           "robot:1:9: <compiler>: coordinate=\"global\" is not supported");
-    CHECK(refusal("<mujoco>\n<include file='x'/><worldbody/></mujoco>", SceneFormat::Mjcf) ==
-          "robot:2:1: <include>: is not supported: put the files together first");
+    CHECK(refusal("<mujoco>\n<include/><worldbody/></mujoco>", SceneFormat::Mjcf) == "robot:2:1: <include>: needs a file");
     check("<geom type='box' size='1 2'/>", "robot:3:1: <geom>: size needs 3 numbers, not '1 2'");
     check("<geom class='none' size='1'/>", "robot:3:1: <geom>: there is no default class 'none'");
     check("<body><joint/></body>", "robot:3:1: 'body.1': has no mass, but the joint 'body.1.joint' moves it: give it an inertia");
@@ -101,6 +103,10 @@ TEST_CASE("a shape whose contype and conaffinity match no other is only seen")
     };
     const auto bounces = [](const import::ImportedScene& imported) { return imported.blueprint.find("CDetection") != std::string::npos; };
     CHECK(bounces(shapes("contype='0' conaffinity='1'")));
+    CHECK(!bounces(
+        imported_text("<mujoco><option><flag contact='disable'/></option><worldbody><geom type='plane' size='1 1 1'/><body pos='0 0 1'>"
+                      "<freejoint/><geom size='0.1'/></body></worldbody></mujoco>",
+                      SceneFormat::Mjcf)));
     CHECK(!bounces(shapes("contype='1' conaffinity='0'")));
     CHECK(!bounces(shapes("contype='4' conaffinity='2'")));
     CHECK(lists(shapes("contype='1' conaffinity='3'"), "collide with some shapes only") == false);
@@ -115,14 +121,21 @@ TEST_CASE("random input ends in a scene or in an error")
              "</link><joint name='j' type='revolute'><parent link='a'/><child link='b'/><axis xyz='0 1 0'/><limit lower='-1' upper='1'/>"
              "<mimic joint='j'/></joint>"),
         mjcf("<body name='a'><freejoint/><geom type='capsule' fromto='0 0 0 0 0 1' size='0.1'/><body><joint range='0 1'/>"
-             "<geom size='0.1'/></body></body>")};
+             "<geom size='0.1'/></body></body>"),
+        "<sdf version='1.9'><world name='w'><frame name='f'><pose>0 0 1 0 0 0</pose></frame><model name='m'><pose relative_to='f'>1 0 0 0 "
+        "0 0</pose>"
+        "<link name='a'/><link name='b'><pose relative_to='a'>0 0 1 0 0 0</pose><collision "
+        "name='c'><geometry><sphere><radius>0.1</radius></sphere>"
+        "</geometry></collision></link><joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>0 1 "
+        "0</xyz></axis></joint>"
+        "<joint name='k' type='ball'><parent>world</parent><child>b</child></joint></model></world></sdf>"};
     const std::string words[] = {"'",     "<",      ">",     "/", "1e30", "-1", "0", "nan", " ", "<body>", "<link name='a'>",
                                  "fixed", "planar", "1e-30", "="};
     std::size_t accepted = 0;
     for (int i = 0; i < 6000; ++i)
     {
-        const bool first = i % 2 == 0;
-        std::string text = models[first ? 0 : 1];
+        const auto kind = std::size_t(i) % 3;
+        std::string text = models[kind];
         if (i % 7 == 0)
         {
             text.resize(random() % 200);
@@ -136,7 +149,7 @@ TEST_CASE("random input ends in a scene or in an error")
             else
                 text.erase(at, random() % 20);
         }
-        const auto imported = import_robot(text, first ? SceneFormat::Urdf : SceneFormat::Mjcf);
+        const auto imported = import_robot(text, std::array{SceneFormat::Urdf, SceneFormat::Mjcf, SceneFormat::Sdf}[kind]);
         accepted += imported.ok() ? 1 : 0;
         CHECK((imported.ok() ? blueprint::read_blueprint(imported->blueprint, "b").ok() : !imported.error().reason.empty()));
     }
