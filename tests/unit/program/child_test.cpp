@@ -103,8 +103,10 @@ TEST_CASE("a child ends when its parent is killed")
     REQUIRE(parent >= 0);
     if (parent == 0)
     {
-        auto child = Child::start({"sleep", "60"}, Streams::Shared);
-        const int process = child ? child->process() : 0;
+        // Not before it runs: a child that finds no parent then ends for that reason.
+        auto child = Child::start({"sh", "-c", "echo ready; exec sleep 60"}, Streams::Piped);
+        const bool is_ready = child && within(5s, [&] { return !child->take_lines().empty(); });
+        const int process = is_ready ? child->process() : 0;
         (void)!::write(fds[1], &process, sizeof process);
         for (;;) pause();
     }
