@@ -450,3 +450,44 @@ TEST_CASE("a budget: exchanges for which no step has time are made all at once, 
     s.step(13);
     CHECK(count_at(s, 0) == 12);
 }
+
+TEST_CASE("an error: what has not been measured yet has the most exact level until its turn comes")
+{
+    std::string scene = springs_under_budget(12, "");
+    scene = scene.substr(0, scene.rfind("<component id=\"lod\"")) +
+            "<component id=\"lod\" type=\"Governor/Error\" watches=\"*.solver\" levels=\"" + kLadder +
+            "\" bound=\"10\" looks=\"4\" every=\"0.05\" dwell=\"0\"/>";
+    Scene s(scene);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step();
+    CHECK(count_at(s, 0) == 4);
+    CHECK(count_at(s, 2) == 8);
+    s.step(12);
+    CHECK(count_at(s, 0) == 8);
+    s.step(12);
+    CHECK(count_at(s, 0) == 12);
+}
+
+TEST_CASE("an error: an impact within the interval is foreseen, though the coming step shows nothing of it")
+{
+    // Falls from 0.05 m, so it meets the ground after 0.1 s: without a resolution it sinks in by up to what it falls in a step.
+    const auto level_of_ball = [](const char* interval)
+    {
+        Scene s(std::string("<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
+                            "<component id=\"form\" type=\"Shape/Sphere\" radius=\"0.1\"/>"
+                            "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"form\" position=\"0 0 0.15\" "
+                            "linear_velocity=\"0 0 -1\"/><component id=\"weight\" type=\"Field/Gravity\" between=\"ball\"/>"
+                            "<component id=\"contact\" type=\"CDetection/ODE\" between=\"ball ground\" resolution=\"Resolution/None\" "
+                            "response=\"Response/Impulse\" response.restitution=\"0.8\" response.friction=\"0\"/>"
+                            "<component id=\"lod\" type=\"Governor/Error\" watches=\"*resolution\" bound=\"1e-4\" every=\"1\" "
+                            "levels=\"Resolution/None; Resolution/LocalBisection\" interval=\"") +
+                interval + "\"/>");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.step();
+        const auto levels = s.simulation().levels().levels();
+        REQUIRE(levels.size() == 1);
+        return levels.front().level;
+    };
+    CHECK(level_of_ball("0.02") == 0);
+    CHECK(level_of_ball("0.1") == 1);
+}
