@@ -123,3 +123,17 @@ TEST_CASE("an error: an impact within the interval is foreseen, though the comin
     CHECK(level_of_ball("0.02") == 0);
     CHECK(level_of_ball("0.1") == 1);
 }
+
+TEST_CASE("a budget: while steps take too long a level is given up at once, however long it was to be kept")
+{
+    Scene s(springs_under_budget(12, "trials=\"0\""));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    measure(s, "dwell", Value(10.0));
+    s.step();
+    measure(s, "step_cost", Value(5e-4)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 9e-4}));
+    s.step();
+    CHECK(count_at(s, 1) == 12);
+    measure(s, "budget", Value(4e-4));
+    s.step(13);
+    CHECK(count_at(s, 0) == 12);
+}
