@@ -194,8 +194,8 @@ double BudgetLook::seconds_to_spend(const LevelPrices& price) const
     const Reals parts = parts_at_levels();
     double modelled = 0;
     for (std::size_t l = 0; l < levels_; ++l) modelled += parts[l] * price.expected[l];
-    // What the model does not explain stays as it is.
-    const double room = goal - cost_;
+    // Half of what the model does not explain is taken for chance.
+    const double room = goal - 0.5 * (cost_ + modelled);
     return modelled + (is_over() || has_room() ? room : std::max(0.0, room));
 }
 
@@ -210,7 +210,7 @@ std::vector<BudgetLook::Change> BudgetLook::plan() const
         if (c.level < 0) continue;
         auto kind = std::find_if(known.begin(), known.end(), [&](const auto& m) { return m.first == c.objects; });
         if (kind == known.end()) kind = known.insert(known.end(), {c.objects, table_.errors(c.objects)});
-        candidates.push_back({look_.rested(k) ? 0 : c.level, c.level, weight_of(c) / whole_, importance(k), kind->second});
+        candidates.push_back({is_over() || look_.rested(k) ? 0 : c.level, c.level, weight_of(c) / whole_, importance(k), kind->second});
         component.push_back(k);
     }
     const LevelPrices price = prices();
@@ -271,7 +271,7 @@ void BudgetLook::choose()
     for (std::size_t n = 0; n < now; ++n)
     {
         const Change& change = changes[n];
-        (void)look_.choose(change.component, change.level, reason(change));
+        (void)look_.choose(change.component, change.level, reason(change), is_over());
         control_.tell(row_, change.component, error_of(change.component, change.level), "m", std::numeric_limits<double>::quiet_NaN());
     }
     g_.waiting[row_] = static_cast<std::int64_t>(changes.size() - now);

@@ -119,6 +119,12 @@ void leave_unseen(Row row, std::size_t k, Look& look, ErrorRows& governors, Leve
     if (look.may_choose(k, 0)) (void)look.choose(k, 0, "out of every viewer's sight");
 }
 
+const char* why_unmeasured(bool known, bool by_sight)
+{
+    if (known) return "its error has not been measured for too long";
+    return by_sight ? "it comes into view, and its error has not been measured yet" : "its error has not been measured yet";
+}
+
 /// Those that are due, those first that have waited longest. (s, place in the look.)
 using Due = std::vector<std::pair<double, std::size_t>>;
 
@@ -193,11 +199,9 @@ void keep_error(const StepContext& context, Row row, ErrorRows& governors, Level
         const std::size_t k = waiting[n].second;
         if (n < most)
             measure(context, row, k, scale_of(k), look, governors, control);
-        else if (waiting[n].first < context.time - 2 * governors.watch.every[row] && look.may_choose(k, look.finest()))
-            (void)look.choose(k, look.finest(),
-                              waiting[n].first >= 0 ? "its error has not been measured for too long"
-                              : by_sight            ? "it comes into view, and its error has not been measured yet"
-                                                    : "its error has not been measured yet");
+        else if ((waiting[n].first < 0 || waiting[n].first < context.time - 2 * governors.watch.every[row]) &&
+                 look.may_choose(k, look.finest()))
+            (void)look.choose(k, look.finest(), why_unmeasured(waiting[n].first >= 0, by_sight));
     }
 }
 

@@ -68,11 +68,11 @@ double Look::since(std::size_t index) const
 
 bool Look::rested(std::size_t index) const { return context_.time - since(index) >= rows_.dwell[row_] * (1 - 1e-9); }
 
-bool Look::choose(std::size_t index, std::int32_t level, std::string reason)
+bool Look::choose(std::size_t index, std::int32_t level, std::string reason, bool urgent)
 {
     const GovernedComponent& g = watched_[index];
     if (g.level == level) return false;
-    if (level < g.level && !rested(index)) return false;
+    if (level < g.level && !urgent && !rested(index)) return false;
     fresh_.push_back({std::string(control_.id_of(g.component)), context_.time});
     if (g.level >= 0) --rows_.count[row_][static_cast<std::size_t>(g.level)];
     ++rows_.count[row_][static_cast<std::size_t>(level)];

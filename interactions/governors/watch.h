@@ -46,8 +46,8 @@ public:
     }
     /// Whether the component may become cheaper now.
     bool rested(std::size_t index) const;
-    /// Changes the level, unless it is that level already. Returns whether it does.
-    bool choose(std::size_t index, std::int32_t level, std::string reason);
+    /// Changes the level, unless it is that level already. Returns whether it does. `urgent`: also to a cheaper one within `dwell`.
+    bool choose(std::size_t index, std::int32_t level, std::string reason, bool urgent = false);
 
 private:
     double since(std::size_t index) const;

@@ -163,12 +163,19 @@ int run_govern(const study::StudyOptions& options, model::TypeSource& types, mod
 int run_verification(const study::StudyOptions& options, model::TypeSource& types)
 {
     study::VerifyPlan plan;
-    plan.file = options.scene, plan.command = options.command, plan.until = options.until, plan.stop = &work;
+    plan.file = options.scene, plan.command = options.command, plan.until = options.list ? 0 : options.until, plan.stop = &work;
     program::Progress line(progress_to(options), std::chrono::milliseconds(0));
     plan.progress = shown_by(line);
     auto result = study::verify_levels(types, plan);
     line.clear();
     if (!result) return fail(result.errors());
+    if (options.list)
+    {
+        for (const study::VerifiedGovernor& g : result->governors)
+            std::printf("%s (%s): %zu components, at most %g %s within %g s\n", g.id.c_str(), g.type.c_str(), g.components, g.bound,
+                        g.unit.c_str(), g.interval);
+        return 0;
+    }
     if (auto written = study::write_verified(*result, options.out); !written) return fail(written.errors());
     for (const std::string& s : study::verify_findings(*result)) std::printf("%s\n", s.c_str());
     std::printf("%s/levels.csv\n", options.out.c_str());

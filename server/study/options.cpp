@@ -186,10 +186,9 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
     if (options.govern && (options.suite || !texts.vary.empty() || !texts.algorithms.empty() || !texts.swaps.empty()))
         return ParseEnd{2, "plab-study: --govern takes its levels from the governor: leave --suite, --vary, --algorithm and --swap out\n"};
     if (options.verify_levels &&
-        (options.govern || options.suite || options.list || !texts.vary.empty() || !texts.algorithms.empty() || !texts.swaps.empty()))
-        return ParseEnd{2,
-                        "plab-study: --verify-levels runs the scene as it is: leave --govern, --suite, --list, --vary, --algorithm and "
-                        "--swap out\n"};
+        (options.govern || options.suite || !texts.vary.empty() || !texts.algorithms.empty() || !texts.swaps.empty()))
+        return ParseEnd{
+            2, "plab-study: --verify-levels runs the scene as it is: leave --govern, --suite, --vary, --algorithm and --swap out\n"};
     if (options.suite && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite has its own scenes: leave SCENE out\n"};
     if (options.suite) options.scene = suite.empty() ? usual_suite() : suite;
     if (options.suite && options.scene.empty())

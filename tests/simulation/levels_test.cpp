@@ -1,6 +1,7 @@
 // Governors: which level a component gets, why, and that a replay decides the same.
 #include <algorithm>
 
+#include "simulation/governed.h"
 #include "simulation/snapshot/compare.h"
 #include "support/scene.h"
 #include "support/text.h"
@@ -9,12 +10,12 @@ using namespace plab;
 using namespace plab::simulation;
 using plab::test::first_error;
 using plab::test::has;
+using plab::test::kLadder;
+using plab::test::level;
 using plab::test::Scene;
 
 namespace
 {
-
-constexpr const char* kLadder = "Solver/SemiImplicitEuler; Solver/RungeKutta4; Solver/DormandPrince54";
 
 std::string body(const std::string& id, double x, const std::string& more = "")
 {
@@ -38,14 +39,6 @@ std::string by_distance(const std::string& more = "")
 std::string algorithm(const Scene& s, const std::string& id)
 {
     return s.simulation().world().type_of(s.simulation().world().find(id))->info.name;
-}
-
-const LevelInfo& level(const std::vector<LevelInfo>& levels, const Scene& s, const std::string& id)
-{
-    const auto found =
-        std::find_if(levels.begin(), levels.end(), [&](const LevelInfo& l) { return s.simulation().world().id_of(l.component) == id; });
-    REQUIRE_MESSAGE(found != levels.end(), id, " is not watched");
-    return *found;
 }
 
 void move_eye(Scene& s, double x)
@@ -355,98 +348,4 @@ TEST_CASE("a budget is spent on what is seen largest, and saved on what is seen 
     CHECK(algorithm(s, "far.solver") == "Solver/DormandPrince54");
     CHECK(algorithm(s, "near.solver") != "Solver/DormandPrince54");
     CHECK(s.real("lod", "spent") < 1);
-}
-
-namespace
-{
-
-/// Masses on springs, all with the cheapest level, under a governor by budget. The error of that level is large.
-std::string springs_under_budget(int count, const std::string& more)
-{
-    std::string out = "<component id=\"ball\" type=\"Shape/Sphere\" radius=\"0.1\"/>";
-    for (int k = 0; k < count; ++k)
-    {
-        const std::string n = std::to_string(k);
-        out += "<component id=\"post." + n + "\" type=\"State/Static\" position=\"0 " + n + " 0\"/><component id=\"bob." + n +
-               "\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" position=\"1.5 " + n + " 0\" solver=\"Solver/SemiImplicitEuler\"/>" +
-               "<component id=\"spring." + n + "\" type=\"Constraint/SpringDamper\" a=\"post." + n + "\" b=\"bob." + n +
-               "\" length=\"1\" stiffness=\"40\"/>";
-    }
-    return out + "<component id=\"lod\" type=\"Governor/Budget\" watches=\"*.solver\" levels=\"" + kLadder +
-           "\" budget=\"1e-3\" every=\"0.05\" dwell=\"0\" " + more + "/>";
-}
-
-std::ptrdiff_t count_at(const Scene& s, std::int32_t level)
-{
-    const auto levels = s.simulation().levels().levels();
-    return std::count_if(levels.begin(), levels.end(), [&](const LevelInfo& l) { return l.level == level; });
-}
-
-void measure(Scene& s, const char* input, Value value) { REQUIRE(s.ask(SetOperation{"lod", input, std::move(value)}).done); }
-
-}  // namespace
-
-TEST_CASE("a budget: trial steps tell what levels cost and how they err, so the first measured step is enough to leave out a bad one")
-{
-    Scene s(springs_under_budget(6, ""));
-    REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.step();
-    CHECK(count_at(s, 0) == 6);
-    const auto errors = std::get<Reals>(s.get("lod", "errors"));
-    REQUIRE(errors.size() == 5);  // one kind: a component that acts on one object
-    CHECK(errors[0] == 1);
-    CHECK(errors[1] == 3);               // trials
-    CHECK(errors[2] > 1e4 * errors[3]);  // mean squares
-    measure(s, "step_cost", Value(1e-4)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 9e-4}));
-    s.step();
-    CHECK(count_at(s, 1) == 6);  // hardly dearer; the most exact one would take 0.9 ms for each of them
-    const LevelInfo told = level(s.simulation().levels().levels(), s, "bob.0.solver");
-    CHECK(has(told.reason, "there is room: a step takes 0.1 ms of 1 ms; error "));
-    REQUIRE(told.trials.size() == 3);
-    CHECK(told.trials[0].text == "Solver/SemiImplicitEuler");
-    CHECK(told.trials[0].error.distance > 10 * told.trials[1].error.distance);
-}
-
-TEST_CASE("a budget: errors up to the tolerance are not worth a second")
-{
-    Scene s(springs_under_budget(6, "tolerance=\"1e6\""));
-    REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.step();
-    measure(s, "step_cost", Value(1e-5)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 2e-6}));
-    s.run(1);
-    CHECK(count_at(s, 0) == 6);
-}
-
-TEST_CASE("a budget: exchanges cost time too, so they are spread over steps that have time for them")
-{
-    Scene s(springs_under_budget(12, "trials=\"0\""));
-    REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.step();
-    measure(s, "step_cost", Value(5e-4)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 9e-4}));
-    measure(s, "exchange_cost", Value(Reals{1, 2e-4}));  // taken for 0.1 ms and 0.1 ms for each component; 0.5 ms are left
-    for (const std::ptrdiff_t done : {4, 8, 12})
-    {
-        s.step();
-        CHECK(count_at(s, 1) == done);
-    }
-}
-
-TEST_CASE("a budget: exchanges for which no step has time are made all at once, but rarely")
-{
-    Scene s(springs_under_budget(12, "trials=\"0\""));
-    REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.step();
-    measure(s, "step_cost", Value(5e-4)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 9e-4}));
-    measure(s, "exchange_cost", Value(Reals{12, 6e-3}));
-    s.step();
-    CHECK(count_at(s, 1) == 12);
-    for (const char* id : {"bob.0.solver", "bob.5.solver"}) REQUIRE(s.ask(SwapOperation{id, "Solver/SemiImplicitEuler", {}}).done);
-    s.step(120);
-    CHECK(count_at(s, 0) == 2);
-    s.step(20);
-    CHECK(count_at(s, 1) == 12);
-    // While steps take too long anyway, the cheaper level comes at once.
-    measure(s, "budget", Value(4e-4));
-    s.step(13);
-    CHECK(count_at(s, 0) == 12);
 }

@@ -218,6 +218,7 @@ TEST_CASE("the levels of a scene and of its recording are checked with the same 
     CHECK(table == read(recorded + "/levels.csv"));
     CHECK(study({scene, "--verify-levels", "-o", live}).code == 2);  // how long?
     CHECK(study({scene, "--verify-levels", "--govern", "--until", "1", "-o", live}).code == 2);
+    CHECK(has(study({scene, "--verify-levels", "--list"}).output, "lod (Governor/Error): 1 components, at most 0.001 m within 0.25 s"));
     const Outcome nothing = study({scene_file("studies/bounce.xml"), "--verify-levels", "--until", "0.1", "-o", live});
     CHECK(nothing.code == 1);
     CHECK(has(nothing.errors, "no governor of the scene states a bound"));

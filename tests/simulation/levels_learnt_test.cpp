@@ -1,0 +1,139 @@
+// Governor/Budget and Governor/Error: what they learn, and how they spend.
+#include "simulation/governed.h"
+#include "support/text.h"
+
+using namespace plab;
+using namespace plab::simulation;
+using plab::test::count_at;
+using plab::test::has;
+using plab::test::kLadder;
+using plab::test::level;
+using plab::test::Scene;
+using plab::test::springs_under_budget;
+
+namespace
+{
+
+void measure(Scene& s, const char* input, Value value) { REQUIRE(s.ask(SetOperation{"lod", input, std::move(value)}).done); }
+
+}  // namespace
+
+TEST_CASE("a budget: trial steps tell what levels cost and how they err, so the first measured step is enough to leave out a bad one")
+{
+    Scene s(springs_under_budget(6, ""));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step();
+    CHECK(count_at(s, 0) == 6);
+    const auto errors = std::get<Reals>(s.get("lod", "errors"));
+    REQUIRE(errors.size() == 5);  // one kind: a component that acts on one object
+    CHECK(errors[0] == 1);
+    CHECK(errors[1] == 3);               // trials
+    CHECK(errors[2] > 1e4 * errors[3]);  // mean squares
+    measure(s, "step_cost", Value(1e-4)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 9e-4}));
+    s.step();
+    CHECK(count_at(s, 1) == 6);  // hardly dearer; the most exact one would take 0.9 ms for each of them
+    const LevelInfo told = level(s.simulation().levels().levels(), s, "bob.0.solver");
+    CHECK(has(told.reason, "there is room: a step takes 0.1 ms of 1 ms; error "));
+    REQUIRE(told.trials.size() == 3);
+    CHECK(told.trials[0].text == "Solver/SemiImplicitEuler");
+    CHECK(told.trials[0].error.distance > 10 * told.trials[1].error.distance);
+}
+
+TEST_CASE("a budget: errors up to the tolerance are not worth a second")
+{
+    Scene s(springs_under_budget(6, "tolerance=\"1e6\""));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step();
+    measure(s, "step_cost", Value(1e-5)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 2e-6}));
+    s.run(1);
+    CHECK(count_at(s, 0) == 6);
+}
+
+TEST_CASE("a budget: exchanges cost time too, so they are spread over steps that have time for them")
+{
+    Scene s(springs_under_budget(12, "trials=\"0\""));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step();
+    measure(s, "step_cost", Value(5e-4)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 9e-4}));
+    measure(s, "exchange_cost", Value(Reals{1, 2e-4}));  // taken for 0.1 ms and 0.1 ms for each component; 0.5 ms are left
+    for (const std::ptrdiff_t done : {4, 8, 12})
+    {
+        s.step();
+        CHECK(count_at(s, 1) == done);
+    }
+}
+
+TEST_CASE("a budget: exchanges for which no step has time are made all at once, but rarely")
+{
+    Scene s(springs_under_budget(12, "trials=\"0\""));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step();
+    measure(s, "step_cost", Value(5e-4)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 9e-4}));
+    measure(s, "exchange_cost", Value(Reals{12, 6e-3}));
+    s.step();
+    CHECK(count_at(s, 1) == 12);
+    for (const char* id : {"bob.0.solver", "bob.5.solver"}) REQUIRE(s.ask(SwapOperation{id, "Solver/SemiImplicitEuler", {}}).done);
+    s.step(120);
+    CHECK(count_at(s, 0) == 2);
+    s.step(20);
+    CHECK(count_at(s, 1) == 12);
+    // While steps take too long anyway, the cheaper level comes at once.
+    measure(s, "budget", Value(4e-4));
+    s.step(13);
+    CHECK(count_at(s, 0) == 12);
+}
+
+TEST_CASE("an error: what has not been measured yet has the most exact level until its turn comes")
+{
+    std::string scene = springs_under_budget(12, "");
+    scene = scene.substr(0, scene.rfind("<component id=\"lod\"")) +
+            "<component id=\"lod\" type=\"Governor/Error\" watches=\"*.solver\" levels=\"" + kLadder +
+            "\" bound=\"10\" looks=\"4\" every=\"0.05\" dwell=\"0\"/>";
+    Scene s(scene);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step();
+    CHECK(count_at(s, 0) == 4);
+    CHECK(count_at(s, 2) == 8);
+    s.step(12);
+    CHECK(count_at(s, 0) == 8);
+    s.step(12);
+    CHECK(count_at(s, 0) == 12);
+}
+
+TEST_CASE("an error: an impact within the interval is foreseen, though the coming step shows nothing of it")
+{
+    // Falls from 0.05 m, so it meets the ground after 0.1 s: without a resolution it sinks in by up to what it falls in a step.
+    const auto level_of_ball = [](const char* interval)
+    {
+        Scene s(std::string("<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
+                            "<component id=\"form\" type=\"Shape/Sphere\" radius=\"0.1\"/>"
+                            "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"form\" position=\"0 0 0.15\" "
+                            "linear_velocity=\"0 0 -1\"/><component id=\"weight\" type=\"Field/Gravity\" between=\"ball\"/>"
+                            "<component id=\"contact\" type=\"CDetection/ODE\" between=\"ball ground\" resolution=\"Resolution/None\" "
+                            "response=\"Response/Impulse\" response.restitution=\"0.8\" response.friction=\"0\"/>"
+                            "<component id=\"lod\" type=\"Governor/Error\" watches=\"*resolution\" bound=\"1e-4\" every=\"1\" "
+                            "levels=\"Resolution/None; Resolution/LocalBisection\" interval=\"") +
+                interval + "\"/>");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.step();
+        const auto levels = s.simulation().levels().levels();
+        REQUIRE(levels.size() == 1);
+        return levels.front().level;
+    };
+    CHECK(level_of_ball("0.02") == 0);
+    CHECK(level_of_ball("0.1") == 1);
+}
+
+TEST_CASE("a budget: while steps take too long a level is given up at once, however long it was to be kept")
+{
+    Scene s(springs_under_budget(12, "trials=\"0\""));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    measure(s, "dwell", Value(10.0));
+    s.step();
+    measure(s, "step_cost", Value(5e-4)), measure(s, "trial_costs", Value(Reals{1e-6, 1.1e-6, 9e-4}));
+    s.step();
+    CHECK(count_at(s, 1) == 12);
+    measure(s, "budget", Value(4e-4));
+    s.step(13);
+    CHECK(count_at(s, 0) == 12);
+}
