@@ -82,8 +82,13 @@ private:
             add_body(child, component_of(child), kWorld, &joint), waiting.push_back(child);
         }
         grow_from(std::move(waiting));
-        for (const ComponentView& c : body_components_)
-            if (!rows_.contains(c.host())) add_body(c.host(), c, kWorld, nullptr), grow_from({c.host()});
+        // A free tree begins where its joints begin: with a body that is the b of none of them.
+        std::set<std::uint32_t> held;
+        for (const FoundJoint& joint : joints_) held.insert(joint.b);
+        for (const bool any : {false, true})
+            for (const ComponentView& c : body_components_)
+                if (!rows_.contains(c.host()) && (any || !held.contains(c.host())))
+                    add_body(c.host(), c, kWorld, nullptr), grow_from({c.host()});
     }
 
     /// Breadth first.
@@ -239,27 +244,45 @@ private:
         out_.actuators.push_back(std::move(a));
     }
 
+    struct SpunJoint
+    {
+        Joint* joint = nullptr;
+        double sign = 1;  ///< of the spin against the joint's coordinate
+    };
+
+    /// The hinge of the tree about which a body spins relative to the carrier, if its axle lies along it. `frame`: the axle's frame in the
+    /// body.
+    SpunJoint joint_of_spin(Ref ref, std::uint32_t carrier, const Quat& frame)
+    {
+        if (ref.facet != Facet::Body) return {};
+        const Vec3 axle = rotate(bodies_.orientation[ref.index], rotate(frame, {0, 0, 1}));
+        for (Body& body : out_.bodies)
+        {
+            const std::uint32_t parent = body.parent == kWorld ? kNoIndex : out_.bodies[body.parent].host;
+            const bool forward = body.host == ref.index && parent == carrier, backward = body.host == carrier && parent == ref.index;
+            const Vec3 axis = rotate(bodies_.orientation[body.host], body.joint.axis);
+            if (body.joint.kind != JointKind::Hinge || !(forward || backward) || length(cross(axis, axle)) > kParallel) continue;
+            return {&body.joint, dot(axis, axle) * (forward ? 1 : -1) > 0 ? 1.0 : -1.0};
+        }
+        return {};
+    }
+
+    /// A shaft geared to a hinge is a rotor; two hinges on the same body are coupled.
     void read_gear(const ComponentView& c)
     {
         const Ref driver = c.participant("driver"), driven = c.participant("driven");
         const std::uint32_t carrier = moving(c.participant("carrier"));
-        const auto hinge_of = [&](Ref ref) -> Body*
-        {
-            const auto row = ref.facet == Facet::Body ? rows_.find(ref.index) : rows_.end();
-            if (row == rows_.end()) return nullptr;
-            Body& body = out_.bodies[row->second];
-            const std::uint32_t parent =
-                body.parent == kWorld || out_.bodies[body.parent].is_static ? kNoIndex : out_.bodies[body.parent].host;
-            return body.joint.kind == JointKind::Hinge && parent == carrier ? &body : nullptr;
-        };
-        Body* const first = hinge_of(driver);
+        const SpunJoint first = joint_of_spin(driver, carrier, c.rotation("driver_frame"));
         const double factor = c.real("velocity_factor");
-        if (first && driven.facet == Facet::Shaft && c.real("driver_teeth") == 0)
-            return void(first->joint.armature +=
+        if (std::get<std::int64_t>(world_.get(c.index(), "driver_teeth")) != 0 || !first.joint)
+            return lost(c, "has no counterpart in MJCF: it is no rotor of a hinge");
+        if (driven.facet == Facet::Shaft)
+            return void(first.joint->armature +=
                         factor * factor * ComponentView(world_, world_.host().component_of(driven)).real("inertia"));
-        Body* const second = hinge_of(driven);
-        if (!first || !second) return lost(c, "couples what are no hinges on the same body");
-        out_.equalities.push_back({Equality::Kind::Ratio, c.id(), first->joint.name, second->joint.name, {}, factor});
+        const SpunJoint second = joint_of_spin(driven, carrier, c.rotation("driven_frame"));
+        if (!second.joint) return lost(c, "couples what are no hinges on the same body");
+        out_.equalities.push_back(
+            {Equality::Kind::Ratio, c.id(), first.joint->name, second.joint->name, {}, factor * first.sign * second.sign});
     }
 
     void read_gravity(const ComponentView& c)
