@@ -41,14 +41,14 @@ Result<std::unique_ptr<Connection>> Connection::open(const link::Session& sessio
                                                      const FeedHooks& hooks)
 {
     constexpr link::Seconds kLongest(5);
-    auto caller = link::Caller::make(session, kLongest, stop);
+    auto caller = link::Caller::make(session, kLongest, hooks.stop);
     if (!caller) return caller.errors();
     std::unique_ptr<Connection> out(new Connection(session, pages, hooks, caller.take()));
     out->options_ = options, out->options_.server = session.server();
     auto catalogue = link::Catalogue::open(session, kParts);
     if (!catalogue) return catalogue.errors();
     out->catalogue_ = catalogue.take();
-    if (auto fetched = out->catalogue_->fetch(kLongest, stop); !fetched) return fetched.errors();
+    if (auto fetched = out->catalogue_->fetch(kLongest, hooks.stop); !fetched) return fetched.errors();
     auto events = session.reader<plab_v2_Events>();
     if (!events) return events.errors();
     out->events_ = events.take();

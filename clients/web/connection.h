@@ -6,24 +6,14 @@
 #include <optional>
 
 #include "link/frame_reader.h"
+#include "web/feed_hooks.h"
 #include "web/hands.h"
 #include "web/history.h"
-#include "web/job_ask.h"
 #include "web/pose_encoder.h"
 #include "web/preview.h"
 
 namespace plab::web
 {
-
-struct FeedHooks
-{
-    std::function<void()> wake;  ///< called after something was put into the pages
-    link::Stop stop;             ///< asked several times a second; true ends the thread
-    JobHandler jobs;
-    /// True: plab-web has started servers of its own, so "the only one" is that of before.
-    std::function<bool()> has_servers;
-    NewestFigures* figures = nullptr;  ///< for Prometheus; null: nobody asks for those of this server
-};
 
 class Connection
 {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "link/follow.h"
+#include "web/connection.h"
 
 namespace plab::web
 {

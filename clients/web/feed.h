@@ -4,7 +4,9 @@
 
 #include <thread>
 
-#include "web/connection.h"
+#include "link/session.h"
+#include "web/feed_hooks.h"
+#include "web/pages.h"
 
 namespace plab::web
 {
