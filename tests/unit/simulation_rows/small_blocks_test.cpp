@@ -69,7 +69,8 @@ TEST_CASE("3 x 3: Eigen's LDLT takes more than twice the time of Ldlt3")
             sum -= x[0];
         }
     });
-    CAPTURE(theirs / kBlocks * 1e9), CAPTURE(ours / kBlocks * 1e9);
+    CAPTURE(theirs / kBlocks * 1e9);
+    CAPTURE(ours / kBlocks * 1e9);
     CHECK(std::isfinite(sum));
     CHECK(theirs > 2 * ours);
 }
@@ -92,7 +93,8 @@ TEST_CASE("6 x 6: Eigen's inverse takes longer than that of a general block")
     });
     bool regular = true;
     const double ours = shortest([&] { fill(), regular = blocks.factor() && regular; });
-    CAPTURE(theirs / kBlocks * 1e9), CAPTURE(ours / kBlocks * 1e9);
+    CAPTURE(theirs / kBlocks * 1e9);
+    CAPTURE(ours / kBlocks * 1e9);
     REQUIRE(regular);
     // A general block is stored row by row and is symmetric here, so both are the same numbers.
     for (std::uint32_t i = 0; i < kBlocks; ++i) CHECK(blocks.diagonal(i)[7] == doctest::Approx(out[i](1, 1)).epsilon(1e-9));

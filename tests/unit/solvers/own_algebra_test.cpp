@@ -55,7 +55,8 @@ TEST_CASE("Eigen's product computes with zeros, and takes longer for the Jacobia
     Eigen::MatrixXd product(kSize, kSize);
     const double theirs = plab::test::shortest([&] { product.noalias() = view(a) * view(a); });
     const double ours = plab::test::shortest([&] { multiply(a, a, out); });
-    CAPTURE(theirs), CAPTURE(ours);
+    CAPTURE(theirs);
+    CAPTURE(ours);
     CHECK((product - view(out)).cwiseAbs().maxCoeff() < 1e-14);
     CHECK(theirs > 1.3 * ours);
 }
