@@ -21,7 +21,7 @@ void Audience::subscribe(ClientId client, const Subscribe& said)
         else
         {
             member.subscriptions[id] = channel;
-            clients_.with(client, [&](Outbox& outbox) { outbox.subscribe(id, *channel); });
+            clients_.with(client, [subscription = id, channel](Outbox& outbox) { outbox.subscribe(subscription, *channel); });
             new_.push_back({client, id, channel});
         }
     }
@@ -83,9 +83,9 @@ void Audience::report_losses()
 {
     for (auto& [client, member] : members_)
         clients_.with(client,
-                      [&member](Outbox& outbox)
+                      [&reported = member.reported_losses](Outbox& outbox)
                       {
-                          const std::uint64_t lost = outbox.dropped() - std::exchange(member.reported_losses, outbox.dropped());
+                          const std::uint64_t lost = outbox.dropped() - std::exchange(reported, outbox.dropped());
                           if (lost == 0) return;
                           const std::string sentence = std::to_string(lost) + " messages were left out: this client takes too few of them.";
                           outbox.say(text_message(status(Level::Warning, sentence, "losses")));

@@ -1,6 +1,7 @@
 #include "by_budget.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -154,17 +155,19 @@ void BudgetLook::learn_errors(std::int64_t most)
 void BudgetLook::learn_errors_of_new_kinds()
 {
     constexpr int kFew = 3;
-    constexpr std::int64_t kMost = 24;
-    std::vector<std::pair<std::uint32_t, int>> met;  // objects, trials in this look
-    std::int64_t left = kMost;
-    for (std::size_t k = 0; k < look_.watched().size() && left > 0; ++k)
+    constexpr std::size_t kMost = 24;
+    std::array<std::pair<std::uint32_t, int>, kMost> met;  // of kinds that are new in this look: objects, trials
+    std::size_t kinds = 0, trials = 0;
+    for (std::size_t k = 0; k < look_.watched().size() && trials < kMost; ++k)
     {
         const GovernedComponent& c = look_.watched()[k];
         if (c.level < 0 || c.objects == 0) continue;
-        auto kind = std::find_if(met.begin(), met.end(), [&](const auto& m) { return m.first == c.objects; });
-        if (kind == met.end()) kind = met.insert(met.end(), {c.objects, table_.trials(c.objects) > 0 ? kFew : 0});
+        const auto end = met.begin() + static_cast<std::ptrdiff_t>(kinds);
+        const auto kind = std::find_if(met.begin(), end, [&](const auto& m) { return m.first == c.objects; });
+        if (kind == end && table_.trials(c.objects) > 0) continue;
+        if (kind == end) met[kinds++] = {c.objects, 0};
         if (kind->second >= kFew) continue;
-        ++kind->second, --left;
+        ++kind->second, ++trials;
         try_levels(k);
     }
 }

@@ -139,7 +139,11 @@ Json json_of(const link::CatalogueContents& now, const TopOptions& o)
     if (!now.metrics) return Json{{"step", nullptr}};
     const link::Metrics& m = *now.metrics;
     Json list = Json::array();
-    for (const link::InteractionMetrics* i : sorted(m.interactions, o.by)) list.push_back(link::json_of(*i));
+    for (const link::InteractionMetrics* i : sorted(m.interactions, o.by))
+    {
+        list.push_back(Json{{"id", i->component_id}});
+        list.back().update(link::json_of(*i));
+    }
     return {{"step", m.step}, {"time", m.time}, {"step_ns", m.step_ns}, {"unexplained", m.ledger.unexplained}, {"interactions", list}};
 }
 

@@ -25,7 +25,7 @@ struct MadeOptions
     bool only_moved = false;          ///< frames name only objects that moved since the last one; the first names all
     bool with_catalogue = true;
     bool with_axle = true;
-    int governed = 0;  ///< solvers under the governor "lod", all at "Solver/Cheap"; from `swap_at` on every third one is at "Solver/Fine"
+    int governed = 0;  ///< solvers under the governor "lod", all at the cheap level; from `swap_at` on every third one is at the fine one
     bool with_journal = true;
     bool with_hashes = true;
     bool is_closed = true;  ///< false: as after a crash

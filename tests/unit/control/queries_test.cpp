@@ -112,7 +112,7 @@ TEST_CASE("the command top shows the costliest first, their share of the step, a
     const Outcome twice = lab("top --every 0.2 -n 3");
     CHECK(twice.code == 0);
     const std::vector<std::string> lines = twice.lines();
-    REQUIRE(lines.size() == 3 * 7);  // head of 3 lines, a blank one, a title, two rows; and blank lines between
+    REQUIRE(lines.size() == 3 * 8);  // a head of 3 lines, a blank one, a title, two rows, a blank one
     const std::size_t last = lines.size() - 8;
     CHECK(has(lines[last], "lab  running"));
     CHECK(has(lines[last + 1], "step    8.6 us"));

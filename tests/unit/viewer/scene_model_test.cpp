@@ -210,9 +210,9 @@ TEST_CASE("of many interactions, those with the same algorithm share a line: who
     for (const char* id : {"i10", "i11"})
         snapshot.interactions[id] = interaction(id, "Solver/RungeKutta4"), snapshot.interactions[id].since = 7;
     captions.use(snapshot);
-    CHECK(captions.lines(at(6))[2] == "Solver/DormandPrince54: 10, such as i10");
-    CHECK(captions.lines(at(7))[2] == "Solver/DormandPrince54: 8, such as i12");
-    CHECK(captions.lines(at(7))[3] == "Solver/RungeKutta4: 33, such as i10");
+    CHECK(captions.lines(at(0, 6))[2] == "Solver/DormandPrince54: 10, such as i10");
+    CHECK(captions.lines(at(0, 7))[2] == "Solver/DormandPrince54: 8, such as i12");
+    CHECK(captions.lines(at(0, 7))[3] == "Solver/RungeKutta4: 33, such as i10");
 }
 
 TEST_CASE("of many algorithms the most expensive ones are shown, and the number of the other interactions")
