@@ -31,7 +31,8 @@ make_packages() {
     (cd "$build" && quietly cpack cpack) || fail "cpack"
     local name
     for name in plab plab-view plab-web python3-plab plab-dev; do
-        dpkg-deb -c "$build/packages/${name}"_*.deb | grep -q "/usr/share/doc/$name/copyright$" || fail "$name has no copyright file"
+        # Not by a pipe: grep ends at the first match, and dpkg-deb does not like that.
+        grep -q "/usr/share/doc/$name/copyright$" <<<"$(dpkg-deb -c "$build/packages/${name}"_*.deb)" || fail "$name has no copyright file"
     done
     ls -l --block-size=K "$build/packages" | awk 'NR > 1 { print $5, $9 }'
 }
