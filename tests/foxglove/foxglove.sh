@@ -12,16 +12,11 @@ script=$1 bin=$(realpath "$2") scenes=$(realpath "$3")
 mkdir -p "$4"
 work=$(realpath "$4")
 
-skip() { echo "foxglove: skipped: $*"; exit 77; }
+TEST_NAME=foxglove
+# shellcheck source=tests/support/npm.sh
+source "$here/../support/npm.sh"
 
-command -v node >/dev/null || skip "no node here (Debian's package nodejs)"
-command -v npm >/dev/null || skip "no npm here (Debian's package npm)"
-
-cp "$here"/*.mjs "$here/../support/programs.mjs" "$here/package.json" "$here/package-lock.json" "$work"
-if ! cmp --quiet "$here/package-lock.json" "$work/node_modules/.installed"; then
-    (cd "$work" && timeout 200 npm ci --ignore-scripts --no-audit --no-fund) >"$work/npm.log" 2>&1 ||
-        { tail -n 5 "$work/npm.log"; skip "npm could not fetch its packages; $work/npm.log has the details"; }
-    cp "$here/package-lock.json" "$work/node_modules/.installed"
-fi
+cp "$here"/*.mjs "$here/../support/programs.mjs" "$work"
+install_packages "$here" "$work"
 cd "$work"
 exec timeout 300 node "$script" "$bin" "$scenes" "${@:5}"

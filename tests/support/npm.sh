@@ -12,7 +12,10 @@ install_packages() {
     mkdir -p "$work"
     cmp --quiet "$here/package-lock.json" "$work/node_modules/.installed" && return
     cp "$here/package.json" "$here/package-lock.json" "$work"
-    if ! (cd "$work" && npm ci --ignore-scripts --no-audit --no-fund) >"$work/npm.log" 2>&1; then
+    local code=0
+    (cd "$work" && timeout 200 npm ci --ignore-scripts --no-audit --no-fund) >"$work/npm.log" 2>&1 || code=$?
+    [[ $code -ne 124 ]] || skip "npm's registry does not answer; $work/npm.log has the details"
+    if [[ $code -ne 0 ]]; then
         ! grep --quiet --extended-regexp 'ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ECONNRESET|ETIMEDOUT|ENETUNREACH|network' "$work/npm.log" ||
             skip "npm's registry cannot be reached; $work/npm.log has the details"
         tail -n 20 "$work/npm.log"

@@ -12,18 +12,14 @@ script=$1 bin=$2 page=$3 scenes=$4
 mkdir -p "$5/pictures"
 work=$(realpath "$5")
 
-skip() { echo "web: skipped: $*"; exit 77; }
+TEST_NAME=web
+# shellcheck source=tests/support/npm.sh
+source "$here/../support/npm.sh"
 
 [[ -e $page/page.js ]] || skip "the page was not built: $(cat "$page/not_built.txt" 2>/dev/null || echo "no $page/page.js")"
 chromium=$(command -v chromium) || skip "no chromium here (Debian's package chromium)"
-command -v node >/dev/null || skip "no node here (Debian's package nodejs)"
-command -v npm >/dev/null || skip "no npm here (Debian's package npm)"
 
-cp "$here"/*.mjs "$here/../support/programs.mjs" "$here/package.json" "$here/package-lock.json" "$work"
-if ! cmp --quiet "$here/package-lock.json" "$work/node_modules/.installed"; then
-    (cd "$work" && timeout 200 npm ci --ignore-scripts --no-audit --no-fund) >"$work/npm.log" 2>&1 ||
-        { tail -n 5 "$work/npm.log"; skip "npm could not fetch its packages; $work/npm.log has the details"; }
-    cp "$here/package-lock.json" "$work/node_modules/.installed"
-fi
+cp "$here"/*.mjs "$here/../support/programs.mjs" "$work"
+install_packages "$here" "$work"
 cd "$work"
 exec timeout 500 node "$script" "$bin" "$scenes" "$chromium" "$work/pictures"
