@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <type_traits>
 
 namespace plab::detection
 {
@@ -15,7 +19,10 @@ class Polytope
 {
 public:
     Polytope(const Solid& A, const Solid& B) : A_(A), B_(B), scale_(A.extent() + B.extent()) {}
-    bool start();
+    Polytope(const Polytope&) = delete;
+    Polytope& operator=(const Polytope&) = delete;
+    /// Starts with the tetrahedron of a simplex that encloses the origin, if it is not too flat, or with one of its own.
+    bool start(const Simplex& simplex);
     /// The outward direction along which the boundary of A - B is nearest to the origin.
     Vec3 grow(double tolerance);
     bool converged() const { return converged_; }
@@ -29,14 +36,29 @@ private:
         double offset = 0;
         bool alive = true;
     };
+    /// Room for many elements, which only those that are used take time to make.
+    template <class T, std::size_t N>
+    class Room
+    {
+    public:
+        T& make(std::size_t i) { return *std::construct_at(&all()[i]); }
+        T& operator[](std::size_t i) { return all()[i]; }
+        const T& operator[](std::size_t i) const { return const_cast<Room&>(*this).all()[i]; }
+
+    private:
+        static_assert(std::is_trivially_destructible_v<T>);
+        T* all() { return std::launder(reinterpret_cast<T*>(bytes_)); }
+        alignas(T) std::byte bytes_[N * sizeof(T)];
+    };
     struct Rim
     {
         PointIndex from, to, beyond;  ///< an edge of the hole, and the face on its far side
     };
 
     PointIndex add_point(const Vec3& d);
+    bool begin_with_axes();
+    bool close_first();
     bool add_face(PointIndex a, PointIndex b, PointIndex c);
-    bool link_first();
     std::size_t nearest() const;
     bool collect_rim(std::size_t seed, const Vec3& w);
     bool close_rim(PointIndex eye);
@@ -44,8 +66,8 @@ private:
     const Solid& A_;
     const Solid& B_;
     double scale_;
-    std::array<Vec3, kMostPoints> points_;
-    std::array<Face, kMostFaces> faces_;
+    Room<Vec3, kMostPoints> points_;
+    Room<Face, kMostFaces> faces_;
     std::array<PointIndex, kMostFaces> open_;
     std::array<Rim, kMostPoints> rim_, ordered_;
     std::size_t count_ = 0, face_count_ = 0, rim_count_ = 0;
@@ -54,14 +76,14 @@ private:
 
 PointIndex Polytope::add_point(const Vec3& d)
 {
-    points_[count_] = support_of(A_, B_, d).w;
+    points_.make(count_) = support_of(A_, B_, d).w;
     return static_cast<PointIndex>(count_++);
 }
 
 bool Polytope::add_face(PointIndex a, PointIndex b, PointIndex c)
 {
     if (face_count_ == kMostFaces) return false;
-    Face& f = faces_[face_count_++];
+    Face& f = faces_.make(face_count_++);
     f.corner = {a, b, c}, f.beside = {}, f.alive = true;
     const Vec3 n = cross(points_[b] - points_[a], points_[c] - points_[a]);
     const double area = length(n);
@@ -71,8 +93,19 @@ bool Polytope::add_face(PointIndex a, PointIndex b, PointIndex c)
     return true;
 }
 
-/// Starts with a tetrahedron of support points: it is made as long, then as wide, then as thick as the axes tried allow.
-bool Polytope::start()
+bool Polytope::start(const Simplex& simplex)
+{
+    if (simplex.encloses && simplex.count == 4)
+    {
+        for (std::size_t i = 0; i < 4; ++i) points_.make(count_++) = simplex.at[i].w;
+        if (close_first()) return true;
+        count_ = face_count_ = 0;
+    }
+    return begin_with_axes() && close_first();
+}
+
+/// A tetrahedron of support points: it is made as long, then as wide, then as thick as the axes tried allow.
+bool Polytope::begin_with_axes()
 {
     const auto further = [&](const Vec3& d, const Vec3& from)
     {
@@ -96,20 +129,18 @@ bool Polytope::start()
     const Vec3 n = normalized(cross(points_[1] - points_[0], points_[2] - points_[0]));
     if (length_squared(n) == 0) return false;
     add_point(further(n, points_[0]));
+    return true;
+}
+
+/// Makes the faces of the first four points.
+bool Polytope::close_first()
+{
+    const Vec3 n = normalized(cross(points_[1] - points_[0], points_[2] - points_[0]));
     const double height = dot(n, points_[3] - points_[0]);
     if (!(std::fabs(height) > kEpsilon * scale_)) return false;
     if (height > 0) std::swap(points_[1], points_[2]);
-    return add_face(0, 1, 2) && add_face(0, 3, 1) && add_face(1, 3, 2) && add_face(2, 3, 0) && link_first();
-}
-
-bool Polytope::link_first()
-{
-    for (std::size_t f = 0; f < 4; ++f)
-        for (std::size_t i = 0; i < 3; ++i)
-            for (std::size_t g = 0; g < 4; ++g)
-                for (std::size_t j = 0; j < 3; ++j)
-                    if (faces_[f].corner[i] == faces_[g].corner[(j + 1) % 3] && faces_[f].corner[(i + 1) % 3] == faces_[g].corner[j])
-                        faces_[f].beside[i] = static_cast<PointIndex>(g);
+    if (!(add_face(0, 1, 2) && add_face(0, 3, 1) && add_face(1, 3, 2) && add_face(2, 3, 0))) return false;
+    faces_[0].beside = {1, 2, 3}, faces_[1].beside = {3, 2, 0}, faces_[2].beside = {1, 3, 0}, faces_[3].beside = {2, 1, 0};
     return true;
 }
 
@@ -212,10 +243,14 @@ Solid moved(const Solid& B, const Vec3& by)
 double depth_along(const Solid& A, const Solid& B, const Vec3& n) { return dot(n, support_of(A, B, n).w); }
 }  // namespace
 
-Overlap refine(const Solid& A, const Solid& B, const Vec3& n)
+Overlap refine(const Solid& A, const Solid& B, const Vec3& n, const Simplex& simplex)
 {
     constexpr int kMost = 16;
+    constexpr double kSettled = 1e-11;  // rad; the error of the depth is the square of that of the normal
     const double scale = A.extent() + B.extent(), slack = 8 * kEpsilon * scale;
+    Simplex at = simplex;
+    Vec3 moved_by;
+    double last_turn = 0;
     // Far enough apart for accurate closest points, near enough to meet the same features.
     const double delta = 1e-3 * scale;
     const Support s = support_of(A, B, n);
@@ -223,27 +258,31 @@ Overlap refine(const Solid& A, const Solid& B, const Vec3& n)
     for (int i = 0; i < kMost; ++i)
     {
         const Vec3 shift = (out.depth + delta) * out.normal;
-        const NearestPair apart = nearest_pair(A, moved(B, shift));
+        at = at.with_b_moved(shift - moved_by), moved_by = shift;
+        const NearestPair apart = nearest_pair(A, moved(B, shift), HUGE_VAL, at, i > 0 ? &out.a : nullptr);
         if (!apart.apart) break;
         if (i == 0) out.a = apart.a, out.b = apart.b - shift;  // a support point may be any corner of a face
         const double depth = depth_along(A, B, apart.normal);
         if (!(depth <= out.depth + slack)) break;
-        const bool settled = length(apart.normal - out.normal) <= 8 * kEpsilon;
+        const double turn = length(apart.normal - out.normal);
         out.normal = apart.normal, out.a = apart.a, out.b = apart.b - shift, out.depth = depth;
-        if (settled) break;
+        // The first turn makes up for the guess. Of those that follow each is about the same fraction of the one before.
+        const double left = i >= 2 && turn < last_turn ? turn * turn / (last_turn - turn) : turn;
+        if (turn <= 8 * kEpsilon || left <= kSettled) break;
+        last_turn = turn;
     }
     return out;
 }
 
-Overlap overlap_of(const Solid& A, const Solid& B)
+Overlap overlap_of(const Solid& A, const Solid& B, const Simplex& simplex)
 {
     const bool curved = A.curved() || B.curved();
     Vec3 n = normalized(B.center() - A.center());
     if (length_squared(n) == 0) n = {0, 0, 1};
     Polytope polytope(A, B);
-    const bool started = polytope.start();
+    const bool started = polytope.start(simplex);
     if (started) n = polytope.grow(curved ? 0.02 : 0);
-    Overlap out = refine(A, B, n);
+    Overlap out = refine(A, B, n, simplex);
     out.converged = started && polytope.converged();
     return out;
 }

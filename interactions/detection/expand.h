@@ -26,13 +26,13 @@ struct Overlap
 /// G. van den Bergen, Proximity queries and penetration depth computation on 3D game objects, GDC 2001. The polytope is also
 /// expanded if it does not contain the origin yet, so no enclosing simplex is needed to start with. For polyhedra the number of
 /// rounds is finite; the polytope has at most 128 points. A - B must have a volume. For curved cores the depth is found to
-/// within 2 %, and the direction is then refined.
-Overlap overlap_of(const Solid& A, const Solid& B);
+/// within 2 %, and the direction is then refined. `simplex`: where GJK ended, or no points.
+Overlap overlap_of(const Solid& A, const Solid& B, const Simplex& simplex);
 
 /// The least depth (or the largest gap: depth < 0) over the directions near n. If B is moved out by depth(n) + delta along n,
 /// the closest points of A and B give a new direction n; a fixed point of this iteration is a stationary depth. Where faces or
 /// edges meet, one round suffices. For curved surfaces the error shrinks by a factor of about depth / radius in each of at most
-/// 16 rounds.
-Overlap refine(const Solid& A, const Solid& B, const Vec3& n);
+/// 16 rounds. `simplex`: where GJK may begin, or no points.
+Overlap refine(const Solid& A, const Solid& B, const Vec3& n, const Simplex& simplex);
 
 }  // namespace plab::detection

@@ -72,25 +72,27 @@ bool try_tetrahedron(const Corners& s, Part& best)
     return inside;
 }
 
-/// Reduces the simplex to the vertices that span its point nearest to the origin.
-void reduce(Simplex& s)
+/// The point of the first corners that is nearest to the origin; true if these enclose the origin.
+bool find_nearest(const Corners& corners, std::size_t count, Part& best)
 {
-    Part best;
-    if (s.count == 1) offer(best, s.at[0].w, 1, {0}, {1});
-    if (s.count == 2) try_segment(s.at, 0, 1, best);
-    if (s.count == 3) try_triangle(s.at, 0, 1, 2, best);
-    if (s.count == 4 && try_tetrahedron(s.at, best))
+    if (count == 1) offer(best, corners[0].w, 1, {0}, {1});
+    if (count == 2) try_segment(corners, 0, 1, best);
+    if (count == 3) try_triangle(corners, 0, 1, 2, best);
+    return count == 4 && try_tetrahedron(corners, best);
+}
+
+/// Reduces the simplex to the corners on which its nearest point depends.
+void reduce_to(const Part& part, Simplex& s)
+{
+    std::array<Support, 3> kept;
+    s.nearest = part.p, s.nearest_a = {};
+    for (std::size_t i = 0; i < part.count; ++i)
     {
-        s.encloses = true, s.nearest = {};
-        return;
+        kept[i] = s.at[part.corner[i]];
+        s.nearest_a += part.weight[i] * kept[i].a;
     }
-    const Corners before = s.at;
-    s.count = best.count, s.nearest = best.p, s.nearest_a = {};
-    for (std::size_t i = 0; i < best.count; ++i)
-    {
-        s.at[i] = before[best.corner[i]];
-        s.nearest_a += best.weight[i] * s.at[i].a;
-    }
+    std::copy_n(kept.begin(), part.count, s.at.begin());
+    s.count = part.count;
 }
 
 bool holds(const Simplex& s, const Vec3& w)
@@ -148,8 +150,8 @@ private:
     Facelet face_a_, face_b_;
 };
 
-/// Alternating projections never increase the distance, but may converge slowly; a Newton step is taken where it does at least
-/// as well.
+/// Alternating projections never increase the distance, but may converge slowly; a Newton step is taken where it brings both points
+/// clearly nearer to a fixed point, or at least as near to one another as a projection does.
 ClosestPoints Polish::from(const Vec3& p_start) const
 {
     constexpr int kMost = 24;
@@ -158,13 +160,24 @@ ClosestPoints Polish::from(const Vec3& p_start) const
     for (int i = 0; i < kMost; ++i)
     {
         const Vec3 step = now.a.p - p;
-        if (length(step) <= 2 * kGjkEpsilon * scale_) break;
-        const Vec3 newton = solve_where_regular(Mat3::identity() - now.a.J * now.b.J, step);
-        const ClosestPoints ahead = closest_points_of(p + newton), plain = closest_points_of(now.a.p);
-        const bool better = is_finite(newton) && ahead.squared <= plain.squared;
-        p = better ? p + newton : now.a.p;
-        if (better && length(newton) <= 2 * kGjkEpsilon * scale_) break;
-        now = better ? ahead : plain;
+        const double residual = length(step);
+        if (residual <= 2 * kGjkEpsilon * scale_) break;
+        const Vec3 newton = solve_where_regular(Mat3::identity() - now.a.J * now.b.J, step), next = p + newton;
+        const ClosestPoints ahead = closest_points_of(next);
+        bool better = ahead.squared <= now.squared && length(ahead.a.p - next) <= 0.25 * residual;
+        if (!better)
+        {
+            const ClosestPoints plain = closest_points_of(now.a.p);
+            better = is_finite(newton) && ahead.squared <= plain.squared;
+            if (!better)
+            {
+                p = now.a.p, now = plain;
+                continue;
+            }
+        }
+        p = next;
+        if (length(newton) <= 2 * kGjkEpsilon * scale_) break;
+        now = ahead;
     }
     return now;
 }
@@ -182,6 +195,24 @@ Vec3 Polish::normal_of(const ClosestPoints& f) const
     }
     return normalized(across);
 }
+
+/// The closest points to which Newton's method leads from a point of A.
+NearestPair polished(const Solid& A, const Solid& B, const Simplex& simplex, const Vec3& from)
+{
+    const double scale = A.extent() + B.extent();
+    const Polish polish(A, B, simplex);
+    const ClosestPoints closest_points = polish.from(from);
+    NearestPair out;
+    out.a = closest_points.a.p, out.b = closest_points.b.p;
+    const double distance = std::sqrt(closest_points.squared);
+    if (closest_points.a.flat == 3 || closest_points.b.flat == 3 || distance <= 4 * kGjkEpsilon * scale) return out;
+    out.normal = polish.normal_of(closest_points);
+    out.gap = dot(out.normal, out.b - out.a);
+    out.apart = out.gap > 0;
+    const double proven = -dot(out.normal, support_of(A, B, out.normal).w);
+    out.proven = out.gap - proven <= 1e-14 * (scale + out.gap);
+    return out;
+}
 }  // namespace
 
 Support support_of(const Solid& A, const Solid& B, const Vec3& d)
@@ -190,55 +221,77 @@ Support support_of(const Solid& A, const Solid& B, const Vec3& d)
     return {a - b, a, b};
 }
 
-GjkResult gjk(const Solid& A, const Solid& B, double tolerance)
+Simplex Simplex::with_b_moved(const Vec3& by) const
 {
-    GjkResult out;
-    Simplex& s = out.simplex;
+    Simplex out = *this;
+    for (std::size_t i = 0; i < count; ++i) out.at[i].w -= by, out.at[i].b += by;
+    out.encloses = false, out.least = 0;
+    return out;
+}
+
+void gjk(const Solid& A, const Solid& B, const GjkGoal& goal, Simplex& s)
+{
     const double scale = A.extent() + B.extent();
-    Vec3 start = B.center() - A.center();
-    if (length_squared(start) == 0) start = {1, 0, 0};
-    s.at[0] = support_of(A, B, start), s.count = 1, s.nearest = s.at[0].w, s.nearest_a = s.at[0].a;
+    if (s.count == 0)
+    {
+        Vec3 start = B.center() - A.center();
+        if (length_squared(start) == 0) start = {1, 0, 0};
+        s.at[0] = support_of(A, B, start), s.count = 1;
+    }
+    Part nearest;
+    s.encloses = find_nearest(s.at, s.count, nearest);
+    if (s.encloses) return;
+    reduce_to(nearest, s);
     for (int i = 0; i < kMostRounds; ++i)
     {
         const double distance = length(s.nearest);
         if (distance <= 4 * kGjkEpsilon * scale)
         {
             s.encloses = true;
-            return out;
+            return;
         }
         const Support next = support_of(A, B, -s.nearest);
-        const double gain = distance - dot(s.nearest, next.w) / distance;
-        if (gain <= std::max(tolerance, kGjkEpsilon * distance) || holds(s, next.w)) return out;
-        const Simplex before = s;
-        s.at[s.count++] = next;
-        reduce(s);
-        if (s.encloses) return out;
-        if (!(length_squared(s.nearest) < distance * distance))
+        const double proven = dot(s.nearest, next.w) / distance, gain = distance - proven;
+        s.least = std::max(s.least, proven);
+        if (s.least > goal.beyond || gain <= std::max(goal.tolerance, kGjkEpsilon * distance) || holds(s, next.w)) return;
+        if (s.least > 0 && gain <= goal.tolerance_apart) return;
+        s.at[s.count] = next;
+        nearest = {};
+        s.encloses = find_nearest(s.at, s.count + 1, nearest);
+        if (s.encloses)
         {
-            s = before;
-            return out;
+            ++s.count;
+            return;
         }
+        if (!(nearest.squared < distance * distance)) return;
+        reduce_to(nearest, s);
     }
-    out.converged = false;
-    return out;
 }
 
-NearestPair nearest_pair(const Solid& A, const Solid& B)
+NearestPair nearest_pair(const Solid& A, const Solid& B, double beyond, Simplex& simplex, const Vec3* guess)
 {
+    if (guess)
+        if (const NearestPair near = polished(A, B, simplex, *guess); near.apart && near.proven) return near;
+    // Newton's method needs a start that is near enough, which depends on the shapes; the last tolerance is small enough for all.
+    constexpr std::array<double, 3> kRough{1e-3, 1e-5, 1e-7};
     const double scale = A.extent() + B.extent();
     const bool curved = A.curved() || B.curved();
-    const GjkResult found = gjk(A, B, (curved ? 1e-7 : 2 * kGjkEpsilon) * scale);
+    GjkGoal goal{(curved ? kRough.back() : 2 * kGjkEpsilon) * scale, 0, beyond};
     NearestPair out;
-    if (found.simplex.encloses) return out;
-
-    const Polish polish(A, B, found.simplex);
-    const ClosestPoints closest_points = polish.from(found.simplex.nearest_a);
-    out.a = closest_points.a.p, out.b = closest_points.b.p;
-    const double distance = std::sqrt(closest_points.squared);
-    if (closest_points.a.flat == 3 || closest_points.b.flat == 3 || distance <= 4 * kGjkEpsilon * scale) return out;
-    out.normal = polish.normal_of(closest_points);
-    out.gap = dot(out.normal, out.b - out.a);
-    out.apart = out.gap > 0;
+    for (const double rough : kRough)
+    {
+        goal.tolerance_apart = curved ? rough * scale : 0;
+        gjk(A, B, goal, simplex);
+        if (simplex.encloses) return {};
+        if (simplex.least > beyond)
+        {
+            out = {};
+            out.apart = out.beyond = true, out.gap = simplex.least;
+            return out;
+        }
+        out = polished(A, B, simplex, simplex.nearest_a);
+        if (out.proven || !curved) break;
+    }
     return out;
 }
 

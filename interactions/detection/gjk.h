@@ -9,10 +9,13 @@
 /// the simplex encloses the origin.
 ///
 /// For polyhedra this is exact up to rounding. For curved shapes GJK only converges slowly, and the direction between two close
-/// points loses digits. nearest_pair() therefore polishes the result: it solves p = c_A(c_B(p)) by Newton's method, where c_A
-/// and c_B map a point to the closest point of A and of B (Solid::closest_point), with analytic derivatives. The normal is then
-/// taken from the features that meet.
+/// points loses digits. nearest_pair() therefore lets GJK find only roughly where they are, and polishes the result: it solves
+/// p = c_A(c_B(p)) by Newton's method, where c_A and c_B map a point to the closest point of A and of B (Solid::closest_point), with
+/// analytic derivatives. The normal is then taken from the features that meet. A support along it proves the gap; if it does not, GJK
+/// goes on with a smaller tolerance.
 #pragma once
+
+#include <cmath>
 
 #include "solid.h"
 
@@ -33,19 +36,26 @@ struct Simplex
     std::size_t count = 0;
     Vec3 nearest;           ///< point of the simplex nearest to the origin
     Vec3 nearest_a;         ///< the corresponding point of A
+    double least = 0;       ///< m: the distance is proven to be at least this
     bool encloses = false;  ///< the origin is inside, so the cores overlap
+
+    /// The same points of the cores after B has moved.
+    Simplex with_b_moved(const Vec3& by) const;
+};
+
+/// When gjk() has found out enough, m.
+struct GjkGoal
+{
+    double tolerance = 0;        ///< the distance is known to this
+    double tolerance_apart = 0;  ///< the same, if the cores are proven to be apart
+    double beyond = HUGE_VAL;    ///< the distance is proven to be larger
 };
 
 /// E. Gilbert, D. Johnson, S. Keerthi, A fast procedure for computing the distance between complex objects, IEEE J. Robotics and
 /// Automation 4(2), 1988. The nearest point of the simplex is found by trying all its vertices, edges and faces, which is robust
-/// for nearly degenerate simplices. Stops when the distance is known to `tolerance` (m), when rounding prevents progress, or
-/// after 96 rounds (`converged` is then false).
-struct GjkResult
-{
-    Simplex simplex;
-    bool converged = true;
-};
-GjkResult gjk(const Solid& A, const Solid& B, double tolerance);
+/// for nearly degenerate simplices. Goes on from the given simplex, or begins if that has no points, until a goal is reached, rounding
+/// prevents progress, or 96 rounds have been made.
+void gjk(const Solid& A, const Solid& B, const GjkGoal& goal, Simplex& simplex);
 
 /// The closest points of two separated cores: the result of gjk, polished by Newton's method on the fixed point p = c_A(c_B(p))
 /// down to rounding.
@@ -54,8 +64,13 @@ struct NearestPair
     Vec3 a, b;    ///< closest points on the cores
     Vec3 normal;  ///< unit, from a to b; from the features (a face, two edges) where these define one, hence accurate for any gap
     double gap = 0;
-    bool apart = false;  ///< false: the cores touch or overlap, and the other fields are not set
+    bool apart = false;   ///< false: the cores touch or overlap, and the fields above are not set
+    bool beyond = false;  ///< the gap is larger than asked for: `gap` is a lower bound, and the points and the normal are not set
+    bool proven = false;  ///< planes perpendicular to the normal separate the cores by the gap
 };
-NearestPair nearest_pair(const Solid& A, const Solid& B);
+/// `beyond`, m: cores with a larger gap only need a proof that they are apart by more. `simplex`: where to begin (no points: anywhere), and
+/// then where GJK ended. `guess`: a point near the closest one of A, where the simplex has the corners that meet; GJK then runs only if
+/// this does not lead to closest points that are proven.
+NearestPair nearest_pair(const Solid& A, const Solid& B, double beyond, Simplex& simplex, const Vec3* guess = nullptr);
 
 }  // namespace plab::detection

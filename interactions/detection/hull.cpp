@@ -19,6 +19,7 @@ void find_bounds(Hull& hull)
             hull.lower[k] = std::min(hull.lower[k], p[k]);
             hull.upper[k] = std::max(hull.upper[k], p[k]);
         }
+    for (const Vec3& p : hull.vertices) hull.extent = std::max(hull.extent, length(p - hull.center));
 }
 
 void find_edges(Hull& hull)
@@ -94,10 +95,12 @@ Result<Hull> make_hull(std::span<const Vec3> points)
 {
     auto convex = make_convex_hull(points);
     if (!convex) return convex.error();
-    Hull hull{convex.take(), {}, {}, {}, {}, {}, {}, {}};
+    Hull hull;
+    static_cast<ConvexHull&>(hull) = convex.take();
     find_bounds(hull);
     find_edges(hull);
     find_polygons(hull);
+    hull.vertex_columns = PointColumns(hull.vertices), hull.loop_normal_columns = PointColumns(hull.loop_normals);
     return hull;
 }
 

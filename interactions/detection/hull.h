@@ -2,6 +2,7 @@
 #pragma once
 
 #include "plab/convex_hull.h"
+#include "point_columns.h"
 
 namespace plab::detection
 {
@@ -15,6 +16,8 @@ struct Hull : ConvexHull
     std::vector<Vec3> loop_normals;
     Vec3 lower, upper;  ///< bounds, m
     Vec3 center;        ///< mean of the vertices, m; it is inside
+    double extent = 0;  ///< m: the largest distance of a vertex from the centre
+    PointColumns vertex_columns, loop_normal_columns;
 };
 
 Result<Hull> make_hull(std::span<const Vec3> points);

@@ -67,7 +67,7 @@ void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, cons
     if (length_squared(B.center() - A.center()) > bounding_distance * bounding_distance) return;
     if (a.kind() == Sphere) return add_nearest(separation_of(A, B), out);
     if (a.kind() == Box && b.kind() == Box) return box_box(A, B, out);
-    add_manifold(A, B, separation_of(A, B), out);
+    add_manifold(A, B, separation_of(A, B, std::max(0.0, out.margin())), out);
 }
 }  // namespace
 

@@ -135,9 +135,9 @@ Separation point_solid(const Solid& P, const Solid& S)
     return {outside - P.radius(), q - P.radius() * n, nearest, -n};
 }
 
-Separation of_overlap(const Solid& A, const Solid& B)
+Separation of_overlap(const Solid& A, const Solid& B, const Simplex& simplex)
 {
-    Overlap o = overlap_of(A, B);
+    Overlap o = overlap_of(A, B, simplex);
     if (A.core() == Core::Box && B.core() == Core::Box)
     {
         // The separating axis is exact; the polytope supplies the points.
@@ -147,22 +147,21 @@ Separation of_overlap(const Solid& A, const Solid& B)
     }
     return {-o.depth, o.a, o.b, o.normal};
 }
-/// Checks the closest points: the gap between two parallel planes that separate the solids is a lower bound of the distance, and
-/// closest points are exact if the planes perpendicular to their normal reach it. Where the gap is so small that they do not,
-/// the direction is searched for with B moved further away.
-Separation of_gap(const Solid& A, const Solid& B, const NearestPair& near)
+/// The gap between two parallel planes that separate the solids is a lower bound of the distance, and closest points are exact if the
+/// planes perpendicular to their normal reach it. Where the gap is so small that they do not, the direction is searched for with B moved
+/// further away.
+Separation of_gap(const Solid& A, const Solid& B, const NearestPair& near, const Simplex& simplex)
 {
-    const auto gap_along = [&](const Vec3& n) { return -dot(n, support_of(A, B, n).w); };
+    if (near.proven) return {near.gap, near.a, near.b, near.normal};
     const double enough = 1e-14 * (A.extent() + B.extent() + near.gap);
-    if (near.gap - gap_along(near.normal) <= enough) return {near.gap, near.a, near.b, near.normal};
-    Overlap best = refine(A, B, near.normal);
+    Overlap best = refine(A, B, near.normal, simplex);
     if (near.gap + best.depth > enough)
-        if (const Overlap other = overlap_of(A, B); other.depth < best.depth) best = other;
+        if (const Overlap other = overlap_of(A, B, {}); other.depth < best.depth) best = other;
     return {-best.depth, best.a, best.b, best.normal};
 }
 }  // namespace
 
-Separation separation_of(const Solid& A, const Solid& B)
+Separation separation_of(const Solid& A, const Solid& B, double beyond)
 {
     const bool line_a = A.core() <= Core::Segment, line_b = B.core() <= Core::Segment;
     if (A.core() == Core::Point && B.core() == Core::Point) return of_points(A.pose().p, A.radius(), B.pose().p, B.radius(), kNoDirection);
@@ -172,12 +171,14 @@ Separation separation_of(const Solid& A, const Solid& B)
         return of_points(A.pose().p, A.radius(), closest.p, B.radius(), any_perpendicular(B.axis(2)), closest.axis);
     }
     if (line_a && line_b)
-        return A.core() == Core::Segment && B.core() == Core::Segment ? segment_segment(A, B) : flipped(separation_of(B, A));
+        return A.core() == Core::Segment && B.core() == Core::Segment ? segment_segment(A, B) : flipped(separation_of(B, A, beyond));
     if (A.core() == Core::Point) return point_solid(A, B);
     if (B.core() == Core::Point) return flipped(point_solid(B, A));
 
-    const NearestPair near = nearest_pair(A, B);
-    Separation s = near.apart ? of_gap(A, B, near) : of_overlap(A, B);
+    Simplex simplex;
+    const NearestPair near = nearest_pair(A, B, beyond + A.radius() + B.radius(), simplex);
+    if (near.beyond) return {near.gap - (A.radius() + B.radius()), {}, {}, {}};
+    Separation s = near.apart ? of_gap(A, B, near, simplex) : of_overlap(A, B, simplex);
     s.gap -= A.radius() + B.radius();
     s.point_a += A.radius() * s.normal, s.point_b -= B.radius() * s.normal;
     return s;

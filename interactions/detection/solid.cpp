@@ -7,16 +7,8 @@ namespace plab::detection
 {
 namespace
 {
-Mat3 turned(const Mat3& R, const Mat3& local) { return R * local * transposed(R); }
-
-Vec3 furthest(const Hull& hull, const Vec3& d_S)
-{
-    const Vec3* best = hull.vertices.data();
-    double most = dot(d_S, *best);
-    for (const Vec3& p : hull.vertices)
-        if (const double m = dot(d_S, p); m > most) most = m, best = &p;
-    return *best;
-}
+/// The projection onto the plane perpendicular to n.
+Mat3 across(const Vec3& n) { return Mat3::identity() - outer(n, n); }
 
 ClosestPoint closest_point_on_edge(const Vec3& q, const Vec3& a, const Vec3& b)
 {
@@ -48,7 +40,7 @@ Solid::Solid(const Collider& collider, const Pose& X) : size_(collider.size()), 
             break;
         case ColliderKind::Hull:
             core_ = Core::Hull, hull_ = &collider.hull(), center_ = X * hull_->center;
-            extent_ = length(hull_->upper - hull_->lower);
+            extent_ = hull_->extent;
             break;
         case ColliderKind::None:
         case ColliderKind::Plane:
@@ -91,7 +83,7 @@ Vec3 Solid::support(const Vec3& d) const
             break;
         }
         case Core::Hull:
-            p = furthest(*hull_, d_S);
+            p = hull_->vertices[hull_->vertex_columns.furthest(d_S).index];
             break;
         case Core::Point:
             break;
@@ -128,7 +120,7 @@ ClosestPoint Solid::closest_point_on_segment(const Vec3& q) const
 ClosestPoint Solid::closest_point_on_box(const Vec3& q) const
 {
     const Vec3 l = to_local(q);
-    Vec3 p, free;
+    Vec3 p;
     int flat = 0, clamped = 0, open = 0;
     for (int k = 0; k < 3; ++k)
     {
@@ -136,32 +128,35 @@ ClosestPoint Solid::closest_point_on_box(const Vec3& q) const
         if (std::fabs(l[k]) >= size_[k])
             clamped = k;
         else
-            free[k] = 1, ++flat, open = k;
+            ++flat, open = k;
     }
-    ClosestPoint out{from_local(p), turned(R_, Mat3::diagonal(free.x, free.y, free.z)), flat, {}};
-    if (flat == 1) out.axis = axis(open);
-    if (flat == 2) out.axis = axis(clamped) * (l[clamped] < 0 ? -1.0 : 1.0);
+    ClosestPoint out{from_local(p), {}, flat, {}};
+    if (flat == 1) out.axis = axis(open), out.J = outer(out.axis, out.axis);
+    if (flat == 2) out.axis = axis(clamped) * (l[clamped] < 0 ? -1.0 : 1.0), out.J = across(out.axis);
+    if (flat == 3) out.J = Mat3::identity();
     return out;
 }
 
 ClosestPoint Solid::closest_point_on_cylinder(const Vec3& q) const
 {
     const Vec3 l = to_local(q);
-    const double across = std::sqrt(l.x * l.x + l.y * l.y);
-    const bool beyond_end = std::fabs(l.z) >= size_.z, beyond_side = across >= size_.x;
-    const Vec3 radial = across > 0 ? Vec3{l.x / across, l.y / across, 0} : Vec3{1, 0, 0}, around{-radial.y, radial.x, 0};
+    const double rho = std::sqrt(l.x * l.x + l.y * l.y);
+    const bool beyond_end = std::fabs(l.z) >= size_.z, beyond_side = rho >= size_.x;
+    const Vec3 radial = rho > 0 ? Vec3{l.x / rho, l.y / rho, 0} : Vec3{1, 0, 0}, around{-radial.y, radial.x, 0};
     const double z = beyond_end ? std::copysign(size_.z, l.z) : l.z;
     const Vec3 p = beyond_side ? Vec3{size_.x * radial.x, size_.x * radial.y, z} : Vec3{l.x, l.y, z};
-    Mat3 J;
+    ClosestPoint out{from_local(p), Mat3::identity(), 3, {}};
     if (beyond_side)
-        J = outer(around, around) * (size_.x / across);
-    else
-        J = Mat3::diagonal(1, 1, 0);
-    if (!beyond_end) J(2, 2) = 1;
-    ClosestPoint out{from_local(p), turned(R_, J), 3, {}};
-    if (beyond_side && beyond_end) out.flat = 1, out.axis = from_local_direction(around);
-    if (beyond_side && !beyond_end) out.flat = 2, out.axis = from_local_direction(radial);
-    if (!beyond_side && beyond_end) out.flat = 2, out.axis = axis(2) * (l.z < 0 ? -1.0 : 1.0);
+    {
+        const Vec3 tangent = from_local_direction(around);
+        out.J = outer(tangent, tangent) * (size_.x / rho);
+        if (beyond_end)
+            out.flat = 1, out.axis = tangent;
+        else
+            out.flat = 2, out.axis = from_local_direction(radial), out.J = out.J + outer(axis(2), axis(2));
+    }
+    else if (beyond_end)
+        out.flat = 2, out.axis = axis(2) * (l.z < 0 ? -1.0 : 1.0), out.J = across(out.axis);
     return out;
 }
 

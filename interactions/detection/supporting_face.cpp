@@ -78,12 +78,8 @@ SupportingFace supporting_cylinder_face(const Solid& c, const Vec3& d, double le
 /// The polygon of a hull whose normal is nearest to d; the number of polygons if none is near enough.
 std::size_t find_polygon(const Hull& hull, const Vec3& d_S, double least_cosine)
 {
-    std::size_t best = hull.loop_normals.size();
-    double most = least_cosine;
-    for (std::size_t i = 0; i < hull.loop_normals.size(); ++i)
-        if (const double c = dot(hull.loop_normals[i], d_S); c >= most && (best == hull.loop_normals.size() || c > most))
-            most = c, best = i;
-    return best;
+    const PointColumns::Furthest most = hull.loop_normal_columns.furthest(d_S);
+    return most.along >= least_cosine ? most.index : hull.loop_normals.size();
 }
 
 SupportingFace hull_face(const Solid& solid, std::size_t polygon, std::span<FaceCorner> room)
@@ -120,8 +116,7 @@ SupportingFace supporting_hull_face(const Solid& solid, const Vec3& d, double le
         const double height = dot(d_S, hull.vertices[e[0]]) + dot(d_S, hull.vertices[e[1]]);
         if (height > highest) highest = height, best = &e;
     }
-    double top = -HUGE_VAL;
-    for (const Vec3& p : hull.vertices) top = std::max(top, dot(d_S, p));
+    const double top = hull.vertex_columns.furthest(d_S).along;
     const bool at_top = best && std::max(dot(d_S, hull.vertices[(*best)[0]]), dot(d_S, hull.vertices[(*best)[1]])) >= top;
     if (!at_top) return corner_of(solid);
     return line_of(solid, room, solid.from_local(hull.vertices[(*best)[0]]), (*best)[0], solid.from_local(hull.vertices[(*best)[1]]),

@@ -29,17 +29,20 @@ export function previewCard(reply, wanted) {
         row('largest error', number(without.largest_error), number(other.largest_error)))));
 }
 
+// What was not measured is null, and stays so in sums.
+const minus = (a, b) => (a === null || b === null ? null : a - b);
+const size = (v) => (v.includes(null) ? null : Math.hypot(...v));
+
 function proof(report) {
-  const size = (v) => Math.hypot(...v);
   const { with_old: old, with_new: now } = report;
-  const difference = old.momentum.map((value, i) => now.momentum[i] - value);
+  const difference = old.momentum.map((value, i) => minus(now.momentum[i], value));
   const row = (name, a, b, c, unit) => h('tr', {}, h('th', { scope: 'row' }, name, h('small', {}, ` ${unit}`)), h('td', {}, number(a, 5)), h('td', {}, number(b, 5)), h('td', {}, number(c, 3)));
   return h('table', {}, h('caption', {}, `First step after it; energy before it ${number(report.energy_before, 6)} J`),
     h('thead', {}, h('tr', {}, h('td'), h('th', { scope: 'col' }, 'old'), h('th', { scope: 'col' }, 'new'), h('th', { scope: 'col' }, 'jump'))),
     h('tbody', {},
-      row('energy', old.energy, now.energy, now.energy - old.energy, 'J'),
+      row('energy', old.energy, now.energy, minus(now.energy, old.energy), 'J'),
       row('momentum', size(old.momentum), size(now.momentum), size(difference), 'N s'),
-      row('error', old.error, now.error, now.error - old.error, ''),
+      row('error', old.error, now.error, minus(now.error, old.error), ''),
       h('tr', {}, h('th', { scope: 'row' }, 'cost'), ...[old.cost_ns, now.cost_ns].map((cost) => h('td', {}, duration(cost))), h('td', {}, old.cost_ns > 0 && now.cost_ns > 0 ? `${number((100 * (now.cost_ns - old.cost_ns)) / old.cost_ns, 2)} %` : '–'))));
 }
 
