@@ -246,6 +246,7 @@ double depth_along(const Solid& A, const Solid& B, const Vec3& n) { return dot(n
 Overlap refine(const Solid& A, const Solid& B, const Vec3& n, const Simplex& simplex)
 {
     constexpr int kMost = 16;
+    constexpr double kRough = 1e-6;     // rad
     constexpr double kSettled = 1e-11;  // rad; the error of the depth is the square of that of the normal
     const double scale = A.extent() + B.extent(), slack = 8 * kEpsilon * scale;
     Simplex at = simplex;
@@ -259,7 +260,10 @@ Overlap refine(const Solid& A, const Solid& B, const Vec3& n, const Simplex& sim
     {
         const Vec3 shift = (out.depth + delta) * out.normal;
         at = at.with_b_moved(shift - moved_by), moved_by = shift;
-        const NearestPair apart = nearest_pair(A, moved(B, shift), HUGE_VAL, at, i > 0 ? &out.a : nullptr);
+        // As long as the direction still turns, its closest points need not be exact.
+        NearestPair apart;
+        if (i > 0 && last_turn > kRough) apart = nearest_pair_near(A, moved(B, shift), at, out.a);
+        if (!apart.apart) apart = nearest_pair(A, moved(B, shift), HUGE_VAL, at, i > 0 ? &out.a : nullptr);
         if (!apart.apart) break;
         if (i == 0) out.a = apart.a, out.b = apart.b - shift;  // a support point may be any corner of a face
         const double depth = depth_along(A, B, apart.normal);

@@ -73,4 +73,7 @@ struct NearestPair
 /// this does not lead to closest points that are proven.
 NearestPair nearest_pair(const Solid& A, const Solid& B, double beyond, Simplex& simplex, const Vec3* guess = nullptr);
 
+/// One step of Newton's method from the guess: `proven` says whether it was enough.
+NearestPair nearest_pair_near(const Solid& A, const Solid& B, const Simplex& simplex, const Vec3& guess);
+
 }  // namespace plab::detection

@@ -8,15 +8,16 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "detection/collider.h"
 #include "detection/narrow.h"
+#include "support/random_poses.h"
 
 using namespace plab;
 using namespace plab::detection;
+using namespace plab::test;
 
 namespace
 {
@@ -24,35 +25,12 @@ namespace
 constexpr double kSize = 0.2, kMargin = 1e-3;  // m
 constexpr int kPoses = 300, kRounds = 9;
 
-class Chance
-{
-public:
-    double between(double low, double high) { return low + (high - low) * (static_cast<double>(engine_()) / 4294967295.0); }
-    Vec3 direction()
-    {
-        for (;;)
-        {
-            const double x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
-            if (const Vec3 v{x, y, z}; length(v) < 1 && length(v) > 0.1) return normalized(v);
-        }
-    }
-    Quat rotation()
-    {
-        const Vec3 axis = direction();
-        const double half = between(0, 3.1);
-        return {std::cos(half), std::sin(half) * axis.x, std::sin(half) * axis.y, std::sin(half) * axis.z};
-    }
-
-private:
-    std::mt19937 engine_{7};
-};
-
 Collider hull_of(int points)
 {
-    Chance chance;
+    std::uint64_t seed = 7;
     Geometry g;
     g.kind = GeometryKind::Mesh, g.hull_collides = true;
-    for (int i = 0; i < points; ++i) g.vertices.push_back(chance.direction() * (0.5 * kSize));
+    for (int i = 0; i < points; ++i) g.vertices.push_back(normalized(random_vector(seed, 1)) * (0.5 * kSize));
     return Collider(g);
 }
 
@@ -75,11 +53,11 @@ struct Placed
 };
 
 /// Moves b along n until the gap is as wanted, by bisection.
-Placed placed(const Form& a, const Form& b, double gap, Chance& chance)
+Placed placed(const Form& a, const Form& b, double gap, std::uint64_t& seed)
 {
     Placed out;
-    out.a.q = chance.rotation(), out.b.q = chance.rotation();
-    const Vec3 n = chance.direction();
+    out.a.q = random_rotation(seed), out.b.q = random_rotation(seed);
+    const Vec3 n = normalized(random_vector(seed, 1));
     double near = 0, far = 4 * kSize;
     for (int i = 0; i < 60; ++i)
     {
@@ -100,9 +78,9 @@ double seconds()
 /// ns for each pair.
 double cost(const Form& a, const Form& b, double gap)
 {
-    Chance chance;
+    std::uint64_t seed = 11;
     std::vector<Placed> pairs;
-    for (int i = 0; i < kPoses; ++i) pairs.push_back(placed(a, b, gap, chance));
+    for (int i = 0; i < kPoses; ++i) pairs.push_back(placed(a, b, gap, seed));
     std::vector<double> rounds;
     ContactPoints points(kMargin);
     std::size_t sum = 0;

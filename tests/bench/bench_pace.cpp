@@ -17,12 +17,13 @@
 #include "figures/axes.h"
 #include "figures/drawing.h"
 #include "model/compile.h"
-#include "plab/random.h"
 #include "plugins/library.h"
 #include "simulation/simulation.h"
+#include "support/random_poses.h"
 #include "support/text.h"
 
 using namespace plab;
+using test::random_rotation;
 using test::text;
 
 namespace
@@ -238,6 +239,32 @@ std::string newcomers_heap(int n)
     return scene("1/240", out + component("contact", "CDetection/ODE", "between=\"*\" response.friction=\"0.5\""));
 }
 
+/// Solids of one shape that fall in random orientations into one heap, 0.2 m large. `shape`: type and parameters.
+std::string tumbled(const char* type, const std::string& parameters, int n)
+{
+    std::string out = kGravity + kGround + component("s", type, parameters);
+    std::uint64_t random = 6;
+    const int side = std::max(3, static_cast<int>(std::lround(std::sqrt(n / 10.0))));
+    const auto jitter = [&] { return 0.02 * (2 * next_uniform(random) - 1); };
+    for (int i = 0; i < n; ++i)
+    {
+        const double x = jitter(), y = jitter();
+        const Quat q = random_rotation(random);
+        out += body(i, {0.32 * (i % side) + x, 0.32 * (i / side % side) + y, 0.3 + 0.32 * (i / (side * side))},
+                    "shape=\"s\" mass=\"1\" orientation=\"" + text(q) + "\"");
+    }
+    return scene("1/60", out + heap_contact(0.5));
+}
+
+/// Points on a ball of 0.26 m.
+std::string twenty_corners()
+{
+    std::string out;
+    std::uint64_t random = 7;
+    for (int i = 0; i < 20; ++i) out += (i > 0 ? " " : "") + text(rotate(random_rotation(random), {0.13, 0, 0}));
+    return out;
+}
+
 /// Balls far from one another that bounce at random times, each impact located. `above`: m, of the lowest height.
 std::string dropped_balls(int n, double above)
 {
@@ -335,6 +362,11 @@ void scenes_table()
     row("wall of 1000 bricks", "1/60", 1.0 / 60, wall(40, 25), 120);
     row("pile of 5000 cubes", "1/60", 1.0 / 60, pile(5000), 120);
     row("10,000 balls", "1/60", 1.0 / 60, balls(10000), 120);
+    row("1000 tumbled boxes", "1/60", 1.0 / 60, tumbled("Shape/Box", "half_extents=\"0.1 0.1 0.1\"", 1000), 120);
+    row("1000 tumbled capsules", "1/60", 1.0 / 60, tumbled("Shape/Capsule", "radius=\"0.07\" length=\"0.15\"", 1000), 120);
+    row("1000 tumbled cylinders", "1/60", 1.0 / 60, tumbled("Shape/Cylinder", "radius=\"0.1\" height=\"0.2\"", 1000), 120);
+    row("1000 tumbled hulls of 20 corners", "1/60", 1.0 / 60, tumbled("Shape/ConvexHull", "points=\"" + twenty_corners() + "\"", 1000),
+        120);
     row("200 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(200), 480);
     row("1000 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(1000), 480);
 }

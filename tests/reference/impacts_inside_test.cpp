@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "impacts.h"
-#include "plab/random.h"
+#include "support/random_poses.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -10,8 +10,6 @@ using namespace plab::test;
 namespace
 {
 const char* const kCertifying[] = {"LocalRoot", "ConservativeAdvancement"};
-
-double uniform(std::uint64_t& seed, double low, double high) { return low + (high - low) * next_uniform(seed); }
 }  // namespace
 
 TEST_CASE("C10: a bullet of 1 mm at 1000 m/s meets paper of 0.1 mm, 16.7 m per step")

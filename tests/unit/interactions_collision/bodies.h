@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "detection/ode_detection.h"
-#include "plab/random.h"
 #include "response/impulse.h"
 #include "support/one_row.h"
+#include "support/random_poses.h"
 
 namespace plab::test
 {
@@ -122,17 +122,6 @@ inline Impact respond(Bodies& bodies, std::vector<Contact>& contacts, ImpactMode
     return impact;
 }
 
-inline double uniform(std::uint64_t& s, double lo, double hi) { return lo + (hi - lo) * next_uniform(s); }
-inline Vec3 random_vector(std::uint64_t& s, double size)
-{
-    const double x = uniform(s, -size, size), y = uniform(s, -size, size), z = uniform(s, -size, size);
-    return {x, y, z};
-}
-inline Quat random_rotation(std::uint64_t& s)
-{
-    const Vec3 v = random_vector(s, 1);
-    return normalized(Quat{uniform(s, -1, 1), v.x, v.y, v.z});
-}
 inline double total_energy(const Bodies& b)
 {
     double e = 0;

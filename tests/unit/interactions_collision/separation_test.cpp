@@ -5,6 +5,8 @@
 #include <array>
 
 #include "bodies.h"
+#include "detection/point_columns.h"
+#include "detection/separation.h"
 
 using namespace plab;
 using namespace plab::detection;
@@ -172,6 +174,60 @@ TEST_CASE("nearly touching, by a millionth of the size on either side: the gap p
                 }
             }
             CHECK(jump < 1e-11);  // most pairs: 1e-15
+        }
+}
+
+TEST_CASE("a pair that is further apart than asked for has a lower bound of its gap; any other has the gap itself")
+{
+    std::uint64_t seed = 5;
+    int beyond = 0, within = 0;
+    for (std::size_t i = 1; i < kNames.size(); ++i)
+        for (std::size_t j = i; j < kNames.size(); ++j)
+            for (int k = 0; k < 100; ++k)
+            {
+                const Collider a = random_solid(i, seed, 1), b = random_solid(j, seed, 1);
+                const Solid A(a, {random_vector(seed, 0.5), random_rotation(seed)}),
+                    B(b, {random_vector(seed, 1.5), random_rotation(seed)});
+                const Separation exact = separation_of(A, B);
+                const double limit = uniform(seed, 0, 0.5);
+                const Separation s = separation_of(A, B, limit);
+                CAPTURE(std::string(kNames[i]));
+                CAPTURE(std::string(kNames[j]));
+                if (exact.gap > limit)
+                {
+                    ++beyond;
+                    CHECK(s.gap > limit);
+                    CHECK(s.gap <= exact.gap + 1e-14);
+                    continue;
+                }
+                ++within;
+                CHECK(s.gap == exact.gap);
+                CHECK(s.normal == exact.normal);
+            }
+    CHECK(beyond > 200);
+    CHECK(within > 200);
+}
+
+TEST_CASE("the furthest of many points is the first one of those that are furthest")
+{
+    std::uint64_t seed = 3;
+    for (std::size_t count = 1; count < 70; ++count)
+        for (int k = 0; k < 20; ++k)
+        {
+            std::vector<Vec3> points;
+            // Few different numbers, so that several points are furthest.
+            for (std::size_t i = 0; i < count; ++i)
+            {
+                const Vec3 v = random_vector(seed, 3);
+                points.push_back({std::round(v.x), std::round(v.y), std::round(v.z)});
+            }
+            const Vec3 v = random_vector(seed, 2), d{std::round(v.x), std::round(v.y), std::round(v.z)};
+            std::size_t want = 0;
+            for (std::size_t i = 1; i < count; ++i)
+                if (dot(d, points[i]) > dot(d, points[want])) want = i;
+            const PointColumns::Furthest found = PointColumns(points).furthest(d);
+            CHECK(found.index == want);
+            CHECK(found.along == dot(d, points[want]));
         }
 }
 

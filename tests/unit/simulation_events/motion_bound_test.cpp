@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plab/random.h"
 #include "plab/rotation.h"
 #include "simulation/events/motion_bound.h"
+#include "support/random_poses.h"
 
 using namespace plab;
 using namespace plab::simulation;
+using namespace plab::test;
 
 namespace
 {
@@ -68,12 +69,6 @@ Geometry box(const Vec3& h)
     g.kind = GeometryKind::Box, g.size = h;
     return g;
 }
-double uniform(std::uint64_t& seed, double low, double high) { return low + (high - low) * next_uniform(seed); }
-Vec3 anywhere(std::uint64_t& seed, double size)
-{
-    const double x = uniform(seed, -size, size), y = uniform(seed, -size, size), z = uniform(seed, -size, size);
-    return {x, y, z};
-}
 
 }  // namespace
 
@@ -103,9 +98,9 @@ TEST_CASE("for any spinning, flying and falling bodies, no gap along a normal cl
     for (int round = 0; round < 400; ++round)
     {
         Pair p;
-        p.add(box({0.3, 0.1, 0.2}), {}, anywhere(seed, 1), anywhere(seed, round % 2 == 0 ? 3 : 30), {0, 0, -9.81});
-        p.add(round % 3 == 0 ? sphere(0.2) : box({0.2, 0.2, 0.1}), Vec3{uniform(seed, 0.6, 1), 0, 0}, anywhere(seed, 3), anywhere(seed, 3),
-              {});
+        p.add(box({0.3, 0.1, 0.2}), {}, random_vector(seed, 1), random_vector(seed, round % 2 == 0 ? 3 : 30), {0, 0, -9.81});
+        p.add(round % 3 == 0 ? sphere(0.2) : box({0.2, 0.2, 0.1}), Vec3{uniform(seed, 0.6, 1), 0, 0}, random_vector(seed, 3),
+              random_vector(seed, 3), {});
         const Vec3 n{1, 0, 0};
         const double T = 0.2, gap = p.width(n, 0);
         if (!(gap > 0)) continue;
