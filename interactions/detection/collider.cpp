@@ -81,8 +81,7 @@ bool Collider::built_from(const Geometry& g) const
     if (g.kind == GeometryKind::Compound) return g.parts == source_.parts;
     if (g.kind != GeometryKind::Mesh) return true;
     if (g.hull_collides != source_.hull_collides) return false;
-    if (surface_of(g) == Surface::Triangles) return g.vertices == source_.vertices && g.triangles == source_.triangles;
-    return !g.hull_collides || g.vertices == source_.vertices;
+    return !(g.hull_collides || surface_of(g) == Surface::Triangles) || g.same_mesh(source_);
 }
 
 Vec3 Collider::bound_half() const

@@ -1,9 +1,11 @@
 /// A triangle mesh as a surface to collide with: adjacency, sharp edges, and a bounding-box tree over the triangles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "plab/result.h"
@@ -91,7 +93,7 @@ inline double TriangleSurface::distance_squared(const Vec3& p, const Node& node)
     double sum = 0;
     for (int k = 0; k < 3; ++k)
     {
-        const double out = std::fmax(0.0, std::fmax(node.lower[k] - p[k], p[k] - node.upper[k]));
+        const double out = std::max(0.0, std::max(node.lower[k] - p[k], p[k] - node.upper[k]));
         sum += out * out;
     }
     return sum;
@@ -116,18 +118,27 @@ void TriangleSurface::visit_box(const Vec3& lower, const Vec3& upper, Visit&& vi
 template <class Limit, class Visit>
 void TriangleSurface::visit_near(const Vec3& center, Limit&& limit, Visit&& visit) const
 {
-    std::array<std::uint32_t, kDepth> stack{};
+    struct Open
+    {
+        std::uint32_t node;
+        double squared;  ///< m^2, of its distance
+    };
+    std::array<Open, kDepth> stack;
+    stack[0] = {0, distance_squared(center, nodes_[0])};
     std::size_t top = 1;
     while (top > 0)
     {
-        const Node& node = nodes_[stack[--top]];
+        const Open open = stack[--top];
+        const Node& node = nodes_[open.node];
         const double most = limit();
-        if (most < 0 || distance_squared(center, node) > most * most) continue;
+        if (most < 0 || open.squared > most * most) continue;
         for (std::uint32_t i = 0; i < node.count; ++i) visit(order_[node.first + i]);
         if (node.count > 0) continue;
-        const std::uint32_t left = node.first, right = left + 1;
-        const bool left_first = distance_squared(center, nodes_[left]) <= distance_squared(center, nodes_[right]);
-        stack[top++] = left_first ? right : left, stack[top++] = left_first ? left : right;
+        Open near{node.first, distance_squared(center, nodes_[node.first])};
+        Open far{node.first + 1, distance_squared(center, nodes_[node.first + 1])};
+        if (near.squared > far.squared) std::swap(near, far);
+        if (far.squared <= most * most) stack[top++] = far;
+        if (near.squared <= most * most) stack[top++] = near;
     }
 }
 

@@ -28,7 +28,7 @@ Result<void> prepare_compound(const StepContext& context, Row row, const Compoun
         geometry.parts.push_back(part.index);
         picture.append(picture_of(g));
     }
-    geometry.vertices = std::move(picture.vertices), geometry.triangles = std::move(picture.triangles);
+    geometry.set_mesh(std::move(picture.vertices), std::move(picture.triangles));
     shapes.geometry[context.facet_of_row[row]] = std::move(geometry);
     return {};
 }

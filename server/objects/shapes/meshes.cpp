@@ -68,8 +68,7 @@ Result<void> prepare_mesh(const StepContext& context, Row row, const MeshRows& m
     Geometry geometry;
     geometry.kind = GeometryKind::Mesh;
     geometry.pose = meshes.shape.pose(row);
-    geometry.vertices = vertices.take();
-    geometry.triangles = triangles.take();
+    geometry.set_mesh(vertices.take(), triangles.take());
     if (meshes.surface_collides[row])
         set_surface(geometry, Surface::Triangles);
     else
@@ -136,8 +135,8 @@ Result<void> prepare_convex_hull(const StepContext& context, Row row, const Conv
     Geometry geometry;
     geometry.kind = GeometryKind::Mesh;
     geometry.pose = hulls.shape.pose(row);
-    geometry.triangles = triangles_of(*hull);
-    geometry.vertices = std::move(hull->vertices);
+    std::vector<std::uint32_t> triangles = triangles_of(*hull);
+    geometry.set_mesh(std::move(hull->vertices), std::move(triangles));
     geometry.hull_collides = true;
     shapes.geometry[context.facet_of_row[row]] = std::move(geometry);
     return {};

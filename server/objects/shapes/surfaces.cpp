@@ -168,8 +168,7 @@ Result<void> prepare_height_field(const StepContext& context, Row row, const Hei
     Geometry geometry;
     geometry.kind = GeometryKind::Mesh;
     geometry.pose = fields.shape.pose(row);
-    geometry.vertices = points_of(row, fields);
-    geometry.triangles = triangles_of(columns, rows);
+    geometry.set_mesh(points_of(row, fields), triangles_of(columns, rows));
     set_surface(geometry, Surface::Triangles);
     shapes.geometry[context.facet_of_row[row]] = std::move(geometry);
     return {};

@@ -2,8 +2,11 @@
 /// component exists. The world owns the tables; phase functions get them const or not, as their signature states.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plab/ref.h"
@@ -147,6 +150,33 @@ struct Geometry
     std::vector<Vec3> vertices;            ///< mesh, in S, m
     std::vector<std::uint32_t> triangles;  ///< mesh: index triples, counter-clockwise seen from outside
     bool hull_collides = false;
+    /// What set_mesh() knows of vertices and triangles, so that a step need not go through them: a digest (0: not known), and bounds (m).
+    std::uint64_t mesh_digest = 0;
+    Vec3 mesh_lower, mesh_upper;
+
+    /// Sets vertices and triangles and what is known of them.
+    void set_mesh(std::vector<Vec3> new_vertices, std::vector<std::uint32_t> new_triangles)
+    {
+        vertices = std::move(new_vertices), triangles = std::move(new_triangles);
+        mesh_lower = mesh_upper = vertices.empty() ? Vec3{} : vertices.front();
+        std::uint64_t digest = 1;
+        const auto add = [&](std::uint64_t word) { digest = (digest ^ word) * 0x100000001b3ull, digest ^= digest >> 29; };
+        for (const Vec3& v : vertices)
+            for (int k = 0; k < 3; ++k)
+            {
+                add(std::bit_cast<std::uint64_t>(v[k]));
+                mesh_lower[k] = std::min(mesh_lower[k], v[k]), mesh_upper[k] = std::max(mesh_upper[k], v[k]);
+            }
+        for (const std::uint32_t corner : triangles) add(corner);
+        mesh_digest = digest == 0 ? 1 : digest;
+    }
+    /// Whether both have the same vertices and triangles.
+    bool same_mesh(const Geometry& other) const
+    {
+        if (vertices.size() != other.vertices.size() || triangles.size() != other.triangles.size()) return false;
+        if (mesh_digest != 0 && other.mesh_digest != 0) return mesh_digest == other.mesh_digest;
+        return vertices == other.vertices && triangles == other.triangles;
+    }
 };
 
 /// Shapes are shared by reference: several bodies may use one.

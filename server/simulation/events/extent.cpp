@@ -42,7 +42,15 @@ double largest_radius(const Geometry& g, const Shapes& shapes)
     return 0;
 }
 
-/// max of m . p over the points of a shape whose frame is at X.
+/// max of d . p over the points of a box.
+double support_of_box(const Vec3& lower, const Vec3& upper, const Vec3& d)
+{
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) sum += std::max(d[k] * lower[k], d[k] * upper[k]);
+    return sum;
+}
+
+/// max of m . p over the points of a shape whose frame is at X; of a surface, over the box around it.
 double support_of_shape(const Geometry& g, const Shapes& shapes, const Pose& X, const Vec3& m)
 {
     const double at = dot(m, X.p);
@@ -59,6 +67,9 @@ double support_of_shape(const Geometry& g, const Shapes& shapes, const Pose& X, 
             return at + std::fabs(l.z) * g.size.z + g.size.x * std::hypot(l.x, l.y);
         case GeometryKind::Mesh:
         {
+            // A surface may have a million vertices. The box around it is as good here: what is apart from the box is apart from the
+            // surface.
+            if (g.mesh_digest != 0 && surface_of(g) == Surface::Triangles) return at + support_of_box(g.mesh_lower, g.mesh_upper, l);
             double most = -kUnbounded;
             for (const Vec3& v : g.vertices) most = std::max(most, dot(l, v));
             return at + most;

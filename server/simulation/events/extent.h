@@ -26,7 +26,8 @@ struct BodyExtent : ShapeExtent
 };
 BodyExtent extent_of(const Bodies& bodies, const Shapes& shapes, std::uint32_t b);
 
-/// Support function: max over the points p of body b, in orientation q, of m . (p - C), in m. Not for planes.
+/// Support function: max over the points p of body b, in orientation q, of m . (p - C), in m. Not for planes. A surface of triangles counts
+/// as the box around it, so what this separates is apart.
 double support(const Bodies& bodies, const Shapes& shapes, std::uint32_t b, const Quat& q, const Vec3& m);
 
 /// The same for one of its shapes, or for all of them if `extent` is that of the whole body.
