@@ -96,7 +96,7 @@ std::optional<MjcfGeom> read_geom(const XmlElement& e, bool has_mass, MjcfSettin
     if (*kind != ShapeKind::Mesh && !mesh.empty()) document.lost(e, "a shape fitted to the mesh '" + mesh + "' is not carried over");
     if (*kind != ShapeKind::Mesh && !mesh.empty()) return {};
     RobotShape& shape = out.shape;
-    shape.kind = *kind, shape.where = e.where;
+    shape.kind = *kind, shape.where = e.where, shape.name = document.text(e, "name");
     shape.pose = settings.pose(e);
     if (!read_size(e, shape, document)) return {};
     if (shape.kind == ShapeKind::Mesh && !(shape.mesh = settings.mesh(mesh)))

@@ -27,7 +27,7 @@ public:
         RobotBody body;
         body.name = full_, body.where = e.where;
         body.weightless = !sdf_truth(e, "gravity", true, document_);
-        for (const char* const name : {"self_collide", "enable_wind", "kinematic"})
+        for (const char* const name : {"enable_wind", "kinematic"})
             if (sdf_truth(e, name, false, document_)) document_.lost(*find_child(e, name), "is not carried over");
         std::vector<RobotShape> seen, felt;
         std::vector<MassProperties> solids;

@@ -6,6 +6,7 @@
 
 #include "import/link_shapes.h"
 #include "import/mesh_file.h"
+#include "import/sdf_text.h"
 #include "import/urdf_joint.h"
 
 namespace plab::import
@@ -27,13 +28,16 @@ Pose read_origin(const XmlElement& parent, Document& document)
 class UrdfReader
 {
 public:
-    UrdfReader(const XmlElement& root, bool fixed_base, Document& document) : root_(root), fixed_base_(fixed_base), document_(document) {}
+    UrdfReader(const XmlElement& root, bool fixed_base, bool self_collide, Document& document)
+        : root_(root), fixed_base_(fixed_base), self_collide_(self_collide), document_(document)
+    {
+    }
 
     Robot read()
     {
         if (refuse_macros(root_)) return {};
         document_.list_attributes(root_, {"name", "version", "xmlns:xacro"});
-        document_.list_children(root_, {"link", "joint", "material"});
+        document_.list_children(root_, {"link", "joint", "material", "gazebo"});
         robot_.title = document_.text(root_, "name");
         for (const XmlElement& e : root_.children)
         {
@@ -41,6 +45,8 @@ public:
         }
         for (const XmlElement& e : root_.children)
             if (e.name == "link") read_link(e);
+        for (const XmlElement& e : root_.children)
+            if (e.name == "gazebo") read_gazebo(e);
         for (const XmlElement& e : root_.children)
             if (e.name == "joint") read_joint(e);
         if (links_.empty()) document_.error(root_, "has no <link>");
@@ -100,7 +106,7 @@ private:
         document_.list_children(e, {"inertial", "visual", "collision"});
         document_.list_repeated(e, {"visual", "collision"});
         Link link;
-        link.body.name = name, link.body.where = e.where;
+        link.body.name = name, link.body.where = e.where, link.body.self_collide = self_collide_;
         if (const XmlElement* const inertial = find_child(e, "inertial"))
             link.inertial = true, link.body.mass = read_inertial(*inertial, name);
         std::vector<RobotShape> seen, felt;
@@ -110,6 +116,21 @@ private:
         link.body.shapes = joined_shapes(std::move(seen), std::move(felt), name, document_);
         if (!links_.emplace(name, std::move(link)).second) return document_.error(e, "there are two links of this name");
         names_.push_back(name);
+    }
+
+    /// Gazebo's own extension, of a link or of the whole robot.
+    void read_gazebo(const XmlElement& e)
+    {
+        const std::string reference = document_.text(e, "reference");
+        const auto link = links_.find(reference);
+        const XmlElement* given = find_child(e, "selfCollide");
+        if (!given) given = find_child(e, "self_collide");
+        if (!given || (!reference.empty() && link == links_.end())) return document_.lost(e, "is not carried over");
+        document_.list_attributes(e, {"reference"});
+        document_.list_children(e, {"selfCollide", "self_collide"});
+        const bool collide = sdf_truth(e, given->name, false, document_);
+        for (auto& [name, one] : links_)
+            if (reference.empty() || name == reference) one.body.self_collide = one.body.self_collide || collide;
     }
 
     MassProperties read_inertial(const XmlElement& e, const std::string& link)
@@ -237,6 +258,7 @@ private:
         }
         else
             body.free = !fixed_base_ && !(body.name == "world" && !link.inertial);
+        robot_.base_collides = robot_.base_collides || body.self_collide;
         robot_.bodies.push_back(std::move(body));
     }
 
@@ -262,7 +284,7 @@ private:
     }
 
     const XmlElement& root_;
-    bool fixed_base_;
+    bool fixed_base_, self_collide_;
     Document& document_;
     Robot robot_;
     std::map<std::string, Vec3> materials_;
@@ -273,6 +295,9 @@ private:
 
 }  // namespace
 
-Robot read_urdf(const XmlElement& root, bool fixed_base, Document& document) { return UrdfReader(root, fixed_base, document).read(); }
+Robot read_urdf(const XmlElement& root, bool fixed_base, bool self_collide, Document& document)
+{
+    return UrdfReader(root, fixed_base, self_collide, document).read();
+}
 
 }  // namespace plab::import
