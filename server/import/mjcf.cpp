@@ -28,6 +28,7 @@ public:
         document_.list_children(root_, {"compiler", "option", "default", "asset", "worldbody", "contact", "equality", "actuator"});
         robot_.title = document_.text(root_, "model");
         robot_.step = settings_.step(), robot_.gravity = settings_.gravity(), robot_.base_collides = robot_.fixed_parents_collide = true;
+        robot_.surface_rule = SurfaceRule::MuJoCo;
         bool world = false;
         for (const XmlElement& e : root_.children)
         {
@@ -253,13 +254,25 @@ private:
         const bool exclude = e.name == "exclude";
         if (!exclude && e.name != "pair") return document_.lost(e, "is not carried over");
         const char *const first = exclude ? "body1" : "geom1", *const second = exclude ? "body2" : "geom2";
-        document_.list_attributes(e, {"name", "class", first, second});
+        document_.list_attributes(e, {"name", "class", first, second, exclude ? first : "friction"});
         if (!e.find_attribute(first) || !e.find_attribute(second))
             return document_.error(e, std::string("needs ") + first + " and " + second);
         if (exclude)
             robot_.exclusions.push_back({document_.text(e, first), document_.text(e, second), e.where});
         else if (settings_.collisions())
-            robot_.pairs.push_back({document_.text(e, first), document_.text(e, second), e.where});
+            read_pair(e);
+    }
+
+    void read_pair(const XmlElement& e)
+    {
+        CollidingPair pair{document_.text(e, "geom1"), document_.text(e, "geom2"), {}, e.where};
+        double friction[5] = {1, 1, 0, 0, 0};
+        const std::size_t given = document_.numbers(e, "friction", friction, 1);
+        if (friction[0] < 0) document_.error(e, "friction must not be negative");
+        if (given > 0) pair.friction = friction[0];
+        if (given > 2 || (given > 1 && friction[1] != friction[0]))
+            document_.lost(e, "friction: only the first number is carried over, that of sliding");
+        robot_.pairs.push_back(std::move(pair));
     }
 
     const XmlElement& root_;

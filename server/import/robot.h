@@ -3,6 +3,7 @@
 /// Frames: W the world, B a body, P its parent. Poses hold where all joints have the value `zero`.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -69,6 +70,32 @@ enum class ShapeKind
     Mesh,
 };
 
+/// The two numbers of MJCF's solref (surface_law.h).
+struct Solref
+{
+    double first = 0.02, second = 1;
+    auto operator<=>(const Solref&) const = default;
+};
+
+/// How a shape touches others. The order is that of roughness.
+struct Surface
+{
+    double friction = 1;        ///< Coulomb coefficient
+    double restitution = 0;     ///< Newton's coefficient; in MJCF it follows from solref
+    int priority = 0;           ///< of MJCF: of two surfaces the one with the greater number counts alone
+    bool frictionless = false;  ///< unless the other surface says otherwise (condim="1" of MJCF)
+    Solref solref;
+    std::string own;  ///< not empty: that of this body alone, for laws of its own
+    auto operator<=>(const Surface&) const = default;
+};
+
+/// How the laws of two surfaces are combined.
+enum class SurfaceRule
+{
+    MuJoCo,  ///< the larger friction
+    Gazebo,  ///< the smaller friction and restitution
+};
+
 struct RobotShape
 {
     ShapeKind kind = ShapeKind::Box;
@@ -78,8 +105,8 @@ struct RobotShape
     std::optional<Vec3> color;
     bool collides = true;
     std::uint32_t contact_type = 1, contact_affinity = 1;  ///< it collides with what has one of its bits in the other word
-    double friction = 0;                                   ///< Coulomb coefficient
-    std::string name, owner;                               ///< of the shape, may be empty; of the file's body, once it is assembled
+    Surface surface;
+    std::string name, owner;  ///< of the shape, may be empty; of the file's body, once it is assembled
     blueprint::TextPosition where;
 };
 
@@ -127,6 +154,7 @@ struct ExcludedBodies
 struct CollidingPair
 {
     std::string first, second;
+    std::optional<double> friction;  ///< of this pair
     blueprint::TextPosition where;
 };
 
@@ -135,7 +163,8 @@ struct Robot
     std::string title;
     std::string step;  ///< s, as a text; "": pLab's default
     Vec3 gravity{0, 0, -9.81};
-    bool base_collides = false;          ///< bodies that never move collide with the others
+    bool base_collides = false;  ///< bodies that never move collide with the others
+    SurfaceRule surface_rule = SurfaceRule::Gazebo;
     bool fixed_parents_collide = false;  ///< a body collides with the one that it hangs on if that never moves (MJCF)
     std::vector<RobotBody> bodies;       ///< parents come first
     std::vector<Coupling> couplings;

@@ -40,6 +40,7 @@ public:
         if (!document_.failed()) read_links();
         if (!document_.failed()) read_joints();
         if (!document_.failed()) order();
+        if (!document_.failed()) start_mimics();
         return std::move(robot_);
     }
 
@@ -222,6 +223,7 @@ private:
             auto joint = read_sdf_joint(*element.element, element.scope, element.full, element.version, frames_, document_);
             if (!joint) continue;
             for (Joint& one : joint->joints) one.name = shown(one.name);
+            mimics_.insert(mimics_.end(), joint->mimics.begin(), joint->mimics.end());
             Link& child = links_[numbers_.at(joint->child)];
             const std::size_t parent = joint->parent.empty() ? kNone : numbers_.at(joint->parent);
             if (child.rules.is_static)
@@ -292,6 +294,26 @@ private:
         }
     }
 
+    /// A joint that mimics another one begins where that one puts it, and follows it as a gear.
+    void start_mimics()
+    {
+        std::map<std::string, Joint*> by_name;
+        for (RobotBody& body : robot_.bodies)
+            for (Joint& joint : body.joints) by_name[joint.name] = &joint;
+        for (const SdfMimic& m : mimics_)
+        {
+            const std::string leader = shown(m.leader), name = shown(m.follower);
+            const auto lead = by_name.find(leader), follower = by_name.find(name);
+            if (lead == by_name.end() || follower == by_name.end() || leader == name)
+            {
+                document_.error(m.where, "<mimic>", "'" + name + "' cannot follow '" + leader + "': it has to be another moving joint");
+                continue;
+            }
+            follower->second->start = m.multiplier * (lead->second->start - m.reference) + m.offset;
+            robot_.couplings.push_back({CouplingKind::Gear, name + ".mimic", leader, name, m.multiplier, {}, {}, m.where});
+        }
+    }
+
     bool fixed_base_;
     Document& document_;
     SdfFiles files_;
@@ -302,6 +324,7 @@ private:
     std::map<std::string, std::size_t> numbers_;  ///< of links, by full name
     std::vector<ReadJoint> joint_elements_;
     std::vector<SdfJoint> joints_;
+    std::vector<SdfMimic> mimics_;
     std::size_t models_ = 0;
     std::string prefix_;
 };

@@ -7,6 +7,7 @@
 #include "import/component_text.h"
 #include "import/joint_text.h"
 #include "import/step_length.h"
+#include "import/surface_law.h"
 #include "model/numbers.h"
 #include "plab/symmetric.h"
 
@@ -119,25 +120,63 @@ private:
 
     // ---- bodies
 
-    /// Each body's friction is that of its roughest shape.
+    /// Each body's surface is that of its roughest shape.
     void read_materials()
     {
         for (const PlacedBody& b : assembly_.bodies)
         {
-            double least = kInfinity, most = -kInfinity;
+            Surface least, most;
+            least.friction = kInfinity, most.friction = -kInfinity;
             for (const RobotShape& s : b.shapes)
-                if (s.collides) least = std::min(least, s.friction), most = std::max(most, s.friction);
-            if (most > least)
+                if (s.collides) least = std::min(least, s.surface), most = std::max(most, s.surface);
+            if (collides(b) && most != least)
                 document_.lost(b.where, quoted(b.name),
-                               "its shapes have different friction: pLab has one material for a body, and takes the "
-                               "largest coefficient, " +
-                                   model::format_real(most));
-            friction_.push_back(most);
-            if (collides(b)) frictions_.insert(most);
+                               "its shapes have different surfaces: pLab has one material for a body, and takes that of the roughest, with "
+                               "friction " +
+                                   model::format_real(most.friction));
+            surface_.push_back(most);
+        }
+        read_pairs();
+        for (std::size_t i = 0; i < assembly_.bodies.size(); ++i)
+            if (collides(body(i))) surfaces_.insert(surface_[i]);
+    }
+
+    /// Bodies of pairs with a friction of their own get a surface that no other body has.
+    void read_pairs()
+    {
+        std::map<std::string, std::size_t> owners;
+        for (std::size_t i = 0; i < assembly_.bodies.size() && !robot_.pairs.empty(); ++i)
+            for (const RobotShape& s : body(i).shapes)
+                if (!s.name.empty()) owners[s.name] = i;
+        for (const CollidingPair& pair : robot_.pairs)
+        {
+            if (!pair.friction) continue;
+            const std::size_t a = owners.at(pair.first), b = owners.at(pair.second);
+            if (pair_laws_.size() >= kMostPairLaws)
+                return document_.lost(pair.where, "<pair>", "its friction is not carried over: 50 pairs may have their own");
+            for (const std::size_t i : {a, b})
+                if (surface_[i].own = body_ids_[i]; std::ranges::count_if(body(i).shapes, &RobotShape::collides) > 1)
+                    document_.lost(pair.where, "<pair>", "its friction is that of all shapes of " + quoted(body(i).name));
+            pair_laws_[std::minmax(body_ids_[a], body_ids_[b])] = *pair.friction;
         }
     }
 
-    std::string material_of(double friction) const { return "friction " + model::format_real(friction); }
+    static std::string material_of(const Surface& s)
+    {
+        const Solref usual;
+        return "friction " + model::format_real(s.friction) +
+               (s.restitution > 0 ? " restitution " + model::format_real(s.restitution) : "") +
+               (s.solref == usual ? "" : " solref " + model::format_real(s.solref.first) + " " + model::format_real(s.solref.second)) +
+               (s.priority != 0 ? " priority " + std::to_string(s.priority) : "") + (s.frictionless ? " without friction" : "") +
+               (s.own.empty() ? "" : " of " + s.own);
+    }
+
+    SurfaceLaw law_of(const Surface& a, const Surface& b) const
+    {
+        SurfaceLaw law = surface_law(a, b, robot_.surface_rule);
+        if (const auto own = pair_laws_.find(std::minmax(a.own, b.own)); own != pair_laws_.end()) law.friction = own->second;
+        return law;
+    }
 
     void write_body(std::size_t i)
     {
@@ -148,7 +187,7 @@ private:
         if (!(b.X_WB.q == Quat{})) head += attribute("orientation", b.X_WB.q);
         if (!b.fixed) head += mass_attributes(b.mass);
         if (!b.fixed && !b.weightless) heavy_.push_back(body_ids_[i]);
-        if (frictions_.size() > 1 && collides(b)) head += attribute("material", material_of(friction_[i]));
+        if (surfaces_.size() > 1 && collides(b)) head += attribute("material", material_of(surface_[i]));
         std::vector<RobotShape> shapes = b.shapes;
         if (const auto color = take_color(shapes)) head += attribute("color", *color);
         line(head + (b.shapes.empty() ? "/>" : ">"));
@@ -318,22 +357,26 @@ private:
              attribute("response", "contact.response") + "/>");
         // A tree of joints moves as one: to go back for each of its impacts, one by one, costs more than all else.
         if (trees) line("<component id=\"contact.resolution\" type=\"Resolution/Speculative\"/>");
-        line("<component id=\"contact.response\" type=\"Response/Automatic\" manager=\"manager\"" +
-             attribute("friction", frictions_.empty() ? 0 : *frictions_.rbegin()) + "/>");
+        const Surface& roughest = *surfaces_.rbegin();
+        const SurfaceLaw law = law_of(roughest, roughest);
+        line("<component id=\"contact.response\" type=\"Response/Automatic\" manager=\"manager\"" + attribute("friction", law.friction) +
+             (law.restitution > 0 ? attribute("restitution", law.restitution) : "") + "/>");
         manager_ = true;
-        write_friction_pairs();
+        write_surface_laws();
     }
 
-    /// As in MJCF, the larger coefficient counts.
-    void write_friction_pairs()
+    void write_surface_laws()
     {
-        if (frictions_.size() < 2) return;
+        if (surfaces_.size() < 2) return;
         std::size_t n = 0;
-        for (auto a = frictions_.begin(); a != frictions_.end(); ++a)
-            for (auto b = frictions_.begin(); b != std::next(a); ++b)
+        for (auto a = surfaces_.begin(); a != surfaces_.end(); ++a)
+            for (auto b = surfaces_.begin(); b != std::next(a); ++b)
+            {
+                const SurfaceLaw law = law_of(*a, *b);
                 line("<component" + attribute("id", ids_.make("materials." + std::to_string(n++))) + " type=\"Material/Pair\"" +
-                     attribute("a", material_of(*b)) + attribute("b", material_of(*a)) + attribute("friction", *a) +
-                     " restitution=\"0\"/>");
+                     attribute("a", material_of(*b)) + attribute("b", material_of(*a)) + attribute("friction", law.friction) +
+                     attribute("restitution", law.restitution) + "/>");
+            }
     }
 
     const Robot& robot_;
@@ -344,8 +387,10 @@ private:
     Ids ids_;
     std::vector<std::string> body_ids_;
     std::vector<std::vector<std::string>> shape_ids_;  ///< by body
-    std::vector<double> friction_;                     ///< of each body
-    std::set<double> frictions_;                       ///< of bodies that collide
+    static constexpr std::size_t kMostPairLaws = 50;
+    std::vector<Surface> surface_;                                     ///< of each body
+    std::set<Surface> surfaces_;                                       ///< of bodies that collide
+    std::map<std::pair<std::string, std::string>, double> pair_laws_;  ///< friction, by the ids of two bodies
     std::string text_;
     struct Place
     {
