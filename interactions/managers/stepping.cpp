@@ -29,15 +29,23 @@ double closing(const Problem& problem, const Line& line, const ConstraintRow& ro
     return met ? std::max(0.0, speed) : 0.0;
 }
 
-bool any_impact(const Problem& problem, const Island& island)
+/// Whether a stop or a contact returns a part of its closing speed.
+bool any_rebound(const Problem& problem, const Island& island)
 {
-    if (std::any_of(island.contacts.begin(), island.contacts.end(), [&](const Contact& c) { return meets(c, island.h); })) return true;
+    const auto rebounds = [&](const Contact& c) { return c.restitution > 0 && meets(c, island.h); };
+    if (std::any_of(island.contacts.begin(), island.contacts.end(), rebounds)) return true;
     return std::any_of(problem.lines.begin(), problem.lines.end(),
                        [&](const Line& line)
                        {
                            const ConstraintRow& row = island.rows[line.row];
                            return row.restitution > 0 && closing(problem, line, row, island.h) > 0;
                        });
+}
+
+bool any_impact(const Problem& problem, const Island& island)
+{
+    return any_rebound(problem, island) ||
+           std::any_of(island.contacts.begin(), island.contacts.end(), [&](const Contact& c) { return meets(c, island.h); });
 }
 
 /// Moreau's law of impact: u_n' >= -e u_n at all touching contacts, also at those that separate. With one common e this law
@@ -127,7 +135,7 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     problem.apply_impulses();
     memory.passing.clear(), memory.impacts.clear(), memory.line_impacts.clear();
     if (!any_impact(problem, island)) return out;
-    out.join(settle_joints(problem, island, bodies, shafts, method));
+    if (any_rebound(problem, island)) out.join(settle_joints(problem, island, bodies, shafts, method));
     auto& before = memory.separations;
     before.clear(), memory.line_rates.clear();
     for (const Point& p : problem.points) before.push_back(problem.relative_velocity(p));

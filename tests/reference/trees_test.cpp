@@ -245,10 +245,12 @@ TEST_CASE("a stop takes (1 - e^2) of the energy with which a joint meets it, and
             CAPTURE(steps);
             Scene s(bar_at_stop(e, false), dt(steps));
             REQUIRE_MESSAGE(s.loaded(), s.error());
-            s.run(0.3);  // it arrives at 0.2337 s
-            CHECK(near(s.simulation().totals().kinetic, kinetic * e * e, 1e-6));
-            CHECK(near(work_of(s, "stop"), -kinetic * (1 - e * e), 1e-6));
-            CHECK(std::fabs(work_of(s, "manager")) < 1e-6);
+            s.run(0.3);                       // it arrives at 0.2337 s
+            const double most = 0.3 / steps;  // J: of first order in the step, from the step in which the stop is near
+            CHECK(std::fabs(s.simulation().totals().kinetic - kinetic * e * e) < most);
+            CHECK(s.simulation().totals().kinetic < kinetic * e * e + 1e-12);
+            CHECK(std::fabs(work_of(s, "stop") + kinetic * (1 - e * e)) < most);
+            CHECK(std::fabs(work_of(s, "manager")) < most);
             CHECK(std::fabs(unexplained(s)) < 1e-9);
             // Where it is after the rebound, to the first order in the step.
             const double hits = 0.70123 / 3;
@@ -256,7 +258,7 @@ TEST_CASE("a stop takes (1 - e^2) of the energy with which a joint meets it, and
         }
 }
 
-TEST_CASE("stops in a tree give no energy from nothing: with e = 1 it converges to what there was, from below or to first order")
+TEST_CASE("stops in a tree give no energy from nothing: an elastic one returns what it got")
 {
     const double start = 0.5 * 0.6 * 9 + 0.5 * 3.9 * 3.9 + 0.5 * 0.03 * 9;
     std::vector<double> gains;
@@ -268,9 +270,9 @@ TEST_CASE("stops in a tree give no energy from nothing: with e = 1 it converges 
         for (int i = 0; i < steps; ++i) s.step(), most = std::max(most, s.simulation().totals().kinetic);
         MESSAGE(steps, " steps/s: from ", start, " J to ", s.simulation().totals().kinetic, ", at most ", most);
         gains.push_back(most - start);
-        CHECK(std::fabs(unexplained(s)) < 1e-6);
+        CHECK(std::fabs(unexplained(s)) < 1e-5);  // of the solver between the stops
     }
-    for (const double gain : gains) CHECK(gain < 1e-3 * start);
+    for (const double gain : gains) CHECK(gain < 1e-6 * start);
 }
 
 TEST_CASE("the ledger closes where a damped joint meets its stop: the damper is booked with the force that it had")
@@ -281,6 +283,22 @@ TEST_CASE("the ledger closes where a damped joint meets its stop: the damper is 
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(1);
         CHECK(work_of(s, "d") < -0.1);
-        CHECK(std::fabs(unexplained(s)) < 1e-9);
+        CHECK(std::fabs(unexplained(s)) < 1e-5);  // of the solver between the stops
+    }
+}
+
+TEST_CASE("the ledger closes where a joint with a rotor meets its stop: the energy of the rotor counts")
+{
+    for (const double e : {0.0, 0.5})
+    {
+        Scene s(bar_at_stop(e, false) + "<component id='rotor' type='State/Shaft' inertia='0.4' angular_velocity='3'/>" +
+                    "<component id='gear' type='Constraint/Gear' driver='bar' driven='rotor' velocity_factor='1' driver_axis='0 1 0'/>",
+                dt(500));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        CHECK(near(s.simulation().totals().kinetic, 0.5 * 1 * 9, 1e-12));  // bar 0.6, rotor 0.4 kg m^2
+        s.run(0.3);
+        CHECK(near(s.simulation().totals().kinetic, 0.5 * 9 * e * e, 5e-3));
+        CHECK(near(work_of(s, "stop"), -0.5 * 9 * (1 - e * e), 5e-3));
+        CHECK(std::fabs(unexplained(s)) < 1e-6);
     }
 }
