@@ -44,25 +44,26 @@ void OdeRows::describe(Schema& s)
 
 void prepare(Row row, OdeRows& rows) { rows.scene[row].reset(); }
 
-Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes, ContactSink& sink)
+Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes,
+                    const CollisionFilter& filter, ContactSink& sink)
 {
     if (!start_ode()) return reason("the ODE library could not be initialised");
     auto& scene = rows.scene[row];
     if (!scene) scene = std::make_unique<OdeScene>();
     if (scene->update(context, rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink))
         report_complaints(context, row, *scene);
-    scene->detect(context, bodies, sink);
+    scene->detect(context, bodies, filter, sink);
     if (!sink.motion_margin().empty()) return {};  // this query asked for candidate pairs, not for contacts
     if (!sink.only_persistent()) rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());
     rows.penetration[row] = scene->penetration();
     return {};
 }
 
-Result<void> measure_gap(Row row, OdeRows& rows, const Bodies& bodies, GapQuery& query)
+Result<void> measure_gap(Row row, OdeRows& rows, const Bodies& bodies, const CollisionFilter& filter, GapQuery& query)
 {
     if (!start_ode()) return reason("the ODE library could not be initialised");
     if (!rows.scene[row]) return reason("a gap can be measured only after a detection pass");
-    rows.scene[row]->measure(query, bodies);
+    rows.scene[row]->measure(query, bodies, filter);
     return {};
 }
 

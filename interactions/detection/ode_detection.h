@@ -27,8 +27,9 @@ struct OdeRows
 /// Phase::Prepare: discards what was built. Bodies and shapes may not be complete yet, so detect() builds it again.
 void prepare(Row row, OdeRows& rows);
 /// Phase::Gap: must follow a detection pass in the same step.
-Result<void> measure_gap(Row row, OdeRows& rows, const Bodies& bodies, GapQuery& query);
+Result<void> measure_gap(Row row, OdeRows& rows, const Bodies& bodies, const CollisionFilter& filter, GapQuery& query);
 /// Phase::Detect.
-Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes, ContactSink& sink);
+Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes,
+                    const CollisionFilter& filter, ContactSink& sink);
 
 }  // namespace plab::detection

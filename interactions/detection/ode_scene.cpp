@@ -114,12 +114,12 @@ void OdeScene::add_colliders(const Bodies& bodies, const Shapes& shapes)
     for (const std::uint32_t shape : shape_of_collider_) colliders_.emplace_back(shapes.geometry[shape]);
 }
 
-void OdeScene::add_part(std::uint32_t member, std::uint32_t shape, const Pose& X_BP)
+void OdeScene::add_part(std::uint32_t member, std::uint32_t own, std::uint32_t shape, const Pose& X_BP)
 {
     const auto at = std::lower_bound(shape_of_collider_.begin(), shape_of_collider_.end(), shape);
     const auto collider = static_cast<std::uint32_t>(at - shape_of_collider_.begin());
     const Pose X_BS = X_BP * colliders_[collider].pose();
-    parts_.push_back({member, collider, X_BS, X_BS.q != Quat{}});
+    parts_.push_back({member, collider, own, X_BS, X_BS.q != Quat{}});
 }
 
 void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const ContactSink& order)
@@ -143,8 +143,8 @@ void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const Contact
         {
             const Geometry& geometry = shapes.geometry[shape.index];
             body_shapes_.push_back(shape.index);
-            if (geometry.kind != GeometryKind::Compound) add_part(i, shape.index, {});
-            for (const std::uint32_t part : geometry.parts) add_part(i, part, geometry.pose);
+            if (geometry.kind != GeometryKind::Compound) add_part(i, shape.index, shape.index, {});
+            for (const std::uint32_t part : geometry.parts) add_part(i, shape.index, part, geometry.pose);
         }
         m.end_part = static_cast<std::uint32_t>(parts_.size());
         m.end_shape = static_cast<std::uint32_t>(body_shapes_.size());
@@ -193,8 +193,14 @@ void OdeScene::list_active(const StepContext& context, const RefList& between, c
 bool OdeScene::may_meet(const Member& a, const Member& b, const StepContext& context) const
 {
     if (a.body == b.body || !(a.membership.dynamic || b.membership.dynamic)) return false;
-    if (!(a.membership.between || b.membership.between)) return false;
+    if (!(a.membership.between || b.membership.between) || filter_->excludes_bodies(a.body, b.body)) return false;
     return context.active({Facet::Body, a.body}) || context.active({Facet::Body, b.body});
+}
+
+/// Of members that may meet.
+bool OdeScene::is_excluded(const Part& a, const Part& b, const CollisionFilter& filter) const
+{
+    return filter.has_shapes() && filter.excludes_shapes(members_[a.member].body, a.shape, members_[b.member].body, b.shape);
 }
 
 void OdeScene::collect_persistent(const StepContext& context, const ContactSink& sink)
@@ -231,6 +237,7 @@ Pose OdeScene::place(const Part& part, const Vec3& p_OC, const Bodies& bodies) c
 void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies, Narrow& narrow) const
 {
     const Part &pa = parts_[part_a], &pb = parts_[part_b];
+    if (is_excluded(pa, pb, *filter_)) return;
     const Member &ma = members_[pa.member], &mb = members_[pb.member];
     const Collider &ca = colliders_[pa.collider], &cb = colliders_[pb.collider];
     // All poses are relative to the centre of mass of a, so that two bodies far from the origin of W lose no digits between
@@ -286,12 +293,12 @@ void OdeScene::deliver(const Narrow& narrow, ContactSink& sink)
     penetration_ = std::max(penetration_, narrow.penetration);
 }
 
-void OdeScene::measure(GapQuery& query, const Bodies& bodies) const
+void OdeScene::measure(GapQuery& query, const Bodies& bodies, const CollisionFilter& filter) const
 {
     query.gap = HUGE_VAL;
     const auto member_of = [&](Ref r) { return r.index < member_of_body_.size() ? member_of_body_[r.index] : kNoIndex; };
     const std::uint32_t ia = member_of(query.a), ib = member_of(query.b);
-    if (ia == kNoIndex || ib == kNoIndex) return;
+    if (ia == kNoIndex || ib == kNoIndex || filter.excludes_bodies(query.a.index, query.b.index)) return;
     const Member &a = members_[ia], &b = members_[ib];
     const Vec3 origin = bodies.position[a.body], p_OC = bodies.position[b.body] - origin;
     std::size_t parts_met = 0;
@@ -299,7 +306,7 @@ void OdeScene::measure(GapQuery& query, const Bodies& bodies) const
         for (std::uint32_t q = b.first_part; q < b.end_part; ++q)
         {
             const Collider &ca = colliders_[parts_[p].collider], &cb = colliders_[parts_[q].collider];
-            if (!meets(ca.kind(), cb.kind())) continue;
+            if (!meets(ca.kind(), cb.kind()) || is_excluded(parts_[p], parts_[q], filter)) continue;
             const Separation s = separation(ca, place(parts_[p], {}, bodies), cb, place(parts_[q], p_OC, bodies));
             query.further_pairs += further_pairs_of(ca, cb, s.triangles) + (parts_met++ > 0 ? 1.0 : 0.0);
             if (!(s.gap < query.gap)) continue;
@@ -322,6 +329,8 @@ void OdeScene::report_near(const StepContext& context, ContactSink& sink)
     else
         for (const std::uint32_t m : active_) ask(members_[m]);
     broad_.find_grown(asked_, near_);
+    if (filter_->has_shapes())
+        std::erase_if(near_, [&](const BroadPhase::Pair& p) { return is_excluded(parts_[p.first], parts_[p.second], *filter_); });
     for (BroadPhase::Pair& pair : near_) pair = {parts_[pair.first].member, parts_[pair.second].member};
     // Pairs of bodies with several parts may occur several times.
     std::sort(near_.begin(), near_.end());
@@ -330,8 +339,9 @@ void OdeScene::report_near(const StepContext& context, ContactSink& sink)
         if (may_meet(members_[i], members_[j], context)) sink.near({Facet::Body, members_[i].body}, {Facet::Body, members_[j].body});
 }
 
-void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactSink& sink)
+void OdeScene::detect(const StepContext& context, const Bodies& bodies, const CollisionFilter& filter, ContactSink& sink)
 {
+    filter_ = &filter;
     if (!sink.motion_margin().empty()) return report_near(context, sink);
     penetration_ = 0, further_pairs_ = 0;
     margin_ = sink.margin();

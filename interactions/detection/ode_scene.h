@@ -7,6 +7,7 @@
 #include "broad.h"
 #include "narrow.h"
 #include "plab/collision.h"
+#include "plab/collision_filter.h"
 #include "plab/context.h"
 
 namespace plab::detection
@@ -23,10 +24,10 @@ public:
                 const Shapes& shapes, const ContactSink& order);
     /// Reports the contacts of all pairs with at least one body that `context` advances, persistent pairs first. If the sink has
     /// motion margins, reports the pairs that may collide within the step instead.
-    void detect(const StepContext& context, const Bodies& bodies, ContactSink& sink);
+    void detect(const StepContext& context, const Bodies& bodies, const CollisionFilter& filter, ContactSink& sink);
     /// The distance of the two bodies of the query at their present poses: the minimum over all pairs of their shapes; infinite
     /// if none of these collide. Uses the scene of the last update(); only poses may have changed since.
-    void measure(GapQuery& query, const Bodies& bodies) const;
+    void measure(GapQuery& query, const Bodies& bodies, const CollisionFilter& filter) const;
 
     std::size_t pairs() const { return pairs_; }
     double penetration() const { return penetration_; }  ///< m, deepest overlap in the last detection pass
@@ -47,8 +48,9 @@ private:
     {
         std::uint32_t member = 0;
         std::uint32_t collider = 0;
-        Pose in_body;         // X_BS
-        bool turned = false;  // in the body
+        std::uint32_t shape = 0;  // of the body: for a part of a compound, the compound
+        Pose in_body;             // X_BS
+        bool turned = false;      // in the body
     };
     struct PersistentQuery
     {
@@ -61,11 +63,12 @@ private:
     void rebuild(const Bodies& bodies, const Shapes& shapes, const ContactSink& order);
     void add_members(const RefList& bodies, bool between, const Bodies& table);
     void add_colliders(const Bodies& bodies, const Shapes& shapes);
-    void add_part(std::uint32_t member, std::uint32_t shape, const Pose& X_BP);
+    void add_part(std::uint32_t member, std::uint32_t own, std::uint32_t shape, const Pose& X_BP);
     void move_parts(const Bodies& bodies, bool all, Workers* workers);
     void list_active(const StepContext& context, const RefList& between, const RefList& against);
     void move_member(Member& member, const Bodies& bodies);
     bool may_meet(const Member& a, const Member& b, const StepContext& context) const;
+    bool is_excluded(const Part& a, const Part& b, const CollisionFilter& filter) const;
     void report_near(const StepContext& context, ContactSink& sink);
     void collect_persistent(const StepContext& context, const ContactSink& sink);
     bool is_persistent(std::uint32_t a, std::uint32_t b) const;
@@ -113,6 +116,7 @@ private:
     BroadPhase broad_;
 
     // Scratch data of one detection pass.
+    const CollisionFilter* filter_ = nullptr;
     std::vector<std::uint32_t> member_of_body_;
     std::vector<PersistentQuery> persistent_;
     std::vector<Narrow> narrow_;  // by chunk; the first serves a pass without threads

@@ -1,4 +1,5 @@
 #include "plab/plugin.h"
+#include "exclude.h"
 #include "ode_detection.h"
 
 PLAB_PLUGIN("detection", registrar)
@@ -24,4 +25,10 @@ PLAB_PLUGIN("detection", registrar)
         .source(
             "ODE 0.16.2 for its collision spaces; Gilbert, Johnson, Keerthi (1988) for distances; van den "
             "Bergen, GDC (2001) for depths; Gottschalk, Lin, Manocha, SIGGRAPH (1996) for box and box");
+
+    registrar.component<detection::ExcludeRows>("Collision/Exclude", "bodies or shapes that do not collide, for all detections")
+        .family("Collision/Exclude")
+        .command<detection::prepare_exclude>(Phase::Prepare, "Collision/Check", "refuses an exclusion of nothing")
+        .command<detection::connect_exclude>(Phase::Connect, "Collision/Connect", "registers the exclusion with the host")
+        .cost("a search in two short lists for each pair of bodies whose boxes overlap");
 }

@@ -5,6 +5,18 @@
 namespace plab::managers
 {
 
+namespace
+{
+
+/// What a stop has done in an impact is a part of what it did in the step.
+void add_impacts_of_stops(const Problem& problem, Island& island, std::span<const double> impacts)
+{
+    for (std::size_t i = 0; i < impacts.size(); ++i)
+        if (ConstraintRow& row = island.rows[problem.lines[i].row]; row.kind == RowKind::OneSided) row.impulse += impacts[i];
+}
+
+}  // namespace
+
 Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
 {
     Problem& problem = memory.problem;
@@ -36,6 +48,7 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     }
     for (std::size_t i = 0; i < memory.impacts.size(); ++i)
         if (island.contacts[i].approach > 0) island.contacts[i].impulse += to_world(problem.points[i], memory.impacts[i]);
+    add_impacts_of_stops(problem, island, memory.line_impacts);
     const Verdict moved = correct_positions(island, bodies, shafts, method, choices, memory);
     out.iterations += moved.iterations;
     out.fell_back = out.fell_back || moved.fell_back;

@@ -294,7 +294,10 @@ void solve_all_softly(const StepContext& context, Row row, SoftStepRows& rows, B
 
 void AutomaticRows::describe(Schema& s)
 {
-    s.param(max_points, "max_points", unit::one, "an island of at most so many contact points and rows is solved exactly")
+    s.param(max_points, "max_points", unit::one,
+            "an island of at most so many contact points and rows is solved exactly; one with joints up to 16 times as many points, not "
+            "counting "
+            "the rows of joints, as sweeps would let them stretch")
         .or_else(80)
         .not_negative()
         .at_most(20000);
@@ -345,14 +348,18 @@ void note_method(const StepContext& context, Row row, AutomaticRows& rows, const
     rows.resolved[row] = used;
     if (chosen.direct && rows.soft_islands[row] != 0) return;
     rows.reason[row] = std::string(chosen.direct ? "Direct: " : "SoftStep: ") + "an island has " + std::to_string(chosen.points) +
-                       " contact points and rows, and masses up to " + rounded_text(chosen.ratio, 2) + " to 1";
+                       " contact points and rows" + (chosen.joints > 0 ? ", " + std::to_string(chosen.joints) + " rows of joints" : "") +
+                       ", and masses up to " + rounded_text(chosen.ratio, 2) + " to 1";
 }
 
 AutomaticRows::Choice choose_method(const Island& island, const Bodies& bodies, std::size_t most, double heavy)
 {
-    const std::size_t points = island.contacts.size() + island.rows.size();
+    const auto joints = static_cast<std::size_t>(std::ranges::count(island.rows, RowKind::Equality, &ConstraintRow::kind));
+    const std::size_t points = island.contacts.size() + island.rows.size() - joints;
     const double ratio = mass_ratio(island, bodies);
-    return {points <= most || (ratio >= heavy && points <= kHeavyPoints * most), points, ratio};
+    // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time.
+    const bool yields = ratio >= heavy || joints > 0;
+    return {points + joints <= most || (yields && points <= kHeavyPoints * most), points, joints, ratio};
 }
 
 void advance_by_choice(bool direct, Island& island, Bodies& bodies, Shafts& shafts, AutomaticRows::Memory& memory, Workers* workers)

@@ -107,7 +107,7 @@ struct AutomaticRows
     struct Choice
     {
         bool direct = false;
-        std::size_t points = 0;
+        std::size_t points = 0, joints = 0;  ///< contact points and rows that may yield; rows of joints
         double ratio = 1;
     };
     Column<IslandTeam<Memory>> memory;

@@ -50,7 +50,9 @@ PLAB_PLUGIN("managers", registrar)
             "max_contacts. Time stepping: an impact is answered at the start of the next step unless a "
             "resolution locates it")
         .source("Alart, Curnier, CMAME 92 (1991); Acary, Cadoux, Lemarechal, Malick, ZAMM 91 (2011); Castro et al., IEEE T-RO 38 (2022)");
-    registrar.component<AutomaticRows>("Manager/Automatic", "Direct for islands that are small or hold heavy bodies, otherwise SoftStep")
+    registrar
+        .component<AutomaticRows>("Manager/Automatic",
+                                  "Direct for islands that are small or hold heavy bodies or joints, otherwise SoftStep")
         .command<solve_all_automatically>(Phase::Solve, "Manager/Solve", "advances islands of contacts and one-sided rows")
         .order(1)
         .accuracy("exact to 1e-12 m/s where `resolved` says Direct, otherwise that of SoftStep")

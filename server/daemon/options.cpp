@@ -267,6 +267,8 @@ void add_run_options(CLI::App& app, DaemonOptions& options, WrittenOptions& writ
 {
     app.add_option("scene", options.scene, "blueprint (XML), or a scene in URDF, SDF or MJCF");
     app.add_flag("--fixed-base", options.fixed_base, "of a scene in URDF, SDF or MJCF: what hangs on nothing is fixed to the world");
+    app.add_flag("--self-collide", options.self_collide,
+                 "of a scene in URDF: links collide with one another, but for those that a joint joins");
     app.add_option("--import-path", options.import_folders, "folder in which model://NAME of SDF is looked for (may be repeated)")
         ->take_all()
         ->allow_extra_args(false)

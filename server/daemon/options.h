@@ -68,6 +68,7 @@ struct DaemonOptions
     std::string scene;
     std::string blueprint;                    ///< of Task::Import: where to write it; "" and "-": standard output
     bool fixed_base = false;                  ///< of a scene of another program
+    bool self_collide = false;                ///< likewise
     std::string exported;                     ///< file of Task::Export
     std::vector<std::string> import_folders;  ///< likewise
     std::string reference;                    ///< types to describe; "": all

@@ -37,17 +37,22 @@ Result<void> write_whole(const std::string& path, const std::string& text)
 /// Errors in an imported blueprint have no place in the file that people wrote.
 std::string name_of_import(const std::string& scene) { return scene + " (as a blueprint)"; }
 
+import::ImportOptions import_options(const DaemonOptions& options){
+    return {options.fixed_base, options.import_folders, {}, options.self_collide};
 }  // namespace
+
+}  // namespace plab::daemon
 
 Result<model::Blueprint> read_scene(const DaemonOptions& options)
 {
     if (import::format_of_file(options.scene) == import::SceneFormat::Blueprint)
     {
         if (options.fixed_base) return Error{{options.scene, 0, 0}, {}, "--fixed-base is for scenes in URDF, SDF and MJCF"};
+        if (options.self_collide) return Error{{options.scene, 0, 0}, {}, "--self-collide is for scenes in URDF"};
         if (!options.import_folders.empty()) return Error{{options.scene, 0, 0}, {}, "--import-path is for scenes in SDF"};
         return blueprint::read_blueprint_file(options.scene);
     }
-    auto imported = import::import_file(options.scene, {options.fixed_base, options.import_folders});
+    auto imported = import::import_file(options.scene, import_options(options));
     if (!imported) return imported.errors();
     for (const Error& loss : imported->losses) spdlog::warn("{}", loss.text());
     return blueprint::read_blueprint(imported->blueprint, name_of_import(options.scene));
@@ -55,7 +60,7 @@ Result<model::Blueprint> read_scene(const DaemonOptions& options)
 
 int import_scene(plugins::PluginLibrary& library, const DaemonOptions& options)
 {
-    auto imported = import::import_file(options.scene, {options.fixed_base, options.import_folders});
+    auto imported = import::import_file(options.scene, import_options(options));
     if (!imported) return fail(imported.errors());
     auto tree = blueprint::read_blueprint(imported->blueprint, name_of_import(options.scene));
     if (!tree) return fail(tree.errors());

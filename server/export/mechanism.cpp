@@ -58,6 +58,8 @@ public:
     }
 
 private:
+    static constexpr std::size_t kMostExclusions = 20'000;
+
     void lost(const ComponentView& c, const std::string& why) { out_.losses.push_back({{}, c.id() + " (" + c.type() + ")", why}); }
 
     /// kNoIndex for the world, and for what is no body or does not move by forces.
@@ -203,6 +205,7 @@ private:
         if (kind_of(type) != JointKind::Free || c.facet() == Facet::Body || type.starts_with("Shape/") || c.facet() == Facet::Shape) return;
         if (type == "Field/Gravity") return read_gravity(c);
         if (type == "CDetection/ODE") return read_detection(c);
+        if (type == "Collision/Exclude") return read_exclusion(c);
         if (type == "Constraint/Gear") return read_gear(c);
         if (c.facet() == Facet::Shaft) return;                                                           // with its gear
         if (type == "Material/Pair" || type == "Response/Automatic" || type == "Response/Rows") return;  // with the detection
@@ -312,6 +315,38 @@ private:
                 const SurfaceLaw* const own = world_.host().materials.find_pair(material, material);
                 body.friction = own ? own->friction : friction;
             }
+    }
+
+    /// MuJoCo leaves out the pair of a body and the one that it hangs on by itself, unless that one never moves.
+    void read_exclusion(const ComponentView& c)
+    {
+        const std::vector<std::size_t> within = excluded(c, "within"), a = excluded(c, "a"), b = excluded(c, "b");
+        if (within.size() * within.size() / 2 + a.size() * b.size() + out_.exclusions.size() > kMostExclusions)
+            return lost(c, "excludes more pairs of bodies than a model can list");
+        for (std::size_t i = 0; i < within.size(); ++i)
+            for (std::size_t k = i + 1; k < within.size(); ++k) add_exclusion(within[i], within[k]);
+        for (const std::size_t i : a)
+            for (const std::size_t k : b) add_exclusion(i, k);
+    }
+
+    std::vector<std::size_t> excluded(const ComponentView& c, const char* role)
+    {
+        std::vector<std::size_t> out;
+        for (const Ref ref : c.participants(role))
+        {
+            const auto row = ref.facet == Facet::Body ? rows_.find(ref.index) : rows_.end();
+            if (row != rows_.end()) out.push_back(row->second);
+        }
+        if (out.size() < c.participants(role).size()) lost(c, "excludes single shapes, which MJCF cannot");
+        return out;
+    }
+
+    void add_exclusion(std::size_t i, std::size_t k)
+    {
+        const auto hangs_on = [&](std::size_t child, std::size_t parent)
+        { return out_.bodies[child].parent == parent && !out_.bodies[parent].is_static; };
+        if (i == k || (out_.bodies[i].is_static && out_.bodies[k].is_static) || hangs_on(i, k) || hangs_on(k, i)) return;
+        out_.exclusions.emplace_back(out_.bodies[i].name, out_.bodies[k].name);
     }
 
     void list_velocities()

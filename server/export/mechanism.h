@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plab/result.h"
@@ -77,7 +78,8 @@ struct Mechanism
     std::vector<Actuator> actuators;
     std::vector<Equality> equalities;
     Vec3 gravity;
-    Errors losses;  ///< component and reason, what the above cannot say
+    std::vector<std::pair<std::string, std::string>> exclusions;  ///< bodies that do not collide with one another
+    Errors losses;                                                ///< component and reason, what the above cannot say
 };
 
 Mechanism mechanism_of(const world::World& world);

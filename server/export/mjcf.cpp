@@ -33,7 +33,7 @@ public:
         std::string out = "<mujoco" + attribute("model", title()) + ">\n  <compiler angle=\"radian\" autolimits=\"true\"/>\n  <option" +
                           attribute("timestep", dt_) + attribute("gravity", mechanism_.gravity) + "/>\n";
         if (!assets_.empty()) out += "  <asset>\n" + assets_ + "  </asset>\n";
-        out += "  <worldbody>\n" + text_ + "  </worldbody>\n" + equalities() + actuators() + "</mujoco>\n";
+        out += "  <worldbody>\n" + text_ + "  </worldbody>\n" + exclusions() + equalities() + actuators() + "</mujoco>\n";
         done_.text = std::move(out);
         for (Error& loss : mechanism_.losses) done_.losses.push_back(std::move(loss));
         return std::move(done_);
@@ -177,6 +177,14 @@ private:
     }
 
     // ---- between bodies
+
+    std::string exclusions() const
+    {
+        std::string out;
+        for (const auto& [first, second] : mechanism_.exclusions)
+            out += "    <exclude" + attribute("body1", first) + attribute("body2", second) + "/>\n";
+        return out.empty() ? out : "  <contact>\n" + out + "  </contact>\n";
+    }
 
     std::string equalities() const
     {

@@ -53,10 +53,11 @@ private:
             document_.lost(body.where, "'" + body.name + "'",
                            "is fixed to '" + target.name + "', of which gravity acts on a part only: here on all of it");
         if (body.mass.mass > 0 && !body.weightless) target.weightless = false;
+        target.self_collide = target.self_collide || body.self_collide;
         target.mass = sum(target.mass, body.mass.mass > 0 ? shapes::posed(body.mass, frame.pose) : MassProperties{});
         for (RobotShape shape : body.shapes)
         {
-            shape.pose = frame.pose * shape.pose;
+            shape.pose = frame.pose * shape.pose, shape.owner = body.name;
             target.shapes.push_back(std::move(shape));
         }
     }
@@ -65,6 +66,7 @@ private:
     {
         PlacedBody placed;
         placed.name = body.name, placed.where = body.where;
+        placed.self_collide = body.self_collide, placed.model = body.model;
         placed.parent = body.free ? kWorld : parent.body;
         placed.fixed = !body.free && body.joints.empty();
         placed.X_WB = parent.body == kWorld ? in_parent : out_.bodies[parent.body].X_WB * in_parent;

@@ -24,6 +24,8 @@ struct PlacedBody
     std::size_t parent = kWorld;  ///< the body that it hangs on; kWorld for free bodies and those that never move
     bool fixed = false;           ///< never moves
     bool weightless = true;       ///< gravity acts on none of its parts
+    bool self_collide = true;     ///< one of its parts collides with the other links of its model
+    std::size_t model = 0;
     Pose X_WB;
     std::vector<PlacedJoint> joints;
     MassProperties mass;  ///< in B

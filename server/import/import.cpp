@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "import/collision_rules.h"
 #include "import/document.h"
 #include "import/mjcf.h"
 #include "import/sdf.h"
@@ -63,16 +64,17 @@ Result<ImportedScene> import_text(std::string_view text, const std::string& file
         return Error{{file, root.where.line, root.where.column},
                      blueprint::in_tags(root.name),
                      "is not the root of " + std::string(wanted->name) + ", which is " + blueprint::in_tags(wanted->root)};
-    Robot robot = format == SceneFormat::Urdf  ? read_urdf(root, options.fixed_base, document)
+    Robot robot = format == SceneFormat::Urdf  ? read_urdf(root, options.fixed_base, options.self_collide, document)
                   : format == SceneFormat::Sdf ? read_sdf(root, options.folders, options.fixed_base, document)
                                                : read_mjcf(std::move(root), options.fixed_base, document);
     if (document.failed()) return document.errors();
     if (options.part)
         for (RobotBody& body : robot.bodies)
             if (body.parent == kWorld) body.pose = options.part->place * body.pose;
-    const Assembly assembly = assemble(robot, document);
+    Assembly assembly = assemble(robot, document);
     if (document.failed()) return document.errors();
-    WrittenScene written = write_blueprint(robot, assembly, options.part ? options.part->name : "", document);
+    const std::vector<CollisionExclusion> exclusions = collision_rules(robot, assembly, document);
+    WrittenScene written = write_blueprint(robot, assembly, exclusions, options.part ? options.part->name : "", document);
     if (document.failed()) return document.errors();
     return ImportedScene{std::move(written.blueprint), std::move(written.root), document.losses(), written.bodies, written.joints};
 }

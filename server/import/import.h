@@ -25,6 +25,7 @@ struct ImportOptions
     bool fixed_base = false;           ///< bodies that hang on nothing do not move
     std::vector<std::string> folders;  ///< in which SDF's model://NAME is looked for, beside the folders above the file
     std::optional<Part> part{};
+    bool self_collide = false;  ///< of URDF: links of the robot collide with one another, but for those that a joint joins
 };
 
 struct ImportedScene

@@ -22,7 +22,8 @@ std::vector<RobotShape> joined_shapes(std::vector<RobotShape> seen, std::vector<
     {
         const auto same = std::ranges::find_if(seen, [&](const RobotShape& s) { return !s.collides && same_form(s, shape); });
         if (same != seen.end())
-            same->collides = true, same->friction = shape.friction;
+            same->collides = true, same->surface = shape.surface, same->contact_type = shape.contact_type,
+            same->contact_affinity = shape.contact_affinity;
         else
         {
             if (!seen.empty())

@@ -27,7 +27,8 @@ public:
         document_.list_attributes(root_, {"model"});
         document_.list_children(root_, {"compiler", "option", "default", "asset", "worldbody", "contact", "equality", "actuator"});
         robot_.title = document_.text(root_, "model");
-        robot_.step = settings_.step(), robot_.gravity = settings_.gravity(), robot_.base_collides = true;
+        robot_.step = settings_.step(), robot_.gravity = settings_.gravity(), robot_.base_collides = robot_.fixed_parents_collide = true;
+        robot_.surface_rule = SurfaceRule::MuJoCo;
         bool world = false;
         for (const XmlElement& e : root_.children)
         {
@@ -35,7 +36,6 @@ public:
             if (e.name == "actuator") read_actuators(e, settings_, robot_.actuators, document_);
         }
         if (!world) document_.error(root_, "has no <worldbody>");
-        match_contacts();
         set_total_mass();
         for (const XmlElement& e : root_.children)
             if (e.name == "equality")
@@ -46,12 +46,6 @@ public:
     }
 
 private:
-    struct Words
-    {
-        std::size_t tree;
-        std::uint32_t type, affinity;
-        auto operator<=>(const Words&) const = default;
-    };
     static constexpr std::size_t kMostBodies = 100'000;
 
     std::string name_of(const XmlElement& e, const std::string& otherwise) const
@@ -189,6 +183,7 @@ private:
             auto geom = read_geom(settings_.resolved(child, childclass), from_shapes && e.name == "body", settings_, document_);
             if (!geom) continue;
             if (geom->mass.mass > 0) parts.push_back(geom->mass);
+            geom->shape.collides = geom->shape.collides && settings_.collisions();
             body.shapes.push_back(std::move(geom->shape));
         }
         if (e.name == "worldbody") return;
@@ -217,34 +212,6 @@ private:
     }
 
     // ---- between bodies
-
-    /// Shapes collide where contype of one and conaffinity of the other have a bit in common. In pLab a shape collides with all others, or
-    /// with none.
-    void match_contacts()
-    {
-        // The words of each tree; those of the world under number 0.
-        std::vector<std::size_t> tree(robot_.bodies.size(), 0);
-        std::set<Words> words;
-        for (std::size_t i = 0; i < robot_.bodies.size(); ++i)
-        {
-            const std::size_t parent = robot_.bodies[i].parent;
-            tree[i] = parent == kWorld ? 0 : parent == 0 ? i : tree[parent];
-            for (const RobotShape& s : robot_.bodies[i].shapes) words.insert({tree[i], s.contact_type, s.contact_affinity});
-        }
-        for (std::size_t i = 0; i < robot_.bodies.size(); ++i)
-            for (RobotShape& s : robot_.bodies[i].shapes) match_contacts_of(s, tree[i], words);
-    }
-
-    void match_contacts_of(RobotShape& s, std::size_t tree, const std::set<Words>& words)
-    {
-        std::size_t matches = 0, others = 0;
-        for (const Words& w : words)
-            if (w.tree != tree && (w.type != 0 || w.affinity != 0))
-                matches += (s.contact_type & w.affinity) != 0 || (w.type & s.contact_affinity) != 0 ? 1 : 0, ++others;
-        s.collides = settings_.collisions() && (others == 0 ? s.contact_type != 0 || s.contact_affinity != 0 : matches > 0);
-        if (matches > 0 && matches < others)
-            document_.lost(s.where, "<geom>", "contype and conaffinity let it collide with some shapes only: here it collides with all");
-    }
 
     void read_equality(const XmlElement& e)
     {
@@ -284,8 +251,28 @@ private:
 
     void read_contact(const XmlElement& e)
     {
-        if (e.name == "exclude") return document_.lost(e, "has no effect: bodies of one tree of joints never collide, others always do");
-        document_.lost(e, "is not carried over");
+        const bool exclude = e.name == "exclude";
+        if (!exclude && e.name != "pair") return document_.lost(e, "is not carried over");
+        const char *const first = exclude ? "body1" : "geom1", *const second = exclude ? "body2" : "geom2";
+        document_.list_attributes(e, {"name", "class", first, second, exclude ? first : "friction"});
+        if (!e.find_attribute(first) || !e.find_attribute(second))
+            return document_.error(e, std::string("needs ") + first + " and " + second);
+        if (exclude)
+            robot_.exclusions.push_back({document_.text(e, first), document_.text(e, second), e.where});
+        else if (settings_.collisions())
+            read_pair(e);
+    }
+
+    void read_pair(const XmlElement& e)
+    {
+        CollidingPair pair{document_.text(e, "geom1"), document_.text(e, "geom2"), {}, e.where};
+        double friction[5] = {1, 1, 0, 0, 0};
+        const std::size_t given = document_.numbers(e, "friction", friction, 1);
+        if (friction[0] < 0) document_.error(e, "friction must not be negative");
+        if (given > 0) pair.friction = friction[0];
+        if (given > 2 || (given > 1 && friction[1] != friction[0]))
+            document_.lost(e, "friction: only the first number is carried over, that of sliding");
+        robot_.pairs.push_back(std::move(pair));
     }
 
     const XmlElement& root_;

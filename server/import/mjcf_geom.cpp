@@ -1,8 +1,12 @@
 #include "import/mjcf_geom.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "import/solid_shapes.h"
+#include "import/surface_law.h"
+#include "model/numbers.h"
 #include "objects/shapes/volume_integration.h"
 
 namespace plab::import
@@ -53,7 +57,22 @@ bool read_size(const XmlElement& e, RobotShape& shape, Document& document)
     return true;
 }
 
-void read_contact(const XmlElement& e, RobotShape& shape, Document& document)
+/// What it lets a contact do beyond a rebound is listed.
+Solref read_solref(const XmlElement& e, MjcfSettings& settings, Document& document)
+{
+    double given[2] = {0.02, 1};
+    if (document.numbers(e, "solref", given, 1) == 0) return {};
+    const Solref out{given[0], given[1]};
+    if ((out.first > 0) != (out.second > 0)) return document.error(e, "solref must be two positive numbers, or two that are not"), Solref{};
+    const ContactSpring spring = spring_of(out);
+    if (settings.is_new(document.text(e, "solref")))
+        document.lost(e, "solref: contacts are rigid; the spring of " + model::format_real(spring.frequency / (2 * std::numbers::pi)) +
+                             " 1/s with the damping ratio " + model::format_real(spring.ratio) +
+                             " is not carried over, but for its rebound (a Manager/SoftStep has hertz and damping_ratio)");
+    return out;
+}
+
+void read_contact(const XmlElement& e, RobotShape& shape, MjcfSettings& settings, Document& document)
 {
     const auto word = [&](const char* name)
     {
@@ -65,8 +84,13 @@ void read_contact(const XmlElement& e, RobotShape& shape, Document& document)
     double friction[3] = {1, 0.005, 0.0001};
     if (document.numbers(e, "friction", friction, 1) > 1)
         document.lost(e, "friction: only sliding friction is carried over, not that of twisting and rolling");
-    shape.friction = friction[0];
-    if (shape.friction < 0) document.error(e, "friction must not be negative");
+    shape.surface.friction = friction[0];
+    if (shape.surface.friction < 0) document.error(e, "friction must not be negative");
+    const double condim = document.number(e, "condim", 3);
+    if (condim != 1 && condim != 3 && condim != 4 && condim != 6) document.error(e, "condim must be one of 1, 3, 4, 6");
+    shape.surface.frictionless = condim == 1;
+    shape.surface.priority = static_cast<int>(std::clamp(document.number(e, "priority", 0), -1e6, 1e6));
+    shape.surface.solref = read_solref(e, settings, document);
 }
 
 MassProperties mass_of(const XmlElement& e, const RobotShape& shape, Document& document)
@@ -96,7 +120,7 @@ std::optional<MjcfGeom> read_geom(const XmlElement& e, bool has_mass, MjcfSettin
     if (*kind != ShapeKind::Mesh && !mesh.empty()) document.lost(e, "a shape fitted to the mesh '" + mesh + "' is not carried over");
     if (*kind != ShapeKind::Mesh && !mesh.empty()) return {};
     RobotShape& shape = out.shape;
-    shape.kind = *kind, shape.where = e.where;
+    shape.kind = *kind, shape.where = e.where, shape.name = document.text(e, "name");
     shape.pose = settings.pose(e);
     if (!read_size(e, shape, document)) return {};
     if (shape.kind == ShapeKind::Mesh && !(shape.mesh = settings.mesh(mesh)))
@@ -104,7 +128,7 @@ std::optional<MjcfGeom> read_geom(const XmlElement& e, bool has_mass, MjcfSettin
     const std::string material = document.text(e, "material");
     if (!material.empty()) shape.color = settings.material(material);
     if (const auto color = settings.color(e)) shape.color = color;
-    read_contact(e, shape, document);
+    read_contact(e, shape, settings, document);
     if (has_mass) out.mass = mass_of(e, shape, document);
     return out;
 }

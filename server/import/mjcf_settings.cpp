@@ -41,8 +41,9 @@ void list_unused_attributes(const XmlElement& e, Document& document)
 {
     document.list_children(e, {});
     if (e.name == "geom")
-        document.list_attributes(e, {"name", "class", "type", "size", "fromto", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis",
-                                     "mass", "density", "rgba", "material", "contype", "conaffinity", "friction", "mesh"});
+        document.list_attributes(
+            e, {"name", "class",   "type", "size",     "fromto",  "pos",         "quat",     "axisangle", "euler",  "xyaxes",   "zaxis",
+                "mass", "density", "rgba", "material", "contype", "conaffinity", "friction", "mesh",      "condim", "priority", "solref"});
     if (e.name == "joint")
         document.list_attributes(e, {"name", "class", "type", "pos", "axis", "range", "limited", "ref", "springref", "stiffness", "damping",
                                      "frictionloss", "armature"});

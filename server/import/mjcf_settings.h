@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "import/document.h"
@@ -40,6 +41,8 @@ public:
     std::optional<Vec3> material(const std::string& name) const;
     /// Null if there is no such mesh, or it could not be read (which is listed).
     std::shared_ptr<const TriangleMesh> mesh(const std::string& name) const;
+    /// Whether this softness of contacts is met for the first time: many shapes have that of a class.
+    bool is_new(const std::string& solref) { return softness_.insert(solref).second; }
     /// rgba as a colour.
     std::optional<Vec3> color(const XmlElement& e);
 
@@ -62,6 +65,7 @@ private:
     double total_mass_ = -1;
     std::string inertia_from_geom_ = "auto", euler_sequence_ = "xyz", mesh_folder_, step_ = "0.002";
     Vec3 gravity_{0, 0, -9.81};
+    std::set<std::string> softness_;
     std::map<std::string, Class> classes_;
     std::map<std::string, Vec3> materials_;
     std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;

@@ -3,6 +3,7 @@
 /// Frames: W the world, B a body, P its parent. Poses hold where all joints have the value `zero`.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -69,6 +70,32 @@ enum class ShapeKind
     Mesh,
 };
 
+/// The two numbers of MJCF's solref (surface_law.h).
+struct Solref
+{
+    double first = 0.02, second = 1;
+    auto operator<=>(const Solref&) const = default;
+};
+
+/// How a shape touches others. The order is that of roughness.
+struct Surface
+{
+    double friction = 1;        ///< Coulomb coefficient
+    double restitution = 0;     ///< Newton's coefficient; in MJCF it follows from solref
+    int priority = 0;           ///< of MJCF: of two surfaces the one with the greater number counts alone
+    bool frictionless = false;  ///< unless the other surface says otherwise (condim="1" of MJCF)
+    Solref solref;
+    std::string own;  ///< not empty: that of this body alone, for laws of its own
+    auto operator<=>(const Surface&) const = default;
+};
+
+/// How the laws of two surfaces are combined.
+enum class SurfaceRule
+{
+    MuJoCo,  ///< the larger friction
+    Gazebo,  ///< the smaller friction and restitution
+};
+
 struct RobotShape
 {
     ShapeKind kind = ShapeKind::Box;
@@ -77,8 +104,9 @@ struct RobotShape
     std::shared_ptr<const TriangleMesh> mesh;
     std::optional<Vec3> color;
     bool collides = true;
-    std::uint32_t contact_type = 1, contact_affinity = 1;  ///< of MJCF: it collides with what has one of its bits in the other word
-    double friction = 0;                                   ///< Coulomb coefficient
+    std::uint32_t contact_type = 1, contact_affinity = 1;  ///< it collides with what has one of its bits in the other word
+    Surface surface;
+    std::string name, owner;  ///< of the shape, may be empty; of the file's body, once it is assembled
     blueprint::TextPosition where;
 };
 
@@ -89,6 +117,8 @@ struct RobotBody
     Pose pose;                  ///< X_PB
     bool free = false;          ///< moves freely in the world, wherever it begins
     bool weightless = false;    ///< gravity does not act on it
+    bool self_collide = true;   ///< collides with the other links of its model
+    std::size_t model = 0;      ///< number of the model that it is a part of
     std::vector<Joint> joints;  ///< from the parent outwards; none and not free: fixed to the parent
     MassProperties mass;        ///< in B
     std::vector<RobotShape> shapes;
@@ -113,15 +143,34 @@ struct Coupling
     blueprint::TextPosition where;
 };
 
+/// Bodies that do not collide with one another.
+struct ExcludedBodies
+{
+    std::string first, second;
+    blueprint::TextPosition where;
+};
+
+/// Shapes that collide whatever else is said.
+struct CollidingPair
+{
+    std::string first, second;
+    std::optional<double> friction;  ///< of this pair
+    blueprint::TextPosition where;
+};
+
 struct Robot
 {
     std::string title;
     std::string step;  ///< s, as a text; "": pLab's default
     Vec3 gravity{0, 0, -9.81};
-    bool base_collides = false;     ///< bodies that never move collide with the others
-    std::vector<RobotBody> bodies;  ///< parents come first
+    bool base_collides = false;  ///< bodies that never move collide with the others
+    SurfaceRule surface_rule = SurfaceRule::Gazebo;
+    bool fixed_parents_collide = false;  ///< a body collides with the one that it hangs on if that never moves (MJCF)
+    std::vector<RobotBody> bodies;       ///< parents come first
     std::vector<Coupling> couplings;
     std::vector<Actuator> actuators;
+    std::vector<ExcludedBodies> exclusions;
+    std::vector<CollidingPair> pairs;
 };
 
 }  // namespace plab::import

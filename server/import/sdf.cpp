@@ -36,19 +36,26 @@ public:
         if (world && model) document_.lost(*model, "is not carried over: the world counts");
         robot_.base_collides = true;
         if (world) read_world(*world, version);
-        if (!world && model) read_model(*model, "", version, false, true, 0);
+        if (!world && model) read_model(*model, "", version, {}, true, 0);
         if (!document_.failed()) read_links();
         if (!document_.failed()) read_joints();
         if (!document_.failed()) order();
+        if (!document_.failed()) start_mimics();
         return std::move(robot_);
     }
 
 private:
+    /// What the models around a link say of it.
+    struct ModelRules
+    {
+        bool is_static = false, self_collide = false;
+        std::size_t model = 0;  ///< number of the outermost one
+    };
     struct Link
     {
         const XmlElement* element;
         std::string scope, full;
-        bool is_static;
+        ModelRules rules;
         RobotBody body;
         std::size_t joint = kNone;          ///< to its parent
         std::vector<std::size_t> children;  ///< joints
@@ -73,9 +80,9 @@ private:
         if (const XmlElement* const physics = find_child(e, "physics")) read_physics(*physics);
         for (const XmlElement& child : e.children)
             if (child.name == "model")
-                read_model(child, "", version, false, false, 0);
+                read_model(child, "", version, {}, false, 0);
             else if (child.name == "include")
-                read_include(child, "", version, false, 0);
+                read_include(child, "", version, {}, 0);
             else if (child.name == "frame")
                 read_frame(child, "", "world");
     }
@@ -89,13 +96,13 @@ private:
         robot_.step = model::format_real(step);
     }
 
-    void read_include(const XmlElement& e, const std::string& scope, double version, bool is_static, int depth)
+    void read_include(const XmlElement& e, const std::string& scope, double version, ModelRules rules, int depth)
     {
         if (depth > kDeepest) return document_.error(e, "models are nested more than 50 deep");
         XmlElement model;
         if (!files_.include(e, model, version)) return;
         included_.push_back(std::make_unique<XmlElement>(std::move(model)));
-        read_model(*included_.back(), scope, version, is_static, false, depth + 1);
+        read_model(*included_.back(), scope, version, rules, false, depth + 1);
     }
 
     static std::string name_of(const XmlElement& e, Document& document)
@@ -106,7 +113,7 @@ private:
     }
 
     /// `alone`: the only model of the file, whose name its links do not need.
-    void read_model(const XmlElement& e, const std::string& scope, double version, bool is_static, bool alone, int depth)
+    void read_model(const XmlElement& e, const std::string& scope, double version, ModelRules rules, bool alone, int depth)
     {
         if (depth > kDeepest) return document_.error(e, "models are nested more than 50 deep");
         if (++models_ > kMostModels) return document_.error(e, "is one model too many: 20,000 are allowed");
@@ -116,28 +123,29 @@ private:
         document_.list_attributes(e, {"name", "canonical_link", "placement_frame"});
         document_.list_children(
             e, {"static", "pose", "link", "joint", "frame", "model", "include", "self_collide", "allow_auto_disable", "enable_wind"});
-        for (const char* const other : {"self_collide", "enable_wind"})
-            if (sdf_truth(e, other, false, document_)) document_.lost(*find_child(e, other), "is not carried over");
-        is_static = is_static || sdf_truth(e, "static", false, document_);
+        if (sdf_truth(e, "enable_wind", false, document_)) document_.lost(*find_child(e, "enable_wind"), "is not carried over");
+        rules.is_static = rules.is_static || sdf_truth(e, "static", false, document_);
+        rules.self_collide = sdf_truth(e, "self_collide", rules.self_collide, document_);
+        if (scope.empty()) rules.model = models_;
         SdfFrame frame = frame_of(e, scope);
         frame.is_model = true, frame.placement = document_.text(e, "placement_frame"), frame.attached_to = canonical_link(e);
         if (!frames_.add(full, std::move(frame))) return;
-        read_parts(e, full, version, is_static, depth);
+        read_parts(e, full, version, rules, depth);
     }
 
-    void read_parts(const XmlElement& e, const std::string& full, double version, bool is_static, int depth)
+    void read_parts(const XmlElement& e, const std::string& full, double version, ModelRules rules, int depth)
     {
         for (const XmlElement& child : e.children)
             if (child.name == "link")
-                add_link(child, full, is_static);
+                add_link(child, full, rules);
             else if (child.name == "joint")
                 add_joint(child, full, version);
             else if (child.name == "frame")
                 read_frame(child, full, "__model__");
             else if (child.name == "model")
-                read_model(child, full, version, is_static, false, depth + 1);
+                read_model(child, full, version, rules, false, depth + 1);
             else if (child.name == "include")
-                read_include(child, full, version, is_static, depth + 1);
+                read_include(child, full, version, rules, depth + 1);
     }
 
     /// The named one, or the first link of the model or of the models in it.
@@ -171,13 +179,14 @@ private:
         frames_.add(SdfFrames::full_name(scope, name), std::move(frame));
     }
 
-    void add_link(const XmlElement& e, const std::string& scope, bool is_static)
+    void add_link(const XmlElement& e, const std::string& scope, ModelRules rules)
     {
         const std::string name = name_of(e, document_), full = SdfFrames::full_name(scope, name);
         if (name.empty() || !frames_.add(full, frame_of(e, scope))) return;
         if (links_.size() >= kMostLinks) return document_.error(e, "is one link too many: 100,000 are allowed");
         numbers_[full] = links_.size();
-        links_.push_back({&e, scope, full, is_static, {}, kNone, {}});
+        rules.self_collide = sdf_truth(e, "self_collide", rules.self_collide, document_);
+        links_.push_back({&e, scope, full, rules, {}, kNone, {}});
     }
 
     void add_joint(const XmlElement& e, const std::string& scope, double version)
@@ -199,9 +208,10 @@ private:
     {
         for (Link& link : links_)
         {
-            link.body = read_sdf_link(*link.element, link.scope, link.full, link.is_static, frames_, files_, document_);
+            link.body = read_sdf_link(*link.element, link.scope, link.full, link.rules.is_static, frames_, files_, document_);
             link.body.name = shown(link.full), link.body.pose = frames_.in_world(link.full);
-            link.body.free = !link.is_static && !fixed_base_;
+            link.body.free = !link.rules.is_static && !fixed_base_;
+            link.body.self_collide = link.rules.self_collide, link.body.model = link.rules.model;
         }
     }
 
@@ -213,9 +223,10 @@ private:
             auto joint = read_sdf_joint(*element.element, element.scope, element.full, element.version, frames_, document_);
             if (!joint) continue;
             for (Joint& one : joint->joints) one.name = shown(one.name);
+            mimics_.insert(mimics_.end(), joint->mimics.begin(), joint->mimics.end());
             Link& child = links_[numbers_.at(joint->child)];
             const std::size_t parent = joint->parent.empty() ? kNone : numbers_.at(joint->parent);
-            if (child.is_static)
+            if (child.rules.is_static)
                 document_.lost(joint->where, Document::title_of(*element.element), "holds a static link, and is not carried over");
             else if (child.joint != kNone || hangs_on(parent, numbers_.at(joint->child)))
                 close_loop(*joint);
@@ -249,6 +260,7 @@ private:
             c.kind = CouplingKind::Point;
         }
         if (!joint.joints.empty()) c.joint = joint.joints.front(), c.anchor = c.joint.anchor;
+        if (!c.second.empty()) robot_.exclusions.push_back({c.first, c.second, c.where});
         robot_.couplings.push_back(std::move(c));
     }
 
@@ -282,6 +294,26 @@ private:
         }
     }
 
+    /// A joint that mimics another one begins where that one puts it, and follows it as a gear.
+    void start_mimics()
+    {
+        std::map<std::string, Joint*> by_name;
+        for (RobotBody& body : robot_.bodies)
+            for (Joint& joint : body.joints) by_name[joint.name] = &joint;
+        for (const SdfMimic& m : mimics_)
+        {
+            const std::string leader = shown(m.leader), name = shown(m.follower);
+            const auto lead = by_name.find(leader), follower = by_name.find(name);
+            if (lead == by_name.end() || follower == by_name.end() || leader == name)
+            {
+                document_.error(m.where, "<mimic>", "'" + name + "' cannot follow '" + leader + "': it has to be another moving joint");
+                continue;
+            }
+            follower->second->start = m.multiplier * (lead->second->start - m.reference) + m.offset;
+            robot_.couplings.push_back({CouplingKind::Gear, name + ".mimic", leader, name, m.multiplier, {}, {}, m.where});
+        }
+    }
+
     bool fixed_base_;
     Document& document_;
     SdfFiles files_;
@@ -292,6 +324,7 @@ private:
     std::map<std::string, std::size_t> numbers_;  ///< of links, by full name
     std::vector<ReadJoint> joint_elements_;
     std::vector<SdfJoint> joints_;
+    std::vector<SdfMimic> mimics_;
     std::size_t models_ = 0;
     std::string prefix_;
 };

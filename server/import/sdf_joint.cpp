@@ -74,6 +74,7 @@ private:
             Joint one = joint;
             if (name == std::string("axis2")) one.name += ".2";
             read_axis(*axis, type != "continuous", one);
+            if (const XmlElement* const mimic = find_child(*axis, "mimic")) read_mimic(*mimic, one.name, out);
             out.joints.push_back(std::move(one));
         }
         return true;
@@ -81,7 +82,7 @@ private:
 
     void read_axis(const XmlElement& e, bool bounded, Joint& joint)
     {
-        document_.list_children(e, {"xyz", "limit", "dynamics", "use_parent_model_frame", "initial_position"});
+        document_.list_children(e, {"xyz", "limit", "dynamics", "use_parent_model_frame", "mimic"});
         const XmlElement* const xyz = find_child(e, "xyz");
         const Vec3 given = normalized(sdf_vector(e, "xyz", {0, 0, 1}, document_));
         if (given == Vec3{}) return document_.error(e, "xyz must be a direction, not the zero vector");
@@ -93,6 +94,17 @@ private:
         joint.axis = normalized(rotate_back(X_WB_.q, rotate(q, given)));
         if (const XmlElement* const dynamics = find_child(e, "dynamics")) read_dynamics(*dynamics, joint);
         if (const XmlElement* const limit = find_child(e, "limit")) read_limit(*limit, bounded, joint);
+    }
+
+    void read_mimic(const XmlElement& e, const std::string& follower, SdfJoint& out)
+    {
+        document_.list_attributes(e, {"joint", "axis"});
+        document_.list_children(e, {"multiplier", "offset", "reference"});
+        const std::string leader = document_.text(e, "joint");
+        if (leader.empty()) return document_.error(e, "needs the name of a joint");
+        out.mimics.push_back({SdfFrames::full_name(scope_, leader) + (document_.text(e, "axis") == "axis2" ? ".2" : ""), follower,
+                              sdf_number(e, "multiplier", 1, document_), sdf_number(e, "offset", 0, document_),
+                              sdf_number(e, "reference", 0, document_), e.where});
     }
 
     void read_dynamics(const XmlElement& e, Joint& joint)

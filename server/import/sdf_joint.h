@@ -11,11 +11,20 @@
 namespace plab::import
 {
 
+/// One axis of a joint follows that of another one: q = multiplier (q of the leader - reference) + offset.
+struct SdfMimic
+{
+    std::string leader, follower;  ///< full names of joints as they are in SdfJoint::joints
+    double multiplier = 1, offset = 0, reference = 0;
+    TextPosition where;
+};
+
 struct SdfJoint
 {
     std::string full, scope;    ///< its full name, and that of its model
     std::string parent, child;  ///< full names of links; "" for the world
     std::vector<Joint> joints;  ///< from the parent outwards, in the frame of the child
+    std::vector<SdfMimic> mimics;
     TextPosition where;
 };
 

@@ -1,5 +1,8 @@
 #include "import/sdf_link.h"
 
+#include <charconv>
+#include <cmath>
+
 #include "import/link_shapes.h"
 #include "import/mesh_file.h"
 #include "import/sdf_text.h"
@@ -10,6 +13,9 @@ namespace plab::import
 {
 namespace
 {
+
+/// Files write "infinite" as they like.
+constexpr double kMostFriction = 1e6;
 
 class LinkReader
 {
@@ -27,7 +33,7 @@ public:
         RobotBody body;
         body.name = full_, body.where = e.where;
         body.weightless = !sdf_truth(e, "gravity", true, document_);
-        for (const char* const name : {"self_collide", "enable_wind", "kinematic"})
+        for (const char* const name : {"enable_wind", "kinematic"})
             if (sdf_truth(e, name, false, document_)) document_.lost(*find_child(e, name), "is not carried over");
         std::vector<RobotShape> seen, felt;
         std::vector<MassProperties> solids;
@@ -100,7 +106,8 @@ private:
         document_.list_children(e, seen ? std::initializer_list<std::string_view>{"pose", "geometry", "material", "cast_shadows"}
                                         : std::initializer_list<std::string_view>{"pose", "geometry", "surface", "density"});
         RobotShape shape;
-        shape.where = e.where, shape.collides = !seen, shape.friction = 1;
+        shape.where = e.where, shape.collides = !seen;
+        shape.contact_type = shape.contact_affinity = 0xffff;
         shape.pose = in_link(e);
         if (const XmlElement* const material = find_child(e, "material")) read_material(*material, shape);
         if (const XmlElement* const surface = find_child(e, "surface")) read_surface(*surface, shape);
@@ -169,21 +176,53 @@ private:
         shape.color = Vec3{c[0], c[1], c[2]};
     }
 
-    /// The first coefficient of friction; Gazebo's default is 1.
     void read_surface(const XmlElement& e, RobotShape& shape)
     {
-        document_.list_children(e, {"friction"});
-        const XmlElement* const friction = find_child(e, "friction");
-        if (!friction) return;
-        document_.list_children(*friction, {"ode"});
-        const XmlElement* const ode = find_child(*friction, "ode");
+        document_.list_children(e, {"friction", "bounce", "contact"});
+        if (const XmlElement* const friction = find_child(e, "friction")) read_friction(*friction, shape);
+        if (const XmlElement* const bounce = find_child(e, "bounce")) read_bounce(*bounce, shape);
+        if (const XmlElement* const contact = find_child(e, "contact")) read_masks(*contact, shape);
+    }
+
+    /// The first coefficient of friction; Gazebo's default is 1.
+    void read_friction(const XmlElement& e, RobotShape& shape)
+    {
+        document_.list_children(e, {"ode"});
+        const XmlElement* const ode = find_child(e, "ode");
         if (!ode) return;
         document_.list_children(*ode, {"mu", "mu2"});
-        shape.friction = sdf_number(*ode, "mu", 1, document_);
-        if (shape.friction < 0) return document_.error(*ode, "mu must not be negative");
-        const double other = sdf_number(*ode, "mu2", shape.friction, document_);
-        if (other != shape.friction)
+        shape.surface.friction = std::fmin(sdf_number(*ode, "mu", 1, document_), kMostFriction);
+        if (shape.surface.friction < 0) return document_.error(*ode, "mu must not be negative");
+        const double other = std::fmin(sdf_number(*ode, "mu2", shape.surface.friction, document_), kMostFriction);
+        if (other != shape.surface.friction)
             document_.lost(*find_child(*ode, "mu2"), "is not carried over: friction is the same in all directions");
+    }
+
+    void read_bounce(const XmlElement& e, RobotShape& shape)
+    {
+        document_.list_children(e, {"restitution_coefficient"});
+        shape.surface.restitution = sdf_number(e, "restitution_coefficient", 0, document_);
+        if (!(shape.surface.restitution >= 0 && shape.surface.restitution <= 1))
+            document_.error(e, "restitution_coefficient must be from 0 to 1");
+    }
+
+    /// Shapes collide if the category of one has a bit of the mask of the other; collide_bitmask alone stands for both.
+    void read_masks(const XmlElement& e, RobotShape& shape)
+    {
+        document_.list_children(e, {"collide_bitmask", "category_bitmask"});
+        const auto word = [&](const char* name, std::uint32_t otherwise)
+        {
+            const std::string text = sdf_text(e, name);
+            if (text.empty()) return otherwise;
+            const bool hex = text.starts_with("0x") || text.starts_with("0X");
+            std::uint32_t value = 0;
+            const char *const begin = text.data() + (hex ? 2 : 0), *const end = text.data() + text.size();
+            const auto [at, fault] = std::from_chars(begin, end, value, hex ? 16 : 10);
+            if (fault != std::errc() || at != end) document_.error(e, std::string(name) + " must be a whole number of 32 bits");
+            return value;
+        };
+        shape.contact_affinity = word("collide_bitmask", 0xffff);
+        shape.contact_type = word("category_bitmask", shape.contact_affinity);
     }
 
     const std::string &scope_, &full_;

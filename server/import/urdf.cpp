@@ -6,6 +6,7 @@
 
 #include "import/link_shapes.h"
 #include "import/mesh_file.h"
+#include "import/sdf_text.h"
 #include "import/urdf_joint.h"
 
 namespace plab::import
@@ -27,13 +28,16 @@ Pose read_origin(const XmlElement& parent, Document& document)
 class UrdfReader
 {
 public:
-    UrdfReader(const XmlElement& root, bool fixed_base, Document& document) : root_(root), fixed_base_(fixed_base), document_(document) {}
+    UrdfReader(const XmlElement& root, bool fixed_base, bool self_collide, Document& document)
+        : root_(root), fixed_base_(fixed_base), self_collide_(self_collide), document_(document)
+    {
+    }
 
     Robot read()
     {
         if (refuse_macros(root_)) return {};
         document_.list_attributes(root_, {"name", "version", "xmlns:xacro"});
-        document_.list_children(root_, {"link", "joint", "material"});
+        document_.list_children(root_, {"link", "joint", "material", "gazebo"});
         robot_.title = document_.text(root_, "name");
         for (const XmlElement& e : root_.children)
         {
@@ -41,6 +45,8 @@ public:
         }
         for (const XmlElement& e : root_.children)
             if (e.name == "link") read_link(e);
+        for (const XmlElement& e : root_.children)
+            if (e.name == "gazebo") read_gazebo(e);
         for (const XmlElement& e : root_.children)
             if (e.name == "joint") read_joint(e);
         if (links_.empty()) document_.error(root_, "has no <link>");
@@ -97,19 +103,45 @@ private:
         const std::string name = document_.text(e, "name");
         if (name.empty()) return document_.error(e, "needs a name");
         document_.list_attributes(e, {"name"});
-        document_.list_children(e, {"inertial", "visual", "collision"});
+        document_.list_children(e, {"inertial", "visual", "collision", "contact"});
         document_.list_repeated(e, {"visual", "collision"});
         Link link;
-        link.body.name = name, link.body.where = e.where;
+        link.body.name = name, link.body.where = e.where, link.body.self_collide = self_collide_;
         if (const XmlElement* const inertial = find_child(e, "inertial"))
             link.inertial = true, link.body.mass = read_inertial(*inertial, name);
+        const Surface surface = read_surface(e);
         std::vector<RobotShape> seen, felt;
         for (const XmlElement& child : e.children)
             if (child.name == "visual" || child.name == "collision")
-                if (auto shape = read_shape(child)) (child.name == "visual" ? seen : felt).push_back(std::move(*shape));
+                if (auto shape = read_shape(child, surface)) (child.name == "visual" ? seen : felt).push_back(std::move(*shape));
         link.body.shapes = joined_shapes(std::move(seen), std::move(felt), name, document_);
         if (!links_.emplace(name, std::move(link)).second) return document_.error(e, "there are two links of this name");
         names_.push_back(name);
+    }
+
+    /// Gazebo's own extension, of a link or of the whole robot.
+    void read_gazebo(const XmlElement& e)
+    {
+        const std::string reference = document_.text(e, "reference");
+        const auto link = links_.find(reference);
+        const XmlElement* given = find_child(e, "selfCollide");
+        if (!given) given = find_child(e, "self_collide");
+        const XmlElement* const mu = find_child(e, "mu1");
+        if ((!given && !mu) || (!reference.empty() && link == links_.end())) return document_.lost(e, "is not carried over");
+        document_.list_attributes(e, {"reference"});
+        document_.list_children(e, {"selfCollide", "self_collide", "mu1", "mu2"});
+        const bool collide = given && sdf_truth(e, given->name, false, document_);
+        const double friction = sdf_number(e, "mu1", 1, document_);
+        if (!(friction >= 0)) document_.error(e, "mu1 must not be negative");
+        if (const XmlElement* const other = find_child(e, "mu2"); other && sdf_number(e, "mu2", friction, document_) != friction)
+            document_.lost(*other, "is not carried over: friction is the same in all directions");
+        for (auto& [name, one] : links_)
+        {
+            if (!reference.empty() && name != reference) continue;
+            one.body.self_collide = one.body.self_collide || collide;
+            for (RobotShape& s : one.body.shapes)
+                if (mu) s.surface.friction = std::fmin(friction, 1e6);
+        }
     }
 
     MassProperties read_inertial(const XmlElement& e, const std::string& link)
@@ -135,7 +167,24 @@ private:
         return out;
     }
 
-    std::optional<RobotShape> read_shape(const XmlElement& e)
+    /// URDF has no contact parameters; <contact> is Bullet's extension.
+    Surface read_surface(const XmlElement& link)
+    {
+        Surface out;
+        const XmlElement* const contact = find_child(link, "contact");
+        if (!contact) return out;
+        document_.list_attributes(*contact, {});
+        document_.list_children(*contact, {"lateral_friction", "restitution"});
+        if (const XmlElement* const e = find_child(*contact, "lateral_friction"))
+            document_.list_all_but(*e, {"value"}), out.friction = document_.number(*e, "value", 1);
+        if (const XmlElement* const e = find_child(*contact, "restitution"))
+            document_.list_all_but(*e, {"value"}), out.restitution = document_.number(*e, "value", 0);
+        if (out.friction < 0 || !(out.restitution >= 0 && out.restitution <= 1))
+            document_.error(*contact, "lateral_friction must not be negative, and restitution from 0 to 1");
+        return out;
+    }
+
+    std::optional<RobotShape> read_shape(const XmlElement& e, const Surface& surface)
     {
         document_.list_attributes(e, {"name"});
         document_.list_children(e, {"origin", "geometry", "material"});
@@ -145,8 +194,7 @@ private:
         RobotShape shape;
         shape.where = e.where;
         shape.pose = read_origin(e, document_);
-        shape.collides = e.name == "collision";
-        shape.friction = 1;
+        shape.collides = e.name == "collision", shape.surface = surface;
         if (const XmlElement* const material = find_child(e, "material")) shape.color = read_material(*material);
         for (std::size_t i = 1; i < geometry->children.size(); ++i)
             document_.lost(geometry->children[i], "is not carried over: a geometry has one shape");
@@ -237,6 +285,7 @@ private:
         }
         else
             body.free = !fixed_base_ && !(body.name == "world" && !link.inertial);
+        robot_.base_collides = robot_.base_collides || body.self_collide;
         robot_.bodies.push_back(std::move(body));
     }
 
@@ -262,7 +311,7 @@ private:
     }
 
     const XmlElement& root_;
-    bool fixed_base_;
+    bool fixed_base_, self_collide_;
     Document& document_;
     Robot robot_;
     std::map<std::string, Vec3> materials_;
@@ -273,6 +322,9 @@ private:
 
 }  // namespace
 
-Robot read_urdf(const XmlElement& root, bool fixed_base, Document& document) { return UrdfReader(root, fixed_base, document).read(); }
+Robot read_urdf(const XmlElement& root, bool fixed_base, bool self_collide, Document& document)
+{
+    return UrdfReader(root, fixed_base, self_collide, document).read();
+}
 
 }  // namespace plab::import

@@ -8,6 +8,6 @@ namespace plab::import
 {
 
 /// `root`: <robot>. Errors and losses go into `document`; after an error the result is incomplete.
-Robot read_urdf(const XmlElement& root, bool fixed_base, Document& document);
+Robot read_urdf(const XmlElement& root, bool fixed_base, bool self_collide, Document& document);
 
 }  // namespace plab::import

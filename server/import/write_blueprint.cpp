@@ -7,6 +7,7 @@
 #include "import/component_text.h"
 #include "import/joint_text.h"
 #include "import/step_length.h"
+#include "import/surface_law.h"
 #include "model/numbers.h"
 #include "plab/symmetric.h"
 
@@ -57,21 +58,28 @@ std::string camera(const Assembly& assembly)
 class Writer
 {
 public:
-    Writer(const Robot& robot, const Assembly& assembly, const std::string& group, Document& document)
-        : robot_(robot), assembly_(assembly), group_(group), document_(document), ids_(group.empty() ? "" : group + "/")
+    Writer(const Robot& robot, const Assembly& assembly, std::span<const CollisionExclusion> exclusions, const std::string& group,
+           Document& document)
+        : robot_(robot),
+          assembly_(assembly),
+          exclusions_(exclusions),
+          group_(group),
+          document_(document),
+          ids_(group.empty() ? "" : group + "/")
     {
-        for (const char* own : {"manager", "gravity", "contact", "contact.hinged", "contact.resolution", "contact.response", "solver"})
-            ids_.make(own);
+        for (const char* own : {"manager", "gravity", "contact", "contact.resolution", "contact.response", "solver"}) ids_.make(own);
     }
 
     WrittenScene run()
     {
         for (const PlacedBody& body : assembly_.bodies) body_ids_.push_back(ids_.make(body.name));
         read_materials();
+        shape_ids_.resize(assembly_.bodies.size());
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_body(i);
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_joints(i);
         for (const Coupling& coupling : robot_.couplings) write_coupling(coupling);
         for (const Actuator& actuator : robot_.actuators) write_actuator(actuator);
+        for (const CollisionExclusion& exclusion : exclusions_) write_exclusion(exclusion);
         if (!body_ids_.empty()) out_.root = body_ids_.front();
         if (!group_.empty()) return write_group();
         write_gravity();
@@ -112,25 +120,63 @@ private:
 
     // ---- bodies
 
-    /// Each body's friction is that of its roughest shape.
+    /// Each body's surface is that of its roughest shape.
     void read_materials()
     {
         for (const PlacedBody& b : assembly_.bodies)
         {
-            double least = kInfinity, most = -kInfinity;
+            Surface least, most;
+            least.friction = kInfinity, most.friction = -kInfinity;
             for (const RobotShape& s : b.shapes)
-                if (s.collides) least = std::min(least, s.friction), most = std::max(most, s.friction);
-            if (most > least)
+                if (s.collides) least = std::min(least, s.surface), most = std::max(most, s.surface);
+            if (collides(b) && most != least)
                 document_.lost(b.where, quoted(b.name),
-                               "its shapes have different friction: pLab has one material for a body, and takes the "
-                               "largest coefficient, " +
-                                   model::format_real(most));
-            friction_.push_back(most);
-            if (collides(b)) frictions_.insert(most);
+                               "its shapes have different surfaces: pLab has one material for a body, and takes that of the roughest, with "
+                               "friction " +
+                                   model::format_real(most.friction));
+            surface_.push_back(most);
+        }
+        read_pairs();
+        for (std::size_t i = 0; i < assembly_.bodies.size(); ++i)
+            if (collides(body(i))) surfaces_.insert(surface_[i]);
+    }
+
+    /// Bodies of pairs with a friction of their own get a surface that no other body has.
+    void read_pairs()
+    {
+        std::map<std::string, std::size_t> owners;
+        for (std::size_t i = 0; i < assembly_.bodies.size() && !robot_.pairs.empty(); ++i)
+            for (const RobotShape& s : body(i).shapes)
+                if (!s.name.empty()) owners[s.name] = i;
+        for (const CollidingPair& pair : robot_.pairs)
+        {
+            if (!pair.friction) continue;
+            const std::size_t a = owners.at(pair.first), b = owners.at(pair.second);
+            if (pair_laws_.size() >= kMostPairLaws)
+                return document_.lost(pair.where, "<pair>", "its friction is not carried over: 50 pairs may have their own");
+            for (const std::size_t i : {a, b})
+                if (surface_[i].own = body_ids_[i]; std::ranges::count_if(body(i).shapes, &RobotShape::collides) > 1)
+                    document_.lost(pair.where, "<pair>", "its friction is that of all shapes of " + quoted(body(i).name));
+            pair_laws_[std::minmax(body_ids_[a], body_ids_[b])] = *pair.friction;
         }
     }
 
-    std::string material_of(double friction) const { return "friction " + model::format_real(friction); }
+    static std::string material_of(const Surface& s)
+    {
+        const Solref usual;
+        return "friction " + model::format_real(s.friction) +
+               (s.restitution > 0 ? " restitution " + model::format_real(s.restitution) : "") +
+               (s.solref == usual ? "" : " solref " + model::format_real(s.solref.first) + " " + model::format_real(s.solref.second)) +
+               (s.priority != 0 ? " priority " + std::to_string(s.priority) : "") + (s.frictionless ? " without friction" : "") +
+               (s.own.empty() ? "" : " of " + s.own);
+    }
+
+    SurfaceLaw law_of(const Surface& a, const Surface& b) const
+    {
+        SurfaceLaw law = surface_law(a, b, robot_.surface_rule);
+        if (const auto own = pair_laws_.find(std::minmax(a.own, b.own)); own != pair_laws_.end()) law.friction = own->second;
+        return law;
+    }
 
     void write_body(std::size_t i)
     {
@@ -141,11 +187,15 @@ private:
         if (!(b.X_WB.q == Quat{})) head += attribute("orientation", b.X_WB.q);
         if (!b.fixed) head += mass_attributes(b.mass);
         if (!b.fixed && !b.weightless) heavy_.push_back(body_ids_[i]);
-        if (frictions_.size() > 1 && collides(b)) head += attribute("material", material_of(friction_[i]));
+        if (surfaces_.size() > 1 && collides(b)) head += attribute("material", material_of(surface_[i]));
         std::vector<RobotShape> shapes = b.shapes;
         if (const auto color = take_color(shapes)) head += attribute("color", *color);
         line(head + (b.shapes.empty() ? "/>" : ">"));
-        for (const RobotShape& shape : shapes) line("  " + shape_component(shape, ids_.make(body_ids_[i] + ".shape")));
+        for (const RobotShape& shape : shapes)
+        {
+            shape_ids_[i].push_back(ids_.make(body_ids_[i] + ".shape"));
+            line("  " + shape_component(shape, shape_ids_[i].back()));
+        }
         if (!b.shapes.empty()) line("</component>");
         out_.bodies += b.fixed ? 0 : 1;
     }
@@ -269,101 +319,78 @@ private:
 
     // ---- contacts
 
-    /// Ids of bodies that collide.
-    struct Groups
-    {
-        std::string between, against;  ///< alone, or never moving; links of trees
-        std::string hinged, free;      ///< alone and held at a point of the world; all that moves otherwise
-        std::size_t moving = 0, held = 0;
-    };
-
     static void add_id(std::string& list, const std::string& id) { list += (list.empty() ? "" : " ") + id; }
 
-    /// The links of a tree do not collide with one another: joints hold parts that overlap. So they are `against`; what is alone, or never
-    /// moves, is `between`. What a joint holds at a point of the world overlaps what is there, but collides with all that moves.
-    Groups group_bodies()
+    std::string ids_of(const std::vector<CollisionMember>& members) const
     {
-        Groups out;
-        std::vector<std::size_t> members(assembly_.bodies.size());
-        for (const PlacedBody& b : assembly_.bodies) members[b.tree] += b.fixed ? 0 : 1;
-        for (std::size_t i = 0; i < assembly_.bodies.size(); ++i)
-        {
-            const PlacedBody& b = body(i);
-            const bool alone = members[b.tree] == 1;
-            if (!collides(b) || (b.fixed && !robot_.base_collides)) continue;
-            if (hangs_at_a_point(b))
-            {
-                document_.lost(b.where, quoted(b.name),
-                               std::string("does not collide") + (alone ? " with what never moves" : "") +
-                                   ": a joint holds it at a point of the world, where it may overlap it");
-                if (alone) add_id(out.hinged, body_ids_[i]), ++out.held;
-                continue;
-            }
-            if (!b.fixed) add_id(out.free, body_ids_[i]), ++out.moving;
-            add_id(b.fixed || alone ? out.between : out.against, body_ids_[i]);
-        }
-        list_lost_pairs(members);
+        std::string out;
+        for (const CollisionMember& m : members)
+            add_id(out, m.shape == CollisionMember::kAll ? body_ids_[m.body] : shape_ids_[m.body][m.shape]);
         return out;
     }
 
+    void write_exclusion(const CollisionExclusion& e)
+    {
+        std::string roles;
+        if (!e.within.empty()) roles += attribute("within", ids_of(e.within));
+        if (!e.a.empty()) roles += attribute("a", ids_of(e.a)) + attribute("b", ids_of(e.b));
+        line("<component" + attribute("id", ids_.make("apart")) + " type=\"Collision/Exclude\"" + roles + "/>");
+    }
+
+    /// What moves collides with all but what is excluded.
     void write_contacts()
     {
-        const Groups groups = group_bodies();
-        const bool usual = !groups.between.empty() && groups.moving > 0,
-                   hinged = groups.held > 1 || (groups.held == 1 && groups.moving > 0);
-        if (!usual && !hinged) return;
-        // A tree of joints moves as one: to go back for each of its impacts, one by one, costs more than all else.
-        const bool trees = !groups.against.empty() || hinged;
-        const auto detection = [&](const char* id, const std::string& between, const std::string& against)
+        std::string between, against;
+        bool trees = false;
+        std::size_t moving = 0;
+        for (std::size_t i = 0; i < assembly_.bodies.size(); ++i)
         {
-            line("<component" + attribute("id", id) + attribute("type", "CDetection/ODE") + attribute("between", between) +
-                 (against.empty() ? "" : attribute("against", against)) + (trees ? attribute("resolution", "contact.resolution") : "") +
-                 attribute("response", "contact.response") + "/>");
-        };
-        if (usual) detection("contact", groups.between, groups.against);
-        if (hinged) detection("contact.hinged", groups.hinged, groups.free);
+            const PlacedBody& b = body(i);
+            if (!collides(b) || (b.fixed && !robot_.base_collides)) continue;
+            add_id(b.fixed ? against : between, body_ids_[i]);
+            moving += b.fixed ? 0 : 1, trees = trees || !b.joints.empty();
+        }
+        const bool excluded = exclusions_.size() == 1 && exclusions_.front().within.size() >= moving;
+        if (moving == 0 || (against.empty() && (moving == 1 || excluded))) return;
+        line("<component id=\"contact\" type=\"CDetection/ODE\"" + attribute("between", between) +
+             (against.empty() ? "" : attribute("against", against)) + (trees ? attribute("resolution", "contact.resolution") : "") +
+             attribute("response", "contact.response") + "/>");
+        // A tree of joints moves as one: to go back for each of its impacts, one by one, costs more than all else.
         if (trees) line("<component id=\"contact.resolution\" type=\"Resolution/Speculative\"/>");
-        line("<component id=\"contact.response\" type=\"Response/Automatic\" manager=\"manager\"" +
-             attribute("friction", frictions_.empty() ? 0 : *frictions_.rbegin()) + "/>");
+        const Surface& roughest = *surfaces_.rbegin();
+        const SurfaceLaw law = law_of(roughest, roughest);
+        line("<component id=\"contact.response\" type=\"Response/Automatic\" manager=\"manager\"" + attribute("friction", law.friction) +
+             (law.restitution > 0 ? attribute("restitution", law.restitution) : "") + "/>");
         manager_ = true;
-        write_friction_pairs();
+        write_surface_laws();
     }
 
-    bool hangs_at_a_point(const PlacedBody& b) const
+    void write_surface_laws()
     {
-        const bool on_world = b.parent == kWorld || body(b.parent).fixed;
-        return !b.fixed && on_world && b.joints.size() == 1 && b.joints.front().joint.kind != JointKind::Slide && robot_.base_collides;
-    }
-
-    /// As in MJCF, the larger coefficient counts.
-    void write_friction_pairs()
-    {
-        if (frictions_.size() < 2) return;
+        if (surfaces_.size() < 2) return;
         std::size_t n = 0;
-        for (auto a = frictions_.begin(); a != frictions_.end(); ++a)
-            for (auto b = frictions_.begin(); b != std::next(a); ++b)
+        for (auto a = surfaces_.begin(); a != surfaces_.end(); ++a)
+            for (auto b = surfaces_.begin(); b != std::next(a); ++b)
+            {
+                const SurfaceLaw law = law_of(*a, *b);
                 line("<component" + attribute("id", ids_.make("materials." + std::to_string(n++))) + " type=\"Material/Pair\"" +
-                     attribute("a", material_of(*b)) + attribute("b", material_of(*a)) + attribute("friction", *a) +
-                     " restitution=\"0\"/>");
-    }
-
-    void list_lost_pairs(const std::vector<std::size_t>& members)
-    {
-        std::set<std::size_t> trees;
-        for (const PlacedBody& b : assembly_.bodies)
-            if (!b.fixed && members[b.tree] > 1 && collides(b) && trees.insert(b.tree).second)
-                document_.lost(body(b.tree).where, quoted(body(b.tree).name),
-                               "the bodies that hang on it do not collide with one another, nor with those of other trees of joints");
+                     attribute("a", material_of(*b)) + attribute("b", material_of(*a)) + attribute("friction", law.friction) +
+                     attribute("restitution", law.restitution) + "/>");
+            }
     }
 
     const Robot& robot_;
     const Assembly& assembly_;
+    std::span<const CollisionExclusion> exclusions_;
     std::string group_;
     Document& document_;
     Ids ids_;
     std::vector<std::string> body_ids_;
-    std::vector<double> friction_;  ///< of each body
-    std::set<double> frictions_;    ///< of bodies that collide
+    std::vector<std::vector<std::string>> shape_ids_;  ///< by body
+    static constexpr std::size_t kMostPairLaws = 50;
+    std::vector<Surface> surface_;                                     ///< of each body
+    std::set<Surface> surfaces_;                                       ///< of bodies that collide
+    std::map<std::pair<std::string, std::string>, double> pair_laws_;  ///< friction, by the ids of two bodies
     std::string text_;
     struct Place
     {
@@ -378,9 +405,10 @@ private:
 
 }  // namespace
 
-WrittenScene write_blueprint(const Robot& robot, const Assembly& assembly, const std::string& group, Document& document)
+WrittenScene write_blueprint(const Robot& robot, const Assembly& assembly, std::span<const CollisionExclusion> exclusions,
+                             const std::string& group, Document& document)
 {
-    return Writer(robot, assembly, group, document).run();
+    return Writer(robot, assembly, exclusions, group, document).run();
 }
 
 }  // namespace plab::import

@@ -1,7 +1,10 @@
 /// From bodies and joints to the text of a blueprint.
 #pragma once
 
+#include <span>
+
 #include "import/assembly.h"
+#include "import/collision_rules.h"
 
 namespace plab::import
 {
@@ -14,6 +17,7 @@ struct WrittenScene
 };
 
 /// Adds to the document's list what pLab has no component for. `group`: "" for a whole scene; otherwise for a part of one (import.h).
-WrittenScene write_blueprint(const Robot& robot, const Assembly& assembly, const std::string& group, Document& document);
+WrittenScene write_blueprint(const Robot& robot, const Assembly& assembly, std::span<const CollisionExclusion> exclusions,
+                             const std::string& group, Document& document);
 
 }  // namespace plab::import

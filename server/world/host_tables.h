@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "plab/bytes.h"
+#include "plab/collision_filter.h"
 #include "plab/result.h"
 #include "plab/tables.h"
 
@@ -18,6 +19,7 @@ struct HostTables
     Quantities quantities;
     Shapes shapes;
     Materials materials;
+    CollisionFilter filter;
     std::vector<std::uint32_t> free_bodies, free_shafts, free_shapes, free_quantities;
     std::vector<std::uint32_t> component_of_body, component_of_shaft, component_of_shape, component_of_quantities;  ///< directory indices
 

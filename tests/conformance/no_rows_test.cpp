@@ -66,7 +66,7 @@ struct Host
         context.dt = 0.01, context.events = &recorder, context.changes = &changes;
         call.context = &context;
         call.bodies = &tables.bodies, call.shafts = &tables.shafts, call.shapes = &tables.shapes;
-        call.materials = &tables.materials, call.wrenches = &wrenches;
+        call.materials = &tables.materials, call.filter = &tables.filter, call.wrenches = &wrenches;
         call.shaft_motion = &recorder, call.ratios = &recorder, call.contacts = &recorder;
         call.reactions = &reactions, call.system = &system;
         call.quantities = &tables.quantities, call.rows_out = &recorder, call.row_reports = &reports;

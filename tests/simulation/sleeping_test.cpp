@@ -209,3 +209,22 @@ TEST_CASE("what slides stays awake above the bounds of speed and acceleration, a
     CHECK(std::fabs(creeping->vec("one", "position").x + a / 2 * 9) < 0.02 * a / 2 * 9);
     CHECK(asleep(*sliding(balanced - 0.01, 0, 9.81)) == 1);
 }
+
+TEST_CASE("an exclusion wakes those that it parts, and its removal those that meet again")
+{
+    Scene s(resting_scene(towers()), "dt=\"1/120\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = true;  // the cubes come back inside one another
+    for (int i = 0; i < 600 && asleep(s) < 8; ++i) s.step();
+    REQUIRE(asleep(s) == 8);
+    // The third cube falls into the second one as far as the first, on which it comes to rest; so the fourth stays on it.
+    REQUIRE(s.ask(adds("<component id='apart' type='Collision/Exclude' within='a1 a2'/>")).done);
+    for (int i = 0; i < 600 && (i < 2 || asleep(s) < 8); ++i) s.step();
+    REQUIRE(asleep(s) == 8);
+    CHECK(std::fabs(s.vec("a2", "position").z - s.vec("a1", "position").z) < 2e-3);
+    const double before = distance(s.vec("a1", "position"), s.vec("a2", "position"));
+    REQUIRE(s.ask(RemoveOperation{"apart"}).done);
+    s.step(5);
+    CHECK(asleep(s) < 8);
+    CHECK(distance(s.vec("a1", "position"), s.vec("a2", "position")) > before + 1e-3);
+}

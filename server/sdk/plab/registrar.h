@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "plab/collision.h"
+#include "plab/collision_filter.h"
 #include "plab/context.h"
 #include "plab/dynamics.h"
 #include "plab/island.h"
@@ -63,6 +64,7 @@ struct PhaseCall
     Quantities* quantities = nullptr;
     Shapes* shapes = nullptr;
     Materials* materials = nullptr;
+    CollisionFilter* filter = nullptr;
     Wrenches* wrenches = nullptr;               // Force
     ShaftMotion* shaft_motion = nullptr;        // Couple
     RatioGraph* ratios = nullptr;               // Connect
@@ -154,6 +156,8 @@ PLAB_ARGUMENT(const Quantities&, quantities, "Quantities");
 PLAB_ARGUMENT(Shapes&, shapes, "Shapes");
 PLAB_ARGUMENT(const Shapes&, shapes, "Shapes");
 PLAB_ARGUMENT(Materials&, materials, "Materials");
+PLAB_ARGUMENT(CollisionFilter&, filter, "CollisionFilter");
+PLAB_ARGUMENT(const CollisionFilter&, filter, "CollisionFilter");
 PLAB_ARGUMENT(Wrenches&, wrenches, "Wrenches");
 PLAB_ARGUMENT(ShaftMotion&, shaft_motion, "ShaftMotion");
 PLAB_ARGUMENT(RatioGraph&, ratios, "RatioGraph");

@@ -214,8 +214,9 @@ void HeldIslands::advance_to_midpoint(std::span<HeldIsland*> islands, GroupSyste
         for (Contact& c : t.island->of(*t.run)) c = at_midpoint_[at++].contact;
 }
 
-/// Books the work of each force component: its power at the mean velocities of the moves. For this the forces are evaluated once more, and
-/// the state is put back afterwards.
+/// Books the work of each force component: its power at the mean velocities of the moves. For this the forces are evaluated once more, at
+/// the speeds of the start, as they have acted; the state is put back afterwards. At the mean velocities a damper would have another force
+/// in a step with an impact or a stop.
 void HeldIslands::book_forces(GroupSystem& system, std::span<HeldIsland*> islands, double h)
 {
     world::HostTables& host = step_.world.host();
@@ -239,7 +240,8 @@ void HeldIslands::book_forces(GroupSystem& system, std::span<HeldIsland*> island
             kept_momenta_[i] = bodies.angular_momentum[b];
         });
     for (const std::uint32_t s : system.roots()) kept_speeds_.push_back(host.shafts.speed[s]), kept_angles_.push_back(host.shafts.angle[s]);
-    const std::span<double> speeds = system.speeds();
+    std::vector<double>& speeds = moved_with_;
+    speeds.assign(system.speeds().begin(), system.speeds().end());
     const auto put = [&](std::size_t at, const Vec3& v) { speeds[at] = v.x, speeds[at + 1] = v.y, speeds[at + 2] = v.z; };
     for (const HeldIsland* island : islands)
     {
@@ -252,7 +254,7 @@ void HeldIslands::book_forces(GroupSystem& system, std::span<HeldIsland*> island
         for (std::size_t k = 0; k < island->roots.size(); ++k)
             speeds[6 * system.body_count() + island->roots[k]] = means[island->members.size() + k].shaft / h;
     }
-    system.evaluate(0, 1);
+    system.book_forces(speeds);
     for_bodies(
         [&](std::size_t i, std::uint32_t b)
         {

@@ -291,7 +291,7 @@ private:
     // The state that is put back after the forces have been booked.
     std::vector<Vec3> kept_positions_, kept_velocities_, kept_spins_, kept_momenta_;
     std::vector<Quat> kept_orientations_;
-    std::vector<double> kept_speeds_, kept_angles_;
+    std::vector<double> kept_speeds_, kept_angles_, moved_with_;
 };
 
 }  // namespace plab::simulation

@@ -11,6 +11,24 @@ namespace plab::simulation
 void HeldIslands::solve(std::span<HeldIsland*> islands, GroupSystem& system, double from, double to, WorkBook book, bool trial)
 {
     const bool books = book.work != nullptr;
+    // A shaft stands for the train of which it is the root.
+    const auto energy_of_shafts = [&](const HeldIsland& island)
+    {
+        double sum = 0;
+        for (const std::uint32_t root : island.shafts)
+            if (const double mobility = mobility_of(root); mobility > 0)
+                sum += 0.5 * step_.world.host().shafts.speed[root] * step_.world.host().shafts.speed[root] / mobility;
+        return sum;
+    };
+    const auto work_on_shafts = [&](const HeldIsland& island)
+    {
+        double sum = 0;
+        for (std::size_t k = 0; k < island.shafts.size(); ++k)
+            if (const double mobility = mobility_of(island.shafts[k]); mobility > 0)
+                sum += system.speed_rates()[6 * system.body_count() + island.roots[k]] / mobility *
+                       island.motion.means()[island.members.size() + k].shaft;
+        return sum;
+    };
     for (HeldIsland* island : islands)
     {
         island->rows.clear();
@@ -19,14 +37,19 @@ void HeldIslands::solve(std::span<HeldIsland*> islands, GroupSystem& system, dou
         island->rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
     }
     wedging_.resize(step_.world.host().bodies.size(), 0.0);
-    share(islands, [&](HeldIsland& island) { begin(island, system, books, trial); });
+    share(islands,
+          [&](HeldIsland& island)
+          {
+              begin(island, system, books, trial);
+              if (books) island.energy += energy_of_shafts(island);
+          });
     if (!trial)
         for (const HeldIsland* island : islands) report_paradoxes(*island, step_.frame.start_time + from);
     call_managers(islands, from, to, trial);
     share(islands,
           [&](HeldIsland& island)
           {
-              if (books) divide_work(island);
+              if (books) island.energy -= energy_of_shafts(island) - work_on_shafts(island), divide_work(island);
               if (!trial) keep(island);
           });
     for (HeldIsland* island : islands)

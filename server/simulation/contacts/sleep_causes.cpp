@@ -67,7 +67,25 @@ std::uint64_t SleepCauses::of_scene()
     std::uint64_t h = mix(0, fixed);
     for (const Detector& d : contacts_.detectors())
         for (const std::uint32_t part : {d.component, d.resolution, d.response, d.manager}) h = mix(h, of_component(part));
-    return h;
+    const std::uint64_t filter = of_filter();
+    return filter == 0 ? h : mix(h, filter);
+}
+
+/// A new exclusion, or one that is gone, concerns all: bodies that now meet did not know of one another.
+std::uint64_t SleepCauses::of_filter() const
+{
+    const world::HostTables& host = step_.world.host();
+    const auto of = [&](Facet facet, std::uint32_t i, std::span<const std::uint32_t> marks)
+    {
+        if (marks.empty()) return std::uint64_t{0};
+        std::uint64_t h = of_name(host.component_of({facet, i}));
+        for (const std::uint32_t mark : marks) h = mix(h, std::uint64_t{mark});
+        return h;
+    };
+    std::uint64_t sum = 0;  // rows are in no order
+    for (std::uint32_t b = 0; b < host.bodies.size(); ++b) sum += of(Facet::Body, b, host.filter.of_body(b));
+    for (std::uint32_t s = 0; s < host.shapes.size(); ++s) sum += of(Facet::Shape, s, host.filter.of_shape(s));
+    return sum;
 }
 
 void SleepCauses::add_pair(const PairState& p)

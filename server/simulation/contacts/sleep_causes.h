@@ -16,7 +16,8 @@ public:
 
     /// To be called before the following, whenever parameters may have changed.
     void begin();
-    /// What concerns all bodies: objects that never move, detections with their resolutions, responses and managers, and materials.
+    /// What concerns all bodies: objects that never move, detections with their resolutions, responses and managers, materials, and
+    /// exclusions from collision.
     std::uint64_t of_scene();
     /// What concerns one body: its place, mass and shapes, the forces on it, and its contacts, which add_pair() adds up. Never 0.
     std::uint64_t of_body(std::uint32_t body);
@@ -26,6 +27,7 @@ private:
     std::uint64_t of_component(std::uint32_t component);
     std::uint64_t of_name(std::uint32_t component) const;
     std::uint64_t of_place(std::uint32_t body);
+    std::uint64_t of_filter() const;
 
     const StepState& step_;
     const ContactBook& contacts_;

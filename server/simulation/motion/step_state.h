@@ -68,6 +68,7 @@ struct StepState final : EventSink
         world::HostTables& host = world.host();
         PhaseCall out;
         out.bodies = &host.bodies, out.shafts = &host.shafts, out.shapes = &host.shapes, out.quantities = &host.quantities;
+        out.filter = &host.filter;
         return out;
     }
 

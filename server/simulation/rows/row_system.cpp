@@ -292,7 +292,8 @@ double RowSystem::take_impulses(const StepContext& context, std::span<const Cons
     position_error_.assign(rows_.size(), 0.0), speed_error_.assign(rows_.size(), 0.0);
     redundant_.assign(pieces_.size(), 0);
     double sum = 0;
-    for (std::size_t i = 0, at = 0; i < rows_.size(); ++i)
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
     {
         const ConstraintRow& row = rows_[i];
         if (row.kind == RowKind::Equality) position_error_[i] = row.error;
@@ -302,15 +303,24 @@ double RowSystem::take_impulses(const StepContext& context, std::span<const Cons
         std::size_t found = at;
         while (found < held.size() && !(held[found].component == row.component && held[found].feature == row.feature)) ++found;
         if (found == held.size()) continue;
+        // A stop from which its body has rebounded is not among the rows any more.
+        for (; at < found; ++at) sum += book_work(held[at], at, held[at], book);
         at = found + 1;
         lambda_[i] = held[found].impulse / h;
-        if (!book.work || !books(row, book)) continue;
-        const double work = 0.5 * held[found].impulse * (held_speed_[found] + speed_of(row) - speed_of_others(row));
-        (*book.work)[row.component] += book.sign * work;
-        sum += work;
+        sum += book_work(held[found], found, row, book);
     }
+    for (; at < held.size(); ++at) sum += book_work(held[at], at, held[at], book);
     keep_reactions();
     return sum;
+}
+
+/// J: what a row did that a manager held, at the mean of its speeds before and after; `now` is the row at the end of the step.
+double RowSystem::book_work(const ConstraintRow& held, std::size_t place, const ConstraintRow& now, const RowBook& book)
+{
+    if (!book.work || held.impulse == 0 || !books(now, book)) return 0;
+    const double work = 0.5 * held.impulse * (held_speed_[place] + speed_of(now) - speed_of_others(now));
+    (*book.work)[now.component] += book.sign * work;
+    return work;
 }
 
 void RowSystem::keep_reactions()

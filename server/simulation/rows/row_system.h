@@ -183,6 +183,7 @@ private:
     bool positions_contradict() const;
     bool speeds_contradict(double dt) const;
     double speed_of_others(const ConstraintRow& row) const;
+    double book_work(const ConstraintRow& held, std::size_t place, const ConstraintRow& now, const RowBook& book);
     bool is_mobile(Ref participant) const;
     void count_redundant(ProjectionReport& report);
     void name_contradictory(std::span<const double> errors, ProjectionReport& report) const;

@@ -59,11 +59,12 @@ Errors Stepper::run_connect(const Block& block, world::CommandCall& call)
 void Stepper::connect_materials(Errors& errors)
 {
     step_.world.host().materials.clear_pairs();
+    step_.world.host().filter.clear();
     step_.graph.clear();
     world::HostTables& host = step_.world.host();
     world::CommandCall call;
     PhaseCall& to = call.arguments;
-    to.materials = &host.materials, to.ratios = &step_.graph;
+    to.materials = &host.materials, to.filter = &host.filter, to.ratios = &step_.graph;
     to.shafts = &host.shafts, to.bodies = &host.bodies, to.shapes = &host.shapes;
     for (const Block& block : step_.schedule.of(Phase::Connect))
         for (Error& e : run_connect(block, call)) errors.push_back(std::move(e));

@@ -141,6 +141,9 @@ public:
     std::span<const double> coordinate_rates() const override { return coordinate_rates_; }
     std::span<const double> speed_rates() const override { return speed_rates_; }
     void evaluate(double t, double weight) override;
+    /// Books the work of the forces that act at the present coordinates and speeds, at the power of other velocities: those with which the
+    /// bodies moved meanwhile, in the form of speeds(). A force that depends on the velocity is not what it would be at those.
+    void book_forces(std::span<const double> moved_with);
     void evaluate_kinematics() override;
     std::span<double> workspace(int i) override;
     std::string_view use_minimal_coordinates() override;

@@ -88,6 +88,32 @@ void GroupSystem::clear_wrenches()
     for (const std::uint32_t q : quantities_) std::fill(w.quantity_rate[q].begin(), w.quantity_rate[q].end(), 0.0);
 }
 
+void GroupSystem::book_forces(std::span<const double> moved_with)
+{
+    world::HostTables& host = frame_.world->host();
+    StageScratch& scratch = *scratch_;
+    const auto exchange_speeds = [&] { std::ranges::swap_ranges(speeds_, scratch.speeds); };
+    scratch.speeds.assign(moved_with.begin(), moved_with.end());
+    exchange_speeds();
+    scatter(0);
+    for (const std::vector<std::uint32_t>* list : {&bodies_, &prescribed_bodies_})
+        for (const std::uint32_t b : *list)
+        {
+            scratch.moved_bodies.position[b] = host.bodies.position[b], scratch.moved_bodies.velocity[b] = host.bodies.velocity[b];
+            scratch.moved_bodies.angular_velocity[b] = host.bodies.angular_velocity[b];
+        }
+    for (const std::vector<std::uint32_t>* list : {&shafts_, &prescribed_shafts_})
+        for (const std::uint32_t s : *list) scratch.moved_shafts.speed[s] = host.shafts.speed[s];
+    exchange_speeds();
+    scatter(0);
+    clear_wrenches();
+    scratch.wrenches.bind(scratch.moved_bodies, scratch.moved_shafts);
+    run_forces(1);
+    scratch.wrenches.bind(host.bodies, host.shafts);
+    for (const std::uint32_t s : shafts_) host.shafts.speed[s] = scratch.moved_shafts.speed[s];
+    rates_of_shafts(1);
+}
+
 void GroupSystem::run_forces(double weight)
 {
     world::HostTables& host = frame_.world->host();

@@ -18,6 +18,9 @@ void StageScratch::fit(const world::World& world)
     wrenches.shaft_torque.resize(host.shafts.size());
     wrenches.quantity_rate.resize(host.quantities.size());
     for (std::size_t i = 0; i < host.quantities.size(); ++i) wrenches.quantity_rate[i].assign(host.quantities.value[i].size(), 0.0);
+    for (auto* column : {&moved_bodies.position, &moved_bodies.velocity, &moved_bodies.angular_velocity})
+        column->assign(host.bodies.size(), {});
+    moved_shafts.speed.assign(host.shafts.size(), 0.0);
     power.assign(world.components().size(), 0.0);
     own_meter_.accounts().fit(world.components().size(), world.tables().size());
 }

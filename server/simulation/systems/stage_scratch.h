@@ -29,7 +29,10 @@ public:
     void book_shaft(std::uint32_t s) { accounted_shafts[s] = 1; }
 
     Wrenches wrenches;
-    std::vector<double> power;  ///< W by component; all zero between uses
+    Bodies moved_bodies;         ///< position, velocity and angular velocity alone: with which forces are booked
+    Shafts moved_shafts;         ///< speed alone
+    std::vector<double> speeds;  ///< in the form of DynamicSystem::speeds()
+    std::vector<double> power;   ///< W by component; all zero between uses
     std::vector<std::uint8_t> active_bodies, active_shafts, accounted_bodies, accounted_shafts;
     std::uint64_t evaluations = 0;  ///< of forces, in this step
     std::int64_t rows_ns = 0;       ///< ns of the present advance that its joints took, until divided among them

@@ -43,7 +43,7 @@ void SavedState::begin(Run& run, bool with_contacts)
     Stepper& stepper = run.stepper();
     (void)run.world().note_in(&log_);
     if (with_contacts) contacts_ = stepper.contacts();
-    materials_ = host.materials;
+    materials_ = host.materials, filter_ = host.filter;
     world::for_each_column(world::kDerivedShaftColumns, [&](auto column) { shafts_.*column = host.shafts.*column; });
     work_ = stepper.work(), contact_energy_ = stepper.contact_energy();
     departed_work_ = stepper.departed_work(), requests_work_ = stepper.requests_work();
@@ -64,7 +64,7 @@ void SavedState::end() { (void)run_->world().note_in(nullptr); }
 void SavedState::restore_derived() const
 {
     world::HostTables& host = run_->world().host();
-    host.materials = materials_;
+    host.materials = materials_, host.filter = filter_;
     world::for_each_column(world::kDerivedShaftColumns, [&](auto column) { host.shafts.*column = shafts_.*column; });
 }
 

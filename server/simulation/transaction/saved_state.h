@@ -35,6 +35,7 @@ private:
     std::optional<world::Backup> backup_;  ///< of the time of the first addition or removal
     std::optional<ContactCache> contacts_;
     Materials materials_;
+    CollisionFilter filter_;
     Shafts shafts_;  ///< only the columns that a stepper derives (kDerivedShaftColumns)
     std::vector<double> work_;
     std::vector<ContactEnergy> contact_energy_;

@@ -26,7 +26,7 @@ void TrialMemento::save(const world::HostTables& host, const TrialScope& scope)
         motion_.push_back(host.bodies.motion[b]), inverse_mass_.push_back(host.bodies.inverse_mass[b]);
         inverse_inertia_B_.push_back(host.bodies.inverse_inertia_B[b]);
     }
-    materials_ = host.materials;
+    materials_ = host.materials, filter_ = host.filter;
     changes_ = {};
 }
 
@@ -55,7 +55,7 @@ void TrialMemento::restore_moved(world::HostTables& host) const
 
 void TrialMemento::restore_derived(world::HostTables& host) const
 {
-    host.materials = materials_;
+    host.materials = materials_, host.filter = filter_;
     for_each_column(world::kDerivedShaftColumns, [&](auto column) { host.shafts.*column = shafts_.*column; });
 }
 

@@ -35,6 +35,7 @@ private:
     std::vector<std::vector<double>> quantities_;                                ///< of moved_quantities_
     Shafts shafts_;                                                              ///< all, without axles and shapes
     Materials materials_;
+    CollisionFilter filter_;
     std::vector<Motion> motion_;  ///< of fixed_bodies_, as the next two
     std::vector<double> inverse_mass_;
     std::vector<Mat3> inverse_inertia_B_;

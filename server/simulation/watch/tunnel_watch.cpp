@@ -171,7 +171,8 @@ void TunnelWatch::find_tunnelled_pairs(const RunView& s, const CollidingBodies& 
         tree_.query(swept_[i],
                     [&](std::uint32_t j)
                     {
-                        if (i != j && passed(s, colliding.bodies[i], colliding.bodies[j])) tunnelled_.push_back({i, j});
+                        const std::uint32_t a = colliding.bodies[i], b = colliding.bodies[j];
+                        if (i != j && !s.world.host().filter.excludes_bodies(a, b) && passed(s, a, b)) tunnelled_.push_back({i, j});
                     });
     std::sort(tunnelled_.begin(), tunnelled_.end());
 }

@@ -91,11 +91,12 @@ struct Sink final : ContactSink
 struct Detection : OneRow<detection::OdeRows>
 {
     Sink sink;
+    CollisionFilter filter;
     explicit Detection(const char* space = "tree") { rows.space[0] = space; }
     const std::vector<Contact>& detect(const Bodies& bodies, const Shapes& shapes, const StepContext& context = {})
     {
         sink.contacts.clear();
-        const auto done = detection::detect(context, 0, rows, bodies, shapes, sink);
+        const auto done = detection::detect(context, 0, rows, bodies, shapes, filter, sink);
         return done ? sink.contacts : (sink.contacts.clear(), sink.contacts);
     }
     void between_all(const Bodies& bodies)

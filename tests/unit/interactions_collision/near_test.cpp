@@ -94,7 +94,7 @@ TEST_CASE("the pairs that may meet are all those whose bounds, expanded by their
             sink.how_far.assign(crowd.bodies.size(), 0.0), sink.pairs.clear();
             for (std::uint32_t b = 1; b < crowd.bodies.size(); ++b) sink.how_far[b] = uniform(crowd.seed, 0, round == 2 ? 2 : 0.3);
             sink.how_far[7] = round == 3 ? 16 : 0;
-            REQUIRE(detection::detect({}, 0, d.rows, crowd.bodies, crowd.shapes, sink));
+            REQUIRE(detection::detect({}, 0, d.rows, crowd.bodies, crowd.shapes, {}, sink));
             std::size_t missed = 0, idle = 0;
             for (std::uint32_t a = 0; a < crowd.bodies.size(); ++a)
                 for (std::uint32_t b = a + 1; b < crowd.bodies.size(); ++b)
@@ -131,7 +131,7 @@ TEST_CASE("gaps: sphere, box and plane, apart and overlapping")
     {
         GapQuery q;
         q.a = body(a), q.b = body(b);
-        REQUIRE(detection::measure_gap(0, d.rows, bodies, q));
+        REQUIRE(detection::measure_gap(0, d.rows, bodies, {}, q));
         return q;
     };
     CHECK(gap(0, 1).gap == near(0.25, 1e-15));
@@ -157,14 +157,14 @@ TEST_CASE("contacts with a gap up to the margin are reported with a negative dep
     d.between_all(bodies);
     MarginSink sink;
     sink.gap = 0.06;
-    REQUIRE(detection::detect({}, 0, d.rows, bodies, shapes, sink));
+    REQUIRE(detection::detect({}, 0, d.rows, bodies, shapes, {}, sink));
     REQUIRE(sink.contacts.size() == 1);
     CHECK(sink.contacts[0].depth == near(-0.05, 1e-14));
     CHECK(sink.contacts[0].b.index == 1);
     sink.contacts.clear(), sink.gap = 0.3;
-    REQUIRE(detection::detect({}, 0, d.rows, bodies, shapes, sink));
+    REQUIRE(detection::detect({}, 0, d.rows, bodies, shapes, {}, sink));
     CHECK(sink.contacts.size() == 3);
     sink.contacts.clear(), sink.gap = 0;
-    REQUIRE(detection::detect({}, 0, d.rows, bodies, shapes, sink));
+    REQUIRE(detection::detect({}, 0, d.rows, bodies, shapes, {}, sink));
     CHECK(sink.contacts.empty());
 }
