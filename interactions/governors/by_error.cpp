@@ -193,8 +193,18 @@ const char* why_unmeasured(bool known, bool by_sight)
     return by_sight ? "it comes into view, and its error has not been measured yet" : "its error has not been measured yet";
 }
 
-/// Those that are due, those first that have waited longest. (s, place in the look.)
+/// Those that are due: when (s), or -1 if they have not been measured yet; and their place in the look.
 using Due = std::vector<std::pair<double, std::size_t>>;
+
+/// Those first that have waited longest; but half of the measurements are for promises that are due, if there are so many: until one is
+/// judged nothing is known of any of them.
+void put_in_order(Due& waiting, std::size_t measurements)
+{
+    std::sort(waiting.begin(), waiting.end());
+    const auto promised = std::find_if(waiting.begin(), waiting.end(), [](const auto& w) { return w.first >= 0; });
+    const auto judged = std::min(static_cast<std::ptrdiff_t>(measurements / 2), waiting.end() - promised);
+    std::rotate(waiting.begin(), promised, promised + judged);
+}
 
 }  // namespace
 
@@ -231,7 +241,7 @@ void ErrorRows::describe(Schema& schema)
     schema
         .state(patience, "patience", unit::one,
                "times `every` after which what is far below the bound is measured again; it falls with each promise that is broken")
-        .initially(2);
+        .initially(3);
     schema.state(judged, "judged", unit::one, "measurements of a level that was measured before");
     schema.state(held, "held", unit::one, "those of them that found the error still below the bound");
     schema.state(allowance, "allowance", unit::one, "trial steps that may be made within `share`");
@@ -269,8 +279,8 @@ void keep_error(const StepContext& context, Row row, ErrorRows& governors, Level
     }
     if (waiting.empty()) return;
     governors.worst[row] = 0;
-    std::sort(waiting.begin(), waiting.end());
     const auto most = static_cast<std::size_t>(governors.looks[row]);
+    put_in_order(waiting, most);
     const bool samples = governors.share[row] > 0 && !by_sight;
     Sample sample(row, governors, samples ? static_cast<std::size_t>(look.finest() + 1) : 0);
     if (samples) allow_trials(context, row, look, governors);

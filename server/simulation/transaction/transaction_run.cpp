@@ -193,12 +193,11 @@ Result<FirstStep> Transaction::first_step(const FirstStepChoice& choice)
         Interruption deadline(context_->interruption);
         if (request_->trial.budget == TrialChoice::Budget::Given)
             deadline.ask(std::chrono::nanoseconds(static_cast<std::int64_t>(budget_ns())));
-        const std::uint64_t until = choice.measure_ns > 0 ? now_ns() + choice.measure_ns : 0;
         TrialStep step = next_step();
-        step.count = choice.steps, step.course = true;
+        step.count = choice.steps, step.course = true, step.measure_ns = choice.measure_ns;
         // The scene's stepper is not rebuilt, so what depends on the structure, such as the anchors of coupled shafts, is the trial's own.
         step.derives = !run_->world().revisions().only_solvers_since(revisions_before_);
-        TrialResult result = Trial(run_->world(), run_->stepper(), step).run(scope, {}, deadline, context_->progress, until);
+        TrialResult result = Trial(run_->world(), run_->stepper(), step).run(scope, {}, deadline, context_->progress, 0);
         if (result.given_up) reply_.errors = {reason("the trial was interrupted")};
         if (!result.failure.empty()) reply_.errors = {reason(result.failure)};
         out.course = std::move(result.course), out.energy = result.outcome.energy;

@@ -308,7 +308,8 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         }
         end_step(part);  // before the scope grows: from here on nothing is fixed
         if (tried) grown = grow(scope, part);
-        if (tried && !grown && out.failure.empty()) out.cost = measure(part, deadline, until_ns);
+        if (tried && !grown && out.failure.empty())
+            out.cost = measure(part, deadline, step_.measure_ns > 0 ? now_ns() + step_.measure_ns : until_ns);
         part_ = nullptr;
         if (!grown) break;
     }

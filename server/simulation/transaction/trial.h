@@ -14,10 +14,11 @@ namespace plab::simulation
 struct TrialStep
 {
     Tick tick = 0;
-    double start = 0, h = 0;  ///< s
-    int count = 1;            ///< steps in a row; objects that others touch before the last one are not noticed
-    bool course = false;      ///< also the motion after each of them
-    bool derives = false;     ///< the scene's stepper has not been rebuilt for the present structure: the trial's own one derives from it
+    double start = 0, h = 0;       ///< s
+    int count = 1;                 ///< steps in a row; objects that others touch before the last one are not noticed
+    bool course = false;           ///< also the motion after each of them
+    std::uint64_t measure_ns = 0;  ///< time for which the first step is repeated after the trial, in place of a time until which
+    bool derives = false;  ///< the scene's stepper has not been rebuilt for the present structure: the trial's own one derives from it
 };
 
 /// How a body or a shaft moves at the end of a trial.
