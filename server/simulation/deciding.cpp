@@ -96,7 +96,7 @@ TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& l
     // What a solver errs goes on as it begins, so a quarter of the interval is tried. An impact does not announce itself, and where a
     // coupling is exchanged the first step shows more of the exchange than of the level: so the whole interval is tried.
     const bool goes_on = run_.world().type_of(component)->info.family == "Solver";
-    const int steps = goes_on ? std::min(whole, std::max(4, (whole + 3) / 4)) : whole;
+    const int steps = goes_on ? std::min(whole, std::max(2, (whole + 3) / 4)) : whole;
     constexpr std::uint64_t kMeasure = 200'000;  // ns
     const FirstStepChoice choice{steps, measuring_ && with_cost ? kMeasure : 0};
     if (!step_with(component, level, choice) || !step_with(component, finer, choice)) return {};

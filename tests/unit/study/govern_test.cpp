@@ -67,13 +67,6 @@ TEST_CASE("a governed scene and its single levels: the cheapest level has the la
     CHECK(cheap.pixels > 10 * exact.pixels);
     CHECK(governed.pixels == doctest::Approx(exact.pixels).epsilon(0.2));
     CHECK(governed.metres > 3 * exact.metres);  // nobody looks behind
-    CHECK(result->objects == 8);
-    CHECK(result->points[0].steps.size() == 118);  // 120 but two, which copy what they share with a snapshot
-    plan.governor = "l*";
-    const auto listed = governed_levels(test::library(), plan);
-    REQUIRE(listed.ok());
-    CHECK(listed->governor == "lod");
-    CHECK(listed->components == 8);
     plan.governor = "other";
     const auto refused = compare_governor(test::library(), plan);
     REQUIRE_FALSE(refused.ok());
