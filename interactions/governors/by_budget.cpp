@@ -247,9 +247,8 @@ std::size_t BudgetLook::exchanges_now(const std::vector<Change>& changes) const
     if (is_over() || exchange_cost(all) <= room) return all;
     const double each = g_.exchange[row_][1];
     const auto fit = static_cast<std::size_t>(std::max(0.0, (room - g_.exchange[row_][0]) / std::max(kLeastCost, each)));
-    // Slower than this it would be out of date before it is done.
-    const double boundaries = std::max(1.0, 2 * g_.watch.every[row_] / context_.dt);
-    if (static_cast<double>(fit) * boundaries >= static_cast<double>(all)) return fit;
+    // The worthiest come first, and each exchange tells better what the next ones cost.
+    if (fit > 0) return std::min(fit, all);
     return context_.time - g_.last_long[row_] >= kRare * context_.dt ? all : 0;
 }
 
@@ -296,19 +295,22 @@ void BudgetLook::publish()
     g_.lost[row_] = all > 0 ? lost / all : 0;
 }
 
-/// Learns what exchanges cost, as a fixed cost and one for each component. What was measured differs from what was expected by a factor,
-/// which is shared between the two in proportion to what each was expected to be: exchanges of one component tell the fixed one, exchanges
-/// of many the other one, and both stay positive.
+/// Learns what exchanges cost, as a fixed cost f and one for each component, e. The first measurement is shared between the two, which are
+/// then known as little as can be, but their sum is known. (f + n e) / (1 + n) is a cost by fractions, as the cost model learns it: two
+/// exchanges of different numbers of components tell both.
 void learn_exchange(Reals& learnt, Reals& measured)
 {
     if (measured.size() != 2 || !(measured[0] > 0)) return;
     const double n = measured[0], seconds = measured[1];
-    constexpr double kNew = 0.3;  // of what is learnt from one measurement
-    if (learnt.size() < 2) learnt = {0.5 * seconds, 0.5 * seconds / n};
-    const double expected = learnt[0] + n * learnt[1];
-    const double factor = expected > 0 ? 1 + kNew * (seconds / expected - 1) : 1;
-    const double fixed_part = expected > 0 ? learnt[0] / expected : 0.5;
-    learnt[0] *= std::pow(factor, fixed_part), learnt[1] *= std::pow(factor, 1 - fixed_part);
+    constexpr std::size_t kCosts = 2, kSize = kCosts + kCosts * kCosts;
+    constexpr double kOpposed = -0.9;  // correlation of what is not known of f and e
+    if (learnt.size() != kSize)
+    {
+        const double f = 0.5 * seconds, e = 0.5 * seconds / n;
+        learnt = {f, e, f * f, kOpposed * f * e, kOpposed * f * e, e * e};
+    }
+    else
+        CostModel(learnt, kCosts).update(Reals{1 / (1 + n), n / (1 + n)}, seconds / (1 + n));
     measured.clear();
 }
 
@@ -351,7 +353,8 @@ void BudgetRows::describe(Schema& schema)
     schema.state(errors, "errors", unit::one,
                  "for each number of objects on which a component acts: that number, the number of trials, and the mean square of the "
                  "error (m^2) of each level");
-    schema.state(exchange, "exchange", unit::second, "what an exchange costs, as learnt: fixed, and for each component");
+    schema.state(exchange, "exchange", unit::second,
+                 "what an exchange costs, as learnt: fixed, and for each component; and then the covariance (s^2) of the two");
     schema.state(trials_left, "trials_left", unit::one, "components to be tried before the next look");
     schema.state(next_trial, "next_trial", unit::one, "position of the component that was tried last");
     schema.state(waiting, "waiting", unit::one, "changes that wait for a boundary where there is time for them");

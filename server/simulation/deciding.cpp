@@ -11,35 +11,50 @@ namespace plab::simulation
 namespace
 {
 
-/// Two motions that part in each step of h (s) as they did in the first one. Both the distances and the differences of speed are taken to
-/// add up.
-class Departure
+/// How far two objects, or two courses, are apart: m, of a point of a body; rad, of a body or a shaft. NaN: there is no such object.
+struct Apart
 {
-public:
-    Departure(double h, double interval) : h_(h), steps_(std::max(1.0, interval / h)) {}
-
-    void add(const ObjectMotion& a, const ObjectMotion& b)
-    {
-        if (a.object.facet == Facet::Shaft)
-        {
-            raise(error_.angle, grown(std::fabs(a.angle - b.angle), std::fabs(a.speed - b.speed)));
-            return;
-        }
-        const double r = std::isfinite(a.radius) ? a.radius : 0;
-        const Quat turn = conjugate(a.orientation) * b.orientation;
-        const double angle = 2 * std::atan2(length(Vec3{turn.x, turn.y, turn.z}), std::fabs(turn.w));
-        const double spin = length(a.angular_velocity - b.angular_velocity);
-        raise(error_.distance, grown(length(a.position - b.position) + r * angle, length(a.velocity - b.velocity) + r * spin));
-        raise(error_.angle, grown(angle, spin));
-    }
-    const LevelError& result() const { return error_; }
-
-private:
-    double grown(double distance, double speed) const { return steps_ * distance + 0.5 * steps_ * (steps_ - 1) * h_ * speed; }
-    static void raise(double& largest, double value) { largest = std::isnan(largest) ? value : std::max(largest, value); }
-    double h_, steps_;
-    LevelError error_;
+    double distance = std::numeric_limits<double>::quiet_NaN(), angle = std::numeric_limits<double>::quiet_NaN();
 };
+
+void raise(double& largest, double value) { largest = std::isnan(largest) ? value : std::max(largest, value); }
+
+void raise(Apart& largest, const ObjectMotion& a, const ObjectMotion& b)
+{
+    if (a.object.facet == Facet::Shaft) return raise(largest.angle, std::fabs(a.angle - b.angle));
+    const Quat turn = conjugate(a.orientation) * b.orientation;
+    const double angle = 2 * std::atan2(length(Vec3{turn.x, turn.y, turn.z}), std::fabs(turn.w));
+    raise(largest.distance, length(a.position - b.position) + (std::isfinite(a.radius) ? a.radius : 0) * angle);
+    raise(largest.angle, angle);
+}
+
+/// The largest departure of the two courses up to each step. One of them may have touched more objects.
+std::vector<Apart> departures(const FirstStep& one, const FirstStep& other)
+{
+    std::vector<Apart> out;
+    Apart largest;
+    for (std::size_t n = 0; n < std::min(one.course.size(), other.course.size()); ++n)
+    {
+        const std::vector<ObjectMotion>&a = one.course[n], &b = other.course[n];
+        for (std::size_t i = 0, k = 0; i < a.size() && k < b.size();)
+            if (a[i].object == b[k].object)
+                raise(largest, a[i++], b[k++]);
+            else
+                a[i].object < b[k].object ? ++i : ++k;
+        out.push_back(largest);
+    }
+    return out;
+}
+
+/// What a departure becomes over `times` as many steps, if it goes on to grow as it grew when time went on by the factor `grown_in`: as a
+/// power of time. An error that keeps its direction grows linearly, that of a speed which nothing brings back quadratically; what
+/// oscillates looks slower for a while, and is taken to grow linearly.
+double continued(double before, double now, double grown_in, double times)
+{
+    if (!(now > 0) || times <= 1) return now;
+    const double power = before > 0 ? std::clamp(std::log(now / before) / std::log(grown_in), 1.0, 2.0) : 2.0;
+    return now * std::pow(times, power);
+}
 
 std::string file_of(const world::World& world, std::uint32_t component)
 {
@@ -77,23 +92,33 @@ const Result<FirstStep>& Simulation::step_with(std::uint32_t component, const Le
 TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval, bool with_cost)
 {
     const double h = run_.clock.time_at(tick() + 1) - time();
-    // What a solver errs goes on as it begins. An impact does not announce itself, and where a coupling is exchanged the first step shows
-    // more of the exchange than of the level: so the whole interval is tried.
+    const int whole = std::max(1, static_cast<int>(std::lround(interval / h)));
+    // What a solver errs goes on as it begins, so a quarter of the interval is tried. An impact does not announce itself, and where a
+    // coupling is exchanged the first step shows more of the exchange than of the level: so the whole interval is tried.
     const bool goes_on = run_.world().type_of(component)->info.family == "Solver";
-    const int steps = goes_on ? 1 : std::max(1, static_cast<int>(std::lround(interval / h)));
+    const int steps = goes_on ? std::min(whole, std::max(2, (whole + 3) / 4)) : whole;
     constexpr std::uint64_t kMeasure = 200'000;  // ns
     const FirstStepChoice choice{steps, measuring_ && with_cost ? kMeasure : 0};
     if (!step_with(component, level, choice) || !step_with(component, finer, choice)) return {};
     const FirstStep &one = *step_with(component, level, choice), &other = *step_with(component, finer, choice);
-    Departure departure(h, steps > 1 ? h : interval);
-    // One of the steps may have touched more objects.
-    for (std::size_t i = 0, k = 0; i < one.motion.size() && k < other.motion.size();)
-        if (one.motion[i].object == other.motion[k].object)
-            departure.add(one.motion[i++], other.motion[k++]);
-        else
-            one.motion[i].object < other.motion[k].object ? ++i : ++k;
-    TrialFindings out{departure.result(), one.seconds, other.seconds};
-    if (one.motion.size() == other.motion.size()) out.error.power = std::fabs(one.energy - other.energy) / (steps * h);
+    const std::vector<Apart> apart = departures(one, other);
+    if (apart.empty()) return {};
+    const std::size_t half = (apart.size() + 1) / 2;
+    const Apart &halfway = apart[half - 1], &end = apart.back();
+    const auto made = static_cast<double>(apart.size()), times = whole / made, grown_in = made / static_cast<double>(half);
+    TrialFindings out;
+    out.error.distance = continued(halfway.distance, end.distance, grown_in, times);
+    out.error.angle = continued(halfway.angle, end.angle, grown_in, times);
+    out.seconds = one.seconds, out.finer_seconds = other.seconds;
+    if (one.course.back().size() == other.course.back().size()) out.error.power = std::fabs(one.energy - other.energy) / (steps * h);
+    return out;
+}
+
+LevelError Simulation::try_level(std::uint32_t component, const Level& level, const Level& finer, double interval)
+{
+    tried_.clear();
+    const LevelError out = error_of_level(component, level, finer, interval, false).error;
+    tried_.clear();
     return out;
 }
 

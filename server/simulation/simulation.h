@@ -74,6 +74,9 @@ public:
     /// depends on the clock. A replay takes the measurements from the recording.
     void let_measure(bool measuring) { measuring_ = measuring; }
     const LevelBook& levels() const { return run_.levels(); }
+    /// What trial steps from the present boundary tell a governor: how far a component with this level departs within `interval` (s) from
+    /// where the next finer one would take it. They leave no trace.
+    LevelError try_level(std::uint32_t component, const Level& level, const Level& finer, double interval);
     /// From where the viewers of the scene look at the present boundary.
     std::vector<Viewpoint> viewpoints() { return run_.levels().viewpoints(tick(), time(), dt()); }
     /// Where the cameras of the scene send their pictures. Null: cameras do not draw.

@@ -18,10 +18,10 @@ using simulation::LevelInfo;
 using simulation::Simulation;
 
 /// Sums of squares until take_mean() is called.
-void add_errors(Simulation& run, const Simulation& reference, GovernError& out)
+void add_errors(Simulation& run, const Simulation& reference, const std::vector<ObjectPair>& objects, GovernError& out)
 {
     const std::vector<Viewpoint> eyes = run.viewpoints();
-    for (const ObjectPair& p : body_pairs(run, reference))
+    for (const ObjectPair& p : objects)
     {
         const double metres = apart(run, reference, p).metres;
         out.metres += metres * metres, ++out.bodies;
@@ -46,12 +46,25 @@ double at_share(std::vector<double> values, double share)
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
+/// A governor that is compared.
+struct Watcher
+{
+    std::string id;
+    simulation::Ladder ladder;
+    std::vector<std::string> watched;
+
+    /// The k-th of `count` choices of one level for all: ladders of different lengths have their ends in common.
+    std::size_t level_of_choice(std::size_t k, std::size_t count) const
+    {
+        return (k * (ladder.levels.size() - 1) + (count - 1) / 2) / (count - 1);
+    }
+};
+
 /// One of the runs that are compared, with its figures so far.
 struct Contender
 {
     GovernPoint point;
     std::unique_ptr<Simulation> run;
-    std::vector<double> steps;     ///< s of CPU time
     bool shares_snapshot = false;  ///< since the last step
     double looks = 0;              ///< how often the levels were counted
 };
@@ -91,48 +104,86 @@ private:
         governed.run = std::make_unique<Simulation>(types_);
         if (auto loaded = governed.run->load(plan_.scene); !loaded) return loaded;
         governed.run->let_measure(true);
-        if (auto found = choose_governor(*governed.run); !found) return found;
+        if (auto found = choose_governors(*governed.run); !found) return found;
         if (governed.run->viewpoints().empty()) return reason("the scene has no viewer, for whom an error in pixels could be told");
         contenders_.push_back(std::move(governed));
-        for (const simulation::Level& level : ladder_.levels)
+        for (std::size_t k = 0; k < choices(); ++k)
         {
             Contender fixed;
-            fixed.point.name = level.text, fixed.run = std::make_unique<Simulation>(types_);
+            fixed.point.name = name_of_choice(k), fixed.run = std::make_unique<Simulation>(types_);
             if (auto loaded = fixed.run->load(plan_.scene); !loaded) return loaded;
             fixed.run->let_measure(true);  // for other governors of the scene
-            if (auto removed = ask_now(*fixed.run, {simulation::RemoveOperation{out_.governor}}); !removed) return removed;
-            if (auto given = give_all(*fixed.run, watched_, level); !given) return given;
+            for (const Watcher& w : governors_)
+            {
+                if (auto removed = ask_now(*fixed.run, {simulation::RemoveOperation{w.id}}); !removed) return removed;
+                const simulation::Level& level = w.ladder.levels[w.level_of_choice(k, choices())];
+                if (auto given = give_all(*fixed.run, w.watched, level); !given) return given;
+            }
+            out_.levels.push_back(fixed.point.name);
             contenders_.push_back(std::move(fixed));
-            out_.levels.push_back(level.text);
         }
         reference_ = std::make_unique<Simulation>(types_);
         reference_->let_decide(false);
         return {};
     }
 
-    Result<void> choose_governor(const Simulation& s)
+    std::size_t choices() const
+    {
+        std::size_t out = 0;
+        for (const Watcher& w : governors_) out = std::max(out, w.ladder.levels.size());
+        return out;
+    }
+
+    std::string name_of_choice(std::size_t k) const
+    {
+        if (governors_.size() == 1) return governors_.front().ladder.levels[k].text;
+        if (k == 0) return "cheapest levels";
+        return k + 1 == choices() ? std::string("most exact levels")
+                                  : "levels " + std::to_string(k + 1) + " of " + std::to_string(choices());
+    }
+
+    bool is_chosen(const std::string& id) const
+    {
+        if (plan_.governor.empty()) return governors_.empty() || governors_.front().id == id;
+        return simulation::matches_any(plan_.governor, id);
+    }
+
+    Result<void> choose_governors(const Simulation& s)
     {
         const world::World& world = s.world();
         for (const LevelInfo& l : s.levels().levels())
         {
             const std::string& id = world.id_of(l.governor);
-            if (!plan_.governor.empty() && id != plan_.governor) continue;
-            if (!out_.governor.empty() && id != out_.governor) continue;
-            out_.governor = id, out_.type = world.type_of(l.governor)->info.name;
-            watched_.push_back(world.id_of(l.component));
+            if (!is_chosen(id)) continue;
+            if (governors_.empty() || governors_.back().id != id)
+                if (auto added = add_governor(s, l.governor); !added) return added;
+            governors_.back().watched.push_back(world.id_of(l.component));
+            ++out_.components;
+            for (const Ref object : s.levels().objects_of(l.component))
+                if (object.facet == Facet::Body) objects_.push_back(world.id_of(object));
         }
-        if (watched_.empty())
+        if (governors_.empty())
             return reason(plan_.governor.empty() ? std::string("no governor of the scene watches anything")
                                                  : "no governor '" + plan_.governor + "' of the scene watches anything");
-        const std::uint32_t governor = world.find(out_.governor);
+        std::sort(objects_.begin(), objects_.end());
+        objects_.erase(std::unique(objects_.begin(), objects_.end()), objects_.end());
+        out_.title = plan_.title, out_.command = plan_.command, out_.scene_file = plan_.scene.file;
+        out_.until = plan_.until, out_.between = plan_.between, out_.window = plan_.window, out_.dt = s.dt(), out_.refine = plan_.refine;
+        out_.objects = objects_.size();
+        return {};
+    }
+
+    Result<void> add_governor(const Simulation& s, std::uint32_t governor)
+    {
+        const world::World& world = s.world();
         const Value levels = world.get(governor, "levels"), budget = world.get(governor, "budget"), share = world.get(governor, "share");
         auto ladder = simulation::read_ladder(std::get<std::string>(levels), types_);
         if (!ladder) return ladder.errors();
-        ladder_ = ladder.take();
+        governors_.push_back({world.id_of(governor), ladder.take(), {}});
         if (const auto* b = std::get_if<double>(&budget)) out_.budget = *b > 0 ? *b : std::get<double>(share) * s.dt();
-        out_.title = plan_.title, out_.command = plan_.command, out_.scene_file = plan_.scene.file;
-        out_.until = plan_.until, out_.between = plan_.between, out_.window = plan_.window, out_.dt = s.dt(), out_.refine = plan_.refine;
-        out_.components = watched_.size(), out_.objects = body_pairs(s, s).size();
+        out_.governor += (out_.governor.empty() ? "" : ", ") + world.id_of(governor);
+        const std::string& type = world.type_of(governor)->info.name;
+        if (out_.type.find(type) == std::string::npos) out_.type += (out_.type.empty() ? "" : ", ") + type;
         return {};
     }
 
@@ -142,7 +193,7 @@ private:
         const double begin = thread_cpu_seconds();
         (void)c.run->step();
         // The first step after a snapshot copies what it shares with that. This is not what the scene costs.
-        if (!std::exchange(c.shares_snapshot, false)) c.steps.push_back(thread_cpu_seconds() - begin);
+        if (!std::exchange(c.shares_snapshot, false)) c.point.steps.push_back(thread_cpu_seconds() - begin);
         return {};
     }
 
@@ -158,7 +209,7 @@ private:
             if (auto made = step(c); !made) return made;
             for (int k = 0; k < plan_.refine; ++k) (void)reference_->step_once();
         }
-        add_errors(*c.run, *reference_, c.point.error);
+        add_errors(*c.run, *reference_, pairs(*c.run), c.point.error);
         count_levels(c);
         return {};
     }
@@ -167,29 +218,47 @@ private:
     Result<void> begin_reference(const Simulation& run)
     {
         if (auto restored = reference_->restore(run.capture()); !restored) return restored;
-        if (auto given = give_all(*reference_, watched_, ladder_.levels.back()); !given) return given;
+        for (const Watcher& w : governors_)
+            if (auto given = give_all(*reference_, w.watched, w.ladder.levels.back()); !given) return given;
         model::StepLength dt = plan_.scene.settings.dt;
         dt.seconds /= plan_.refine;
         if (dt.denominator > 0) dt.denominator *= plan_.refine;
         return ask_now(*reference_, {simulation::StepLengthOperation{dt}});
     }
 
+    static Ref ref_of(const Simulation& run, const std::string& id)
+    {
+        const std::uint32_t component = run.world().find(id);
+        return run.world().component(component).ref(component);
+    }
+
+    std::vector<ObjectPair> pairs(const Simulation& run) const
+    {
+        std::vector<ObjectPair> out;
+        for (const std::string& id : objects_)
+            if (ObjectPair pair; find_pair(run, *reference_, ref_of(run, id), pair)) out.push_back(pair);
+        return out;
+    }
+
+    /// A ladder that is shorter than others fills the choices that it shares with them.
     void count_levels(Contender& c)
     {
-        c.point.shares.resize(ladder_.levels.size());
+        c.point.shares.resize(choices());
         ++c.looks;
         for (const LevelInfo& l : c.run->levels().levels())
-            if (l.level >= 0 && c.run->world().id_of(l.governor) == out_.governor)
-                c.point.shares[static_cast<std::size_t>(l.level)] += 1.0 / static_cast<double>(watched_.size());
+            for (const Watcher& w : governors_)
+                if (l.level >= 0 && c.run->world().id_of(l.governor) == w.id)
+                    c.point.shares[static_cast<std::size_t>(l.level) * (choices() - 1) / (w.ladder.levels.size() - 1)] +=
+                        1.0 / static_cast<double>(out_.components);
     }
 
     void finish(Contender& c)
     {
+        const std::vector<double>& steps = c.point.steps;
         double cpu = 0;
-        for (const double s : c.steps) cpu += s;
-        c.point.cpu = cpu / (std::max<double>(1, static_cast<double>(c.steps.size())) * c.run->dt());
-        c.point.step_median = at_share(c.steps, 0.5), c.point.step_99 = at_share(c.steps, 0.99),
-        c.point.step_longest = at_share(c.steps, 1);
+        for (const double s : steps) cpu += s;
+        c.point.cpu = cpu / (std::max<double>(1, static_cast<double>(steps.size())) * c.run->dt());
+        c.point.step_median = at_share(steps, 0.5), c.point.step_99 = at_share(steps, 0.99), c.point.step_longest = at_share(steps, 1);
         take_mean(c.point.error);
         for (double& s : c.point.shares) s /= std::max(1.0, c.looks);
         out_.points.push_back(std::move(c.point));
@@ -198,8 +267,8 @@ private:
     model::TypeSource& types_;
     const GovernPlan& plan_;
     GovernResult out_;
-    simulation::Ladder ladder_;
-    std::vector<std::string> watched_;
+    std::vector<Watcher> governors_;
+    std::vector<std::string> objects_;   ///< bodies on which the watched components act, sorted
     std::vector<Contender> contenders_;  ///< the governed one first
     std::unique_ptr<Simulation> reference_;
 };

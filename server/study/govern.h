@@ -22,7 +22,7 @@ namespace plab::study
 struct GovernPlan
 {
     model::SceneSpec scene;
-    std::string title, command, governor;  ///< governor: its id; empty: the first one of the scene, by id
+    std::string title, command, governor;  ///< governor: pattern of ids; empty: the first one of the scene, by id
     double until = 10;                     ///< s
     double between = 1, window = 0.25;     ///< s: from one comparison to the next; of a comparison
     int refine = 4;                        ///< steps of the reference for each step of the run
@@ -30,12 +30,12 @@ struct GovernPlan
     std::function<void(const std::string&)> progress;
 };
 
-/// Error of all objects that a viewer sees at the end of a window: their largest displacement |dp| + r |angle|, in the plane of its
-/// picture.
+/// Error of the objects on which the watched components act and that a viewer sees, at the end of a window: their displacement
+/// |dp| + r |angle|, in the plane of its picture. Of what no governor watches the choice changes nothing.
 struct GovernError
 {
     double pixels = 0, worst_pixels = 0;  ///< root mean square; largest
-    double metres = 0;                    ///< root mean square of all moving bodies, seen or not
+    double metres = 0;                    ///< root mean square of all of them, seen or not
     std::size_t seen = 0, bodies = 0;     ///< samples
 };
 
@@ -47,16 +47,17 @@ struct GovernPoint
     double step_median = 0, step_99 = 0, step_longest = 0;  ///< s of CPU time
     GovernError error;
     std::vector<double> shares;  ///< mean fraction of the components at each level
+    std::vector<double> steps;   ///< s of CPU time of each step, apart from those that copy what they share with a snapshot
 };
 
 struct GovernResult
 {
-    std::string title, scene_file, command, governor, type;
+    std::string title, scene_file, command, governor, type;         ///< governor, type: of several ones, all of them
     double until = 0, between = 0, window = 0, dt = 0, budget = 0;  ///< budget: s, of a step; 0: the governor has none
     int refine = 0;
-    std::size_t components = 0, objects = 0;  ///< that are watched; that move
-    std::vector<std::string> levels;
-    std::vector<GovernPoint> points;  ///< the governed one first, then from the cheapest level on
+    std::size_t components = 0, objects = 0;  ///< that are watched; on which they act
+    std::vector<std::string> levels;          ///< of several governors: which one of each
+    std::vector<GovernPoint> points;          ///< the governed one first, then from the cheapest level on
 };
 
 /// Errors: the scene has no such governor or no viewer; it was interrupted.
@@ -72,7 +73,7 @@ std::optional<double> gain(const GovernResult& result);
 
 std::vector<std::string> govern_findings(const GovernResult& result);
 figures::Drawing govern_picture(const GovernResult& result);
-/// Writes report.html, govern.csv, govern.svg and govern.png.
+/// Writes report.html, govern.csv, steps.csv, govern.svg and govern.png.
 Result<void> write_govern(const GovernResult& result, const std::string& folder);
 
 }  // namespace plab::study

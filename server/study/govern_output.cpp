@@ -117,9 +117,26 @@ std::string csv_of(const GovernResult& r)
     return rows.take();
 }
 
+/// A line for each step: what it took with each choice, s of CPU time.
+std::string steps_of(const GovernResult& r)
+{
+    CsvRow rows;
+    rows.put("step");
+    std::size_t longest = 0;
+    for (const GovernPoint& p : r.points) rows.text(p.name), longest = std::max(longest, p.steps.size());
+    rows.end();
+    for (std::size_t n = 0; n < longest; ++n)
+    {
+        rows.exact(static_cast<double>(n + 1));
+        for (const GovernPoint& p : r.points) (void)(n < p.steps.size() ? rows.exact(p.steps[n]) : rows.none());
+        rows.end();
+    }
+    return rows.take();
+}
+
 std::string html_of(const GovernResult& r)
 {
-    Page page("Levels of detail: " + r.title, std::to_string(r.objects) + " moving bodies, " + std::to_string(r.components) +
+    Page page("Levels of detail: " + r.title, std::to_string(r.objects) + " bodies, " + std::to_string(r.components) +
                                                   " components under " + r.governor + " (" + r.type + "), " + short_number(r.until) +
                                                   " simulated seconds of " + r.scene_file + ".");
     page.list(govern_findings(r));
@@ -129,7 +146,7 @@ std::string html_of(const GovernResult& r)
         "The error: every " + short_number(r.between) + " s a second simulation continues for " + short_number(r.window) +
         " s from the state of the run, with the most exact level for all and steps " + std::to_string(r.refine) +
         " times shorter. At the end of this time the displacement of each body that a viewer sees (|dp| + r |angle|) counts in pixels "
-        "of its picture.");
+        "of its picture. Bodies count on which a watched component acts.");
     std::vector<PageCell> head =
         text_cells({"choice", "ms/s", "step, ms", "99 %, ms", "longest, ms", "pixels", "largest", "m, all bodies"});
     for (const std::string& level : r.levels) head.push_back({level, "", "mean share of the components"});
@@ -159,8 +176,8 @@ Result<void> write_govern(const GovernResult& r, const std::string& folder)
     if (error) return reason("cannot make the folder " + folder + ": " + error.message());
     const Drawing picture = govern_picture(r);
     if (auto written = picture.write_png(folder + "/govern.png"); !written) return written;
-    for (const auto& [name, text] :
-         {std::pair("govern.svg", picture.svg(true)), std::pair("govern.csv", csv_of(r)), std::pair("report.html", html_of(r))})
+    for (const auto& [name, text] : {std::pair("govern.svg", picture.svg(true)), std::pair("govern.csv", csv_of(r)),
+                                     std::pair("steps.csv", steps_of(r)), std::pair("report.html", html_of(r))})
         if (auto written = program::write_file(folder + "/" + name, text); !written) return written;
     return {};
 }

@@ -23,7 +23,7 @@ constexpr const char* kExamples = R"(Examples:
   plab-study SCENE --swap 2s:contact.response=None --vary dt=1/60,1/120 --until 5 -o out
   plab-study --suite -o out                                       the catalogue of this installation; --list shows its size
   plab-study --suite my/suite.json --repeat 1 -o out
-  plab-study scenes/city.xml --govern cranes --until 10 -o out    a governor against one level of detail for all
+  plab-study scenes/city.xml --govern '*' --until 10 -o out       governors against one level of detail for all
   plab-study scenes/levels/chains.xml --verify-levels --until 10 -o out    are the true errors of levels below the bound?
   plab-study run.mcap --verify-levels -o out                      the same of a recorded run
 
@@ -154,9 +154,10 @@ void add_study_options(CLI::App& app, StudyOptions& options, Texts& texts, std::
         ->expected(0, 1)
         ->type_name("[FILE]");
     app.add_option("--tolerance", texts.tolerance, "suite: an error up to here counts as solved; default: 1e-6");
-    app.add_option("--govern", options.governor,
-                   "compare a governor of the scene (its id; default: the first one) with one level of detail for all: error in a viewer's "
-                   "picture against CPU time")
+    app.add_option(
+           "--govern", options.governor,
+           "compare a governor of the scene (its id, or a pattern for several; default: the first one) with one level of detail for all: "
+           "error in a viewer's picture against CPU time")
         ->expected(0, 1)
         ->type_name("[ID]");
     app.add_flag("--verify-levels", options.verify_levels,

@@ -4,7 +4,8 @@
 /// it. So from the state at the begin of each interval a second simulation continues with the most exact level for all components of the
 /// governor, and decides nothing. The error of a component is the largest departure of its objects at any step of the interval, in the unit
 /// of the governor. Intervals in which the component had the most exact level all the time do not count, because there is nothing to
-/// promise; nor do, in pixels, those in which no viewer sees it.
+/// promise; nor do, in pixels, those in which no viewer sees it. In some intervals it is also checked what the trial steps tell on which
+/// the governor relies (estimates.h).
 #pragma once
 
 #include <functional>
@@ -17,6 +18,7 @@
 #include "plab/interruption.h"
 #include "plab/result.h"
 #include "simulation/simulation.h"
+#include "study/estimates.h"
 
 namespace plab::study
 {
@@ -42,6 +44,7 @@ struct VerifiedGovernor
     std::size_t components = 0;      ///< that it watches
     double confidence = 0;           ///< that it stated at the end
     std::vector<VerifiedInterval> intervals;
+    std::vector<EstimateSample> estimates;  ///< in some of the intervals, of some components
 
     std::size_t counted() const;
     std::size_t held() const;
@@ -97,7 +100,7 @@ struct VerifyPlan
 Result<VerifyResult> verify_levels(model::TypeSource& types, const VerifyPlan& plan);
 
 std::vector<std::string> verify_findings(const VerifyResult& result);
-/// Writes levels.csv, one line for each interval of each governor.
+/// Writes levels.csv, one line for each interval of each governor, and estimates.csv, one line for each estimate that was checked.
 Result<void> write_verified(const VerifyResult& result, const std::string& folder);
 
 }  // namespace plab::study

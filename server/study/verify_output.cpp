@@ -11,6 +11,24 @@ namespace plab::study
 
 using figures::short_number;
 
+namespace
+{
+
+void tell_estimates(const VerifiedGovernor& g, std::vector<std::string>& out)
+{
+    const char* unit = g.unit == "rad" ? " rad" : " m";
+    for (const EstimateSpread& s : spreads_of(g.estimates))
+    {
+        const std::string name = g.id + ", " + s.level + ": ";
+        out.push_back(s.samples == 0 ? name + "its error cannot be told from rounding."
+                                     : name + "trial steps tell " + short_number(s.median) + " times the true error (median of " +
+                                           std::to_string(s.samples) + " samples; 8 of 10 between " + short_number(s.tenth) + " and " +
+                                           short_number(s.nine_tenths) + "), which is " + short_number(s.error) + unit + " in the median.");
+    }
+}
+
+}  // namespace
+
 std::vector<std::string> verify_findings(const VerifyResult& r)
 {
     std::vector<std::string> out;
@@ -21,6 +39,7 @@ std::vector<std::string> verify_findings(const VerifyResult& r)
         {
             out.push_back(name + "all components had the most exact level in all intervals" +
                           (g.unit == "pixels" ? " in which a viewer saw them." : "."));
+            tell_estimates(g, out);
             continue;
         }
         out.push_back(name + short_number(100 * g.share()) + " % of " + std::to_string(g.counted()) + " intervals of " +
@@ -30,6 +49,7 @@ std::vector<std::string> verify_findings(const VerifyResult& r)
         const VerifiedLevel& worst = *g.worst();
         out.push_back(name + "the largest error is " + short_number(worst.error) + " " + g.unit + ", of " + worst.component + " with " +
                       worst.level + " in the interval from " + short_number(worst.begin) + " s on.");
+        tell_estimates(g, out);
     }
     return out;
 }
@@ -56,6 +76,20 @@ std::string csv_of(const VerifyResult& r)
     return rows.take();
 }
 
+std::string estimates_csv_of(const VerifyResult& r)
+{
+    CsvRow rows;
+    rows.put("governor,level,component,interval_begin,unit,estimate,true_error");
+    rows.end();
+    for (const VerifiedGovernor& g : r.governors)
+        for (const EstimateSample& s : g.estimates)
+        {
+            rows.text(g.id).text(s.level).text(s.component).exact(s.begin).text(g.unit == "rad" ? "rad" : "m");
+            rows.exact(s.estimate).exact(s.error).end();
+        }
+    return rows.take();
+}
+
 }  // namespace
 
 Result<void> write_verified(const VerifyResult& r, const std::string& folder)
@@ -63,7 +97,8 @@ Result<void> write_verified(const VerifyResult& r, const std::string& folder)
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) return reason("cannot make the folder " + folder + ": " + error.message());
-    return program::write_file(folder + "/levels.csv", csv_of(r));
+    if (auto written = program::write_file(folder + "/levels.csv", csv_of(r)); !written) return written;
+    return program::write_file(folder + "/estimates.csv", estimates_csv_of(r));
 }
 
 }  // namespace plab::study

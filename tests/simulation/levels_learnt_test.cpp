@@ -1,4 +1,6 @@
 // Governor/Budget and Governor/Error: what they learn, and how they spend.
+#include <memory>
+
 #include "simulation/governed.h"
 #include "support/text.h"
 
@@ -88,16 +90,97 @@ TEST_CASE("an error: what has not been measured yet has the most exact level unt
     std::string scene = springs_under_budget(12, "");
     scene = scene.substr(0, scene.rfind("<component id=\"lod\"")) +
             "<component id=\"lod\" type=\"Governor/Error\" watches=\"*.solver\" levels=\"" + kLadder +
-            "\" bound=\"10\" looks=\"4\" every=\"0.05\" dwell=\"0\"/>";
+            "\" bound=\"10\" looks=\"4\" every=\"1\" dwell=\"0\"/>";
     Scene s(scene);
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step();
     CHECK(count_at(s, 0) == 4);
     CHECK(count_at(s, 2) == 8);
-    s.step(12);
+    s.step(240);
     CHECK(count_at(s, 0) == 8);
-    s.step(12);
+    CHECK(count_at(s, 2) == 4);
+    s.step(480);  // two of four measurements of a look are for promises that are due
     CHECK(count_at(s, 0) == 12);
+}
+
+TEST_CASE("an error: with a limit of trial steps a sample is measured, and all get the level that it keeps the bound with")
+{
+    constexpr int kCount = 60, kSteps = 12 * 40;
+    const auto run = [](const char* bound)
+    {
+        std::string scene = springs_under_budget(kCount, "");
+        scene = scene.substr(0, scene.rfind("<component id=\"lod\"")) +
+                "<component id=\"lod\" type=\"Governor/Error\" watches=\"*.solver\" levels=\"" + kLadder +
+                "\" looks=\"60\" every=\"0.05\" dwell=\"0\" share=\"0.25\" bound=\"" + bound + "\"/>";
+        auto s = std::make_unique<Scene>(scene);
+        REQUIRE_MESSAGE(s->loaded(), s->error());
+        s->step();
+        // 60 components in 12 steps, of which a quarter: 180 trial steps, in trials of 15 steps for each of two levels or three.
+        const auto measured = std::get<std::int64_t>(s->get("lod", "measured"));
+        CHECK(measured > 0);
+        CHECK(measured < 20);
+        CHECK(count_at(*s, 2) >= 50);  // nothing is known yet of the others
+        s->step(kSteps);
+        return s;
+    };
+    const auto loose = run("10"), tight = run("1e-13");
+    CHECK(count_at(*loose, 0) == kCount);
+    CHECK(count_at(*tight, 2) == kCount);
+    // Each measured error takes trials of at most two levels.
+    CHECK(std::get<std::int64_t>(loose->get("lod", "measured")) * 15 < 0.25 * kCount * kSteps * 1.5);
+    CHECK(loose->real("lod", "confidence") > 0.95);
+}
+
+TEST_CASE("an error: what a coupling errs is what it makes of the interval, whichever of the two the gears have")
+{
+    // Graph feels the inertia of what it drives, 4 + 2^2 0.5 kg m^2, and Assign does not: 0.5 and 0.75 rad/s^2.
+    constexpr double kInterval = 0.25, kDifference = 2 * 0.5 * 0.25 * kInterval * kInterval;
+    for (const char* present : {"Assign", "Graph"})
+    {
+        Scene s(std::string("<component id=\"motor\" type=\"State/Shaft\" inertia=\"4\" angular_velocity=\"2\"/>"
+                            "<component id=\"second\" type=\"State/Shaft\" inertia=\"0.5\" angular_velocity=\"-4\"/>"
+                            "<component id=\"gear\" type=\"Constraint/AngularVelocity/") +
+                present +
+                "\" driver=\"motor\" driven=\"second\" velocity_factor=\"-2\"/>"
+                "<component id=\"torque\" type=\"Field/Load\" between=\"motor\" shaft_torque=\"3\"/>");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(1);  // far from where the gears engaged
+        auto& simulation = s.simulation();
+        const Level assign{"Constraint/AngularVelocity/Assign", {}, ""}, graph{"Constraint/AngularVelocity/Graph", {}, ""};
+        const std::uint64_t before = s.hash();
+        const LevelError told = simulation.try_level(simulation.world().find("gear"), assign, graph, kInterval);
+        CHECK_MESSAGE(told.angle == doctest::Approx(kDifference).epsilon(0.05), present);
+        CHECK(s.hash() == before);
+    }
+}
+
+TEST_CASE("an error: what a quarter of the interval tells of a solver is near what the whole interval shows")
+{
+    // A stiff spring, whose mass swings two and a half times in the interval, and a soft one that hardly moves.
+    for (const char* stiffness : {"4000", "40", "1"})
+    {
+        const auto scene = [&](const char* solver)
+        {
+            return std::string(
+                       "<component id=\"post\" type=\"State/Static\"/><component id=\"bob\" type=\"State/RigidBody\" mass=\"1\" "
+                       "inertia=\"1 1 1\" position=\"1.5 0 0\" linear_velocity=\"0 2 0\" solver=\"Solver/") +
+                   solver + "\"/><component id=\"spring\" type=\"Constraint/SpringDamper\" a=\"post\" b=\"bob\" length=\"1\" stiffness=\"" +
+                   stiffness + "\"/>";
+        };
+        Scene cheap(scene("SemiImplicitEuler")), fine(scene("RungeKutta4"));
+        REQUIRE_MESSAGE(cheap.loaded(), cheap.error());
+        const Level euler{"Solver/SemiImplicitEuler", {}, ""}, runge_kutta{"Solver/RungeKutta4", {}, ""};
+        auto& simulation = cheap.simulation();
+        const double told = simulation.try_level(simulation.world().find("bob.solver"), euler, runge_kutta, 0.25).distance;
+        double largest = 0;
+        for (int k = 0; k < 60; ++k)
+        {
+            cheap.step(), fine.step();
+            largest = std::max(largest, test::distance(cheap.vec("bob", "position"), fine.vec("bob", "position")));
+        }
+        CHECK_MESSAGE(told > 0.9 * largest, stiffness);
+        CHECK_MESSAGE(told < 5 * largest, stiffness);
+    }
 }
 
 TEST_CASE("an error: an impact within the interval is foreseen, though the coming step shows nothing of it")

@@ -1,6 +1,9 @@
 #include "simulation/contacts/contact_rules.h"
 
+#include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
 namespace plab::simulation
 {
@@ -89,23 +92,54 @@ std::array<std::uint32_t, 2> shared_pair(const world::World& world, const std::v
     return {kNoIndex, kNoIndex};
 }
 
+using DetectorPair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// The pairs of detections that answer contacts of the same dynamic body: no others can handle the same pair of bodies. A scene may have
+/// hundreds of detections, one for each heap, with nothing in common but the ground. In order.
+std::vector<DetectorPair> with_a_body_in_common(const world::World& world, std::span<const Detector> detectors)
+{
+    std::vector<DetectorPair> entries;  // a dynamic body, and a detection that handles it
+    for (std::uint32_t k = 0; k < detectors.size(); ++k)
+    {
+        const Detector& d = detectors[k];
+        if (!d.responds && !d.by_rows && !d.by_force) continue;
+        for (const char* name : {"between", "against"})
+            if (const Role* role = world.tables()[d.table]->schema().find_role(name); role && role->many)
+                for (const Ref body : (*role->many)[d.row])
+                    if (body.facet == Facet::Body && world.host().bodies.dynamic(body.index)) entries.emplace_back(body.index, k);
+    }
+    const auto sort_once = [](std::vector<DetectorPair>& list)
+    {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+    };
+    sort_once(entries);
+    std::vector<DetectorPair> out;
+    for (auto first = entries.begin(); first != entries.end();)
+    {
+        const auto end = std::find_if(first, entries.end(), [&](const DetectorPair& e) { return e.first != first->first; });
+        for (; first != end; ++first)
+            for (auto other = first + 1; other != end; ++other) out.emplace_back(first->second, other->second);
+    }
+    sort_once(out);
+    return out;
+}
+
 void refuse_shared_pairs(const world::World& world, std::span<const Detector> detectors, Errors& errors)
 {
-    const auto answers = [](const Detector& d) { return d.responds || d.by_rows || d.by_force; };
-    std::vector<std::vector<Side>> sides;
-    for (const Detector& d : detectors) sides.push_back(answers(d) ? sides_of(world, d) : std::vector<Side>());
-    for (std::size_t i = 0; i < detectors.size(); ++i)
-        for (std::size_t k = i + 1; k < detectors.size() && !sides[i].empty(); ++k)
-        {
-            if (sides[k].empty()) continue;
-            const auto [a, b] = shared_pair(world, sides[i], sides[k]);
-            if (a == kNoIndex) continue;
-            const auto id = [&](std::uint32_t body) { return "'" + world.id_of(Ref{Facet::Body, body}) + "'"; };
-            errors.push_back(refused(world, detectors[k],
-                                     "the pair " + id(a) + ", " + id(b) + " is answered by '" + world.id_of(detectors[i].component) +
-                                         "' as well: a pair may have only one detection. Remove it from `between` or `against` of one "
-                                         "of them, or make one of them a sensor with Response/None"));
-        }
+    std::vector<std::vector<Side>> sides(detectors.size());
+    for (const auto& [i, k] : with_a_body_in_common(world, detectors))
+    {
+        for (const std::uint32_t d : {i, k})
+            if (sides[d].empty()) sides[d] = sides_of(world, detectors[d]);
+        const auto [a, b] = shared_pair(world, sides[i], sides[k]);
+        if (a == kNoIndex) continue;
+        const auto id = [&](std::uint32_t body) { return "'" + world.id_of(Ref{Facet::Body, body}) + "'"; };
+        errors.push_back(refused(world, detectors[k],
+                                 "the pair " + id(a) + ", " + id(b) + " is answered by '" + world.id_of(detectors[i].component) +
+                                     "' as well: a pair may have only one detection. Remove it from `between` or `against` of one "
+                                     "of them, or make one of them a sensor with Response/None"));
+    }
 }
 
 }  // namespace

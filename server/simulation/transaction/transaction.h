@@ -28,9 +28,9 @@ public:
 /// What the first step (or steps) with a request gave, for all objects that the request can affect.
 struct FirstStep
 {
-    std::vector<ObjectMotion> motion;  ///< bodies first, each in the order of host rows
-    double energy = 0;                 ///< J, kinetic and stored
-    double seconds = 0;                ///< that one step takes, the median of some; 0: not measured
+    std::vector<std::vector<ObjectMotion>> course;  ///< after each step: bodies first, each in the order of host rows
+    double energy = 0;                              ///< J, kinetic and stored
+    double seconds = 0;                             ///< that one step takes, the median of some; 0: not measured
 };
 
 /// What a look at the first steps with a request shall tell.

@@ -183,23 +183,24 @@ Result<FirstStep> Transaction::first_step(const FirstStepChoice& choice)
 {
     if (auto expanded = expand_patterns(); !expanded) return expanded.errors();
     saved_.begin(*run_, changes_contacts());
+    revisions_before_ = run_->world().revisions();
     TrialScope scope(run_->world());
     mark_touched(scope);
     FirstStep out;
     apply_all();
-    // The scene's stepper is not rebuilt: an exchange within a family leaves roles and groups as they are.
     if (reply_.errors.empty())
     {
         Interruption deadline(context_->interruption);
         if (request_->trial.budget == TrialChoice::Budget::Given)
             deadline.ask(std::chrono::nanoseconds(static_cast<std::int64_t>(budget_ns())));
-        const std::uint64_t until = choice.measure_ns > 0 ? now_ns() + choice.measure_ns : 0;
         TrialStep step = next_step();
-        step.count = choice.steps;
-        TrialResult result = Trial(run_->world(), run_->stepper(), step).run(scope, {}, deadline, context_->progress, until);
+        step.count = choice.steps, step.course = true, step.measure_ns = choice.measure_ns;
+        // The scene's stepper is not rebuilt, so what depends on the structure, such as the anchors of coupled shafts, is the trial's own.
+        step.derives = !run_->world().revisions().only_solvers_since(revisions_before_);
+        TrialResult result = Trial(run_->world(), run_->stepper(), step).run(scope, {}, deadline, context_->progress, 0);
         if (result.given_up) reply_.errors = {reason("the trial was interrupted")};
         if (!result.failure.empty()) reply_.errors = {reason(result.failure)};
-        out.motion = std::move(result.motion), out.energy = result.outcome.energy;
+        out.course = std::move(result.course), out.energy = result.outcome.energy;
         if (result.cost.is_known()) out.seconds = 1e-9 * result.cost.median;
     }
     saved_.restore_world(prepared_);

@@ -149,6 +149,7 @@ void Trial::choose_search(Stepper& part)
     part.search_as(stepper_, step_.tick, step_.start, step_.h);
     load_cells();
     host_.fix_others(world_.host());
+    host_.restore_derived(world_.host()), host_.restore_moved(world_.host());
 }
 
 void Trial::apply_changes(void* self, std::vector<ParameterChange>& changes)
@@ -234,10 +235,12 @@ TrialResult Trial::once(Stepper& part, const TrialScope& scope, const std::vecto
     first_ns_ = now_ns() - begin;
     out.given_up = deadline.has_interrupted();
     out.failure = failure_in(part.events());
+    if (step_.course) out.course.push_back(motion_in(scope));
     for (int n = 1; n < step_.count && !out.given_up && out.failure.empty(); ++n)
     {
         part.step(step_.tick + n, step_.start + n * step_.h, step_.h);
         out.given_up = deadline.has_interrupted(), out.failure = failure_in(part.events());
+        if (step_.course) out.course.push_back(motion_in(scope));
     }
     const Totals then = totals_of(world_, part, step_.start + step_.count * step_.h, step_.tick + step_.count);
     out.kinetic_after = then.kinetic;
@@ -296,6 +299,7 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         else
         {
             // The stepper may have written values that it derives from the structure.
+            if (step_.derives) host_.take_derived(world_.host());
             host_.restore_derived(world_.host()), host_.restore_moved(world_.host());
             if (part.adapts() && !scope.has_everything()) choose_search(part);
             set_up(part);
@@ -304,7 +308,8 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         }
         end_step(part);  // before the scope grows: from here on nothing is fixed
         if (tried) grown = grow(scope, part);
-        if (tried && !grown && out.failure.empty()) out.cost = measure(part, deadline, until_ns);
+        if (tried && !grown && out.failure.empty())
+            out.cost = measure(part, deadline, step_.measure_ns > 0 ? now_ns() + step_.measure_ns : until_ns);
         part_ = nullptr;
         if (!grown) break;
     }

@@ -14,8 +14,11 @@ namespace plab::simulation
 struct TrialStep
 {
     Tick tick = 0;
-    double start = 0, h = 0;  ///< s
-    int count = 1;            ///< steps in a row; objects that others touch before the last one are not noticed
+    double start = 0, h = 0;       ///< s
+    int count = 1;                 ///< steps in a row; objects that others touch before the last one are not noticed
+    bool course = false;           ///< also the motion after each of them
+    std::uint64_t measure_ns = 0;  ///< time for which the first step is repeated after the trial, in place of a time until which
+    bool derives = false;  ///< the scene's stepper has not been rebuilt for the present structure: the trial's own one derives from it
 };
 
 /// How a body or a shaft moves at the end of a trial.
@@ -31,15 +34,16 @@ struct ObjectMotion
 struct TrialResult
 {
     bool given_up = false;
-    std::string failure;               ///< "" or the first event of severity Failure
-    double before = 0;                 ///< J, kinetic and stored energy of the objects in the scope at the start of the step
-    double moving = 0;                 ///< J, kinetic energy at that time, including prescribed objects
-    double kinetic_after = 0;          ///< J, at the end of the step
-    double least = 0;                  ///< J: kinetic energy below which no motion is noticeable within one step
-    StepOutcome outcome;               ///< of the objects in the scope; without error and cost
-    Spread cost;                       ///< ns, of repeated steps; no samples: not measured
-    std::vector<double> errors;        ///< of the components that were given
-    std::vector<ObjectMotion> motion;  ///< of the objects in the scope, bodies first, each in the order of host rows
+    std::string failure;                            ///< "" or the first event of severity Failure
+    double before = 0;                              ///< J, kinetic and stored energy of the objects in the scope at the start of the step
+    double moving = 0;                              ///< J, kinetic energy at that time, including prescribed objects
+    double kinetic_after = 0;                       ///< J, at the end of the step
+    double least = 0;                               ///< J: kinetic energy below which no motion is noticeable within one step
+    StepOutcome outcome;                            ///< of the objects in the scope; without error and cost
+    Spread cost;                                    ///< ns, of repeated steps; no samples: not measured
+    std::vector<double> errors;                     ///< of the components that were given
+    std::vector<ObjectMotion> motion;               ///< of the objects in the scope, bodies first, each in the order of host rows
+    std::vector<std::vector<ObjectMotion>> course;  ///< after each step, if that was asked for
 };
 
 /// A trial uses a stepper of its own for the objects in the scope, starting from the present state of the world. All other objects are

@@ -27,7 +27,15 @@ void TrialMemento::save(const world::HostTables& host, const TrialScope& scope)
         inverse_inertia_B_.push_back(host.bodies.inverse_inertia_B[b]);
     }
     materials_ = host.materials, filter_ = host.filter;
+    derived_anew_ = false;
     changes_ = {};
+}
+
+void TrialMemento::take_derived(const world::HostTables& host)
+{
+    own_materials_ = host.materials, own_filter_ = host.filter;
+    for_each_column(world::kDerivedShaftColumns, [&](auto column) { own_shafts_.*column = host.shafts.*column; });
+    derived_anew_ = true;
 }
 
 void TrialMemento::fix_others(world::HostTables& host) const
@@ -51,17 +59,27 @@ void TrialMemento::restore_moved(world::HostTables& host) const
                         for (const std::uint32_t s : moved_shafts_) (host.shafts.*column)[s] = (shafts_.*column)[s];
                     });
     for (std::size_t k = 0; k < moved_quantities_.size(); ++k) host.quantities.value[moved_quantities_[k]] = quantities_[k];
+    if (!derived_anew_) return;
+    for_each_column(world::kDerivedShaftColumns,
+                    [&](auto column)
+                    {
+                        for (const std::uint32_t s : moved_shafts_) (host.shafts.*column)[s] = (own_shafts_.*column)[s];
+                    });
 }
 
 void TrialMemento::restore_derived(world::HostTables& host) const
 {
-    host.materials = materials_, host.filter = filter_;
-    for_each_column(world::kDerivedShaftColumns, [&](auto column) { host.shafts.*column = shafts_.*column; });
+    host.materials = derived_anew_ ? own_materials_ : materials_;
+    host.filter = derived_anew_ ? own_filter_ : filter_;
+    const Shafts& from = derived_anew_ ? own_shafts_ : shafts_;
+    for_each_column(world::kDerivedShaftColumns, [&](auto column) { host.shafts.*column = from.*column; });
 }
 
 void TrialMemento::restore(world::HostTables& host) const
 {
-    restore_moved(host), restore_derived(host);
+    restore_moved(host);
+    host.materials = materials_;
+    for_each_column(world::kDerivedShaftColumns, [&](auto column) { host.shafts.*column = shafts_.*column; });
     for (const std::uint32_t s : fixed_shafts_)
         host.shafts.motion[s] = shafts_.motion[s], host.shafts.inverse_inertia[s] = shafts_.inverse_inertia[s];
     for (std::size_t k = 0; k < fixed_bodies_.size(); ++k)

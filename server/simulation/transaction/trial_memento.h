@@ -21,6 +21,8 @@ public:
     /// The log for what scripts change within the step.
     world::UndoLog& changes() { return changes_; }
 
+    /// Until restore(), what the stepper of the trial derived counts, in place of what was saved: the structure is a new one.
+    void take_derived(const world::HostTables& host);
     /// Restores what a step has moved. The others stay fixed.
     void restore_moved(world::HostTables& host) const;
     /// Restores what a stepper derives from the structure.
@@ -36,6 +38,10 @@ private:
     Shafts shafts_;                                                              ///< all, without axles and shapes
     Materials materials_;
     CollisionFilter filter_;
+    bool derived_anew_ = false;
+    Shafts own_shafts_;  ///< all, only what is derived, if it was taken; as the next one
+    Materials own_materials_;
+    CollisionFilter own_filter_;
     std::vector<Motion> motion_;  ///< of fixed_bodies_, as the next two
     std::vector<double> inverse_mass_;
     std::vector<Mat3> inverse_inertia_B_;
