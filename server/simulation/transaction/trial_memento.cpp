@@ -78,7 +78,7 @@ void TrialMemento::restore_derived(world::HostTables& host) const
 void TrialMemento::restore(world::HostTables& host) const
 {
     restore_moved(host);
-    host.materials = materials_;
+    host.materials = materials_, host.filter = filter_;
     for_each_column(world::kDerivedShaftColumns, [&](auto column) { host.shafts.*column = shafts_.*column; });
     for (const std::uint32_t s : fixed_shafts_)
         host.shafts.motion[s] = shafts_.motion[s], host.shafts.inverse_inertia[s] = shafts_.inverse_inertia[s];
