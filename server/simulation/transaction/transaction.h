@@ -98,6 +98,8 @@ private:
     void mark_touched(TrialScope& scope) const;
     TrialStep next_step() const;
     double budget_ns() const;
+    /// Objects on which a swap is tried at most; 0: no limit.
+    std::size_t most_in_trial() const;
     /// The time (ns) until which trial steps may be repeated only to measure their cost.
     std::uint64_t measure_until(double share) const;
     std::vector<std::uint32_t> swapped() const;

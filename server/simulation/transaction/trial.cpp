@@ -175,18 +175,20 @@ void Trial::apply_changes(void* self, std::vector<ParameterChange>& changes)
     (void)trial.part_->rebuild();
 }
 
-/// Adds moving objects outside the scope that touched an object in it during the step. Returns false if there were none.
+/// Adds moving objects outside the scope that touched an object in it during the step. Returns false if there were none, or if the scope is
+/// a sample, which holds them still.
 bool Trial::grow(TrialScope& scope, const Stepper& part) const
 {
     if (scope.has_everything()) return false;
+    const bool sample = scope.is_sample();
     bool grown = false;
     const auto meet = [&](Ref a, Ref b)
     {
         for (const Ref r : {a, b})
         {
             if (r.facet != Facet::Body || scope.holds(r) || world_.host().bodies.motion[r.index] == Motion::Static) continue;
-            scope.add(r);
-            grown = true;
+            grown = !sample;
+            sample ? scope.note_neighbour() : scope.add(r);
         }
     };
     const auto extend = [&](const auto& p)
