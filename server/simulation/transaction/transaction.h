@@ -131,6 +131,7 @@ private:
     std::vector<std::size_t> held_before_;                                ///< contact points, by swap
     double energy_before_ = 0, energy_applied_ = 0, kinetic_before_ = 0;  ///< J, of the whole scene at the boundary
     world::Revisions revisions_before_;                                   ///< of the world at the boundary
+    bool looked_ = false;                                                 ///< see TrialStep::looked; at that time
     bool structural_ = false;
     std::vector<std::string> touched_;  ///< ids that were added, removed or changed
     std::vector<std::string> added_;    ///< by add operations

@@ -25,7 +25,7 @@ constexpr double kMeasureOld = 0.45, kMeasureNew = 0.95;
 constexpr double kMeasureUnlimited = 2e7;
 constexpr double kMostToMeasure = 4e6;  // ns, of a budget that the request does not name
 /// With such a budget, a swap is tried on so many objects that a step of them costs about kSampleStep, ns, but on kLeastSample or more.
-constexpr double kSampleStep = 5e5;
+constexpr double kSampleStep = 2.5e5;
 constexpr std::size_t kLeastSample = 256;
 
 bool adds(const Operation& op) { return std::holds_alternative<AddOperation>(op) || std::holds_alternative<AddBlueprintOperation>(op); }
@@ -107,7 +107,8 @@ void Transaction::mark_touched(TrialScope& scope) const
 TrialStep Transaction::next_step() const
 {
     const double start = run_->clock.time_at(run_->clock.tick);
-    return {run_->clock.tick, start, run_->clock.time_at(run_->clock.tick + 1) - start};
+    const bool looked = looked_ && run_->world().revisions().keeps_bodies_since(revisions_before_);
+    return {run_->clock.tick, start, run_->clock.time_at(run_->clock.tick + 1) - start, 1, looked};
 }
 
 double Transaction::budget_ns() const

@@ -127,7 +127,7 @@ void Trial::set_up(Stepper& part) const
 /// To be called before the others are fixed.
 void Trial::choose_bodies(Stepper& part, const TrialScope& scope)
 {
-    if (scope.has_everything() || !stepper_.has_looked_at_all()) return;
+    if (scope.has_everything() || !step_.looked) return;
     const Bodies& bodies = world_.host().bodies;
     moving_.begin(bodies.size());
     for (const std::uint32_t b : scope.bodies())
@@ -297,6 +297,7 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
             out.failure = built.error().text(), part.look_among(nullptr);
         else
         {
+            if (!part.looks_once()) part.look_among(nullptr);
             // The stepper may have written values that it derives from the structure.
             host_.restore_derived(world_.host()), host_.restore_moved(world_.host());
             if (part.adapts() && !scope.has_everything()) choose_search(part);
@@ -306,7 +307,8 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         }
         end_step(part);  // before the scope grows: from here on nothing is fixed
         if (tried) grown = grow(scope, part);
-        if (tried && !grown && out.failure.empty()) out.cost = measure(part, deadline, until_ns);
+        // A sample is there to keep the pause short.
+        if (tried && !grown && out.failure.empty() && !scope.is_sample()) out.cost = measure(part, deadline, until_ns);
         part_ = nullptr;
         if (!grown) break;
     }
