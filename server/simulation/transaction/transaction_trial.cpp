@@ -26,7 +26,7 @@ constexpr double kMeasureUnlimited = 2e7;
 constexpr double kMostToMeasure = 4e6;  // ns, of a budget that the request does not name
 /// With such a budget, a swap is tried on so many objects that a step of them costs about kSampleStep, ns, but on kLeastSample or more.
 constexpr double kSampleStep = 2.5e5;
-constexpr std::size_t kLeastSample = 256;
+constexpr std::size_t kLeastSample = 128;
 
 bool adds(const Operation& op) { return std::holds_alternative<AddOperation>(op) || std::holds_alternative<AddBlueprintOperation>(op); }
 
@@ -233,7 +233,11 @@ std::string Transaction::makes_energy(const TrialResult& with_new) const
 {
     if (reply_.swaps.empty() || !std::isfinite(request_->trial.energy_factor)) return {};
     const double scale = std::max({with_new.least, with_new.moving, old_tried_ ? old_.moving : 0.0, old_tried_ ? old_.kinetic_after : 0.0});
-    const double gain = energy_applied_ - energy_before_ + with_new.outcome.energy - with_new.before;
+    // What the swap changed at once: of a sample only its own share counts.
+    const double at_once = reply_.trial.sample_of == 0 ? energy_applied_ - energy_before_
+                           : old_tried_                ? with_new.before - old_.before
+                                                       : 0.0;
+    const double gain = at_once + with_new.outcome.energy - with_new.before;
     const double made = std::min(with_new.kinetic_after, gain);
     if (!(made > request_->trial.energy_factor * scale)) return {};
     return "the first step would raise the kinetic energy of the objects concerned from " + model::format_real(with_new.moving) + " J to " +
