@@ -154,7 +154,7 @@ struct TrialChoice
     double ns = 0;               ///< of Budget::Given
     bool must = false;           ///< refuse the request if the trial cannot be completed
     bool everything = false;     ///< step the whole scene instead of what the request can affect, for comparison
-    std::size_t most = 0;        ///< objects that a swap is tried on, see TrialReport::sample; 0: as many as the budget is for
+    std::size_t most = 0;        ///< objects that a swap is tried on, see TrialReport::sample_of; 0: as many as the budget is for
     double energy_factor = 100;  ///< a swap whose first step multiplies the kinetic energy by more is refused; infinite: no limit
 
     bool is_wanted() const { return budget != Budget::None; }
