@@ -13,6 +13,12 @@ namespace plab::model
 namespace
 {
 
+bool names_objects(const Role& role)
+{
+    const auto is_object = [](Facet f) { return f == Facet::Body || f == Facet::Shaft || f == Facet::Quantities; };
+    return std::any_of(role.facets.begin(), role.facets.end(), is_object);
+}
+
 bool is_snake_case(std::string_view name)
 {
     if (name.empty() || !is_lower(name.front()) || name.back() == '_') return false;
@@ -147,6 +153,19 @@ bool ComponentType::only_advances() const
            std::all_of(info.commands.begin(), info.commands.end(), advances);
 }
 
+bool ComponentType::only_answers_contacts() const
+{
+    const auto answers = [](const CommandInfo& c)
+    {
+        return c.phase == Phase::Choose || c.phase == Phase::Locate || c.phase == Phase::Respond || c.phase == Phase::Touch ||
+               c.phase == Phase::Solve;
+    };
+    const auto does_no_more = [&](const CommandInfo& c) { return answers(c) || c.phase == Phase::Prepare || c.phase == Phase::Potential; };
+    const auto& commands = info.commands;
+    return info.facet == Facet::Component && std::ranges::none_of(schema.roles(), names_objects) &&
+           std::ranges::any_of(commands, answers) && std::ranges::all_of(commands, does_no_more);
+}
+
 bool ComponentType::concerns_contacts() const
 {
     if (only_advances()) return false;
@@ -155,8 +174,6 @@ bool ComponentType::concerns_contacts() const
         return c.phase == Phase::Choose || c.phase == Phase::Touch || c.phase == Phase::Solve || c.phase == Phase::Detect ||
                c.phase == Phase::Gap || c.phase == Phase::Locate || c.phase == Phase::Respond;
     };
-    const auto is_object = [](Facet f) { return f == Facet::Body || f == Facet::Shaft || f == Facet::Quantities; };
-    const auto names_objects = [&](const Role& r) { return std::any_of(r.facets.begin(), r.facets.end(), is_object); };
     const bool acts = std::any_of(schema.roles().begin(), schema.roles().end(), names_objects);
     return info.facet != Facet::Component || !acts || std::any_of(info.commands.begin(), info.commands.end(), of_contacts);
 }

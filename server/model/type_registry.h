@@ -27,6 +27,9 @@ struct ComponentType
     bool takes_part(Phase phase) const;
     /// Whether all that a component of this type does is to advance those that name it: it is a solver, and names nobody itself.
     bool only_advances() const;
+    /// Whether all that a component of this type does is to say what happens where bodies touch, in the name of a detection: it is a
+    /// response, a resolution or a manager. Which objects are integrated or coupled does not depend on it.
+    bool only_answers_contacts() const;
     /// Whether contacts may depend on a component of this type. They do not on solvers, nor on forces, joints, couplings and scripts, which
     /// act on objects otherwise.
     bool concerns_contacts() const;

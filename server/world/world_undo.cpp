@@ -16,6 +16,7 @@ UndoLog* World::note_in(UndoLog* log)
 void World::count_change(const model::ComponentType& type)
 {
     if (type.only_advances()) return (void)++revisions_.solvers;
+    if (type.only_answers_contacts()) return (void)++revisions_.answers;
     ++revisions_.others;
     if (type.concerns_contacts()) ++revisions_.contacts;
 }

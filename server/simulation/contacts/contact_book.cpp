@@ -96,7 +96,7 @@ Errors ContactBook::rebuild(bool sizes)
     if (imposed_.size() != detectors_.size()) imposed_.clear();
     resting_.forget();
     if (!keeps_found_) found_.clear(), runs_.clear();
-    has_sizes_ = has_sizes_ && no_news;
+    has_sizes_ = has_sizes_ && last && now.keeps_bodies_since(*last);
     if ((sizes || !detectors_.empty()) && !std::exchange(has_sizes_, true)) measure_bodies();
     list_participants();
     detect_among(nullptr), detect_all_once();

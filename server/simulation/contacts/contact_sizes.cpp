@@ -77,10 +77,11 @@ bool ContactBook::is_of_present_structure() const { return built_from_ && step_.
 
 void ContactBook::take_sizes(const ContactBook& whole)
 {
-    if (!whole.has_sizes_ || !whole.is_of_present_structure()) return;
+    const world::Revisions now = step_.world.revisions();
+    if (!whole.has_sizes_ || !whole.built_from_ || !now.keeps_bodies_since(*whole.built_from_)) return;
     extents_of_body_ = whole.extents_of_body_, radius_of_body_ = whole.radius_of_body_;
     curve_radius_of_body_ = whole.curve_radius_of_body_;
-    built_from_ = step_.world.revisions(), has_sizes_ = true;
+    built_from_ = now, has_sizes_ = true;
 }
 
 double ContactBook::wedging_of(std::uint32_t b) const

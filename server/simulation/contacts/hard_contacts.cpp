@@ -18,13 +18,17 @@ void HardContacts::begin_step()
     step_.report.further_pairs = 0;
 }
 
+bool HardContacts::looks_once() const
+{
+    const auto once = [](const Detector& d) { return d.by_rows && d.persists() && !d.adapts; };
+    return std::ranges::all_of(contacts_.detectors(), once);
+}
+
 bool HardContacts::has_looked_at_all() const
 {
-    const auto looks_once = [](const Detector& d) { return d.by_rows && d.persists() && !d.adapts; };
     const auto asleep = [](const BodyRest& b) { return b.asleep; };
     const std::vector<BodyRest>& rest = std::as_const(contacts_).cache().rest().bodies;
-    return contacts_.is_of_present_structure() && std::ranges::all_of(contacts_.detectors(), looks_once) &&
-           std::ranges::none_of(rest, asleep) && held_.is_current();
+    return contacts_.is_of_present_structure() && looks_once() && std::ranges::none_of(rest, asleep) && held_.is_current();
 }
 
 bool HardContacts::needs_islands() const

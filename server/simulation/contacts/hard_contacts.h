@@ -30,6 +30,8 @@ public:
     void note_change() { sleeping_.note_change(); }
     /// Whether the detectors have looked at all bodies where these are now. False if that is not known.
     bool has_looked_at_all() const;
+    /// Whether all detectors look at the bodies of a step once, where these are at its start.
+    bool looks_once() const;
     /// Whether islands sleep; then only these groups have to be advanced.
     bool any_asleep() const { return sleeping_.any(); }
     const std::vector<std::uint32_t>& awake_groups() const { return sleeping_.awake_groups(); }

@@ -40,7 +40,7 @@ std::string text_of_costs(const TrialReport& trial)
 
 std::string text_of(const TrialReport& trial)
 {
-    char text[128];
+    char text[160];
     const double ms = 1e-6 * trial.ns;
     const char* const what = trial.everything ? "everything" : trial.objects == 1 ? "object" : "objects";
     switch (trial.outcome)
@@ -56,6 +56,9 @@ std::string text_of(const TrialReport& trial)
     }
     if (trial.everything)
         std::snprintf(text, sizeof text, "made: %s, %.3g ms", what, ms);
+    else if (trial.sample_of != 0)
+        std::snprintf(text, sizeof text, "made: a sample of %zu of %zu objects%s, %.3g ms", trial.objects, trial.sample_of,
+                      trial.held ? " with what touches them held still" : "", ms);
     else
         std::snprintf(text, sizeof text, "made: %zu %s, %.3g ms", trial.objects, what, ms);
     const std::string costs = text_of_costs(trial);

@@ -154,6 +154,7 @@ struct TrialChoice
     double ns = 0;               ///< of Budget::Given
     bool must = false;           ///< refuse the request if the trial cannot be completed
     bool everything = false;     ///< step the whole scene instead of what the request can affect, for comparison
+    std::size_t most = 0;        ///< objects that a swap is tried on, see TrialReport::sample_of; 0: as many as the budget is for
     double energy_factor = 100;  ///< a swap whose first step multiplies the kinetic energy by more is refused; infinite: no limit
 
     bool is_wanted() const { return budget != Budget::None; }
@@ -220,7 +221,10 @@ struct TrialReport
     double ns = 0, budget_ns = 0;  ///< the budget is infinite if there is no limit
     std::size_t objects = 0;       ///< number of bodies, shafts and quantities in the trial step
     bool everything = false;       ///< these are all objects of the scene
-    Spread with_old, with_new;     ///< ns, of repeated trial steps of a swap, with warm caches; no samples: not measured
+    /// These are a sample of the objects on which the request acts; 0: no sample. `held`: what touches the sample was held still.
+    std::size_t sample_of = 0;
+    bool held = false;
+    Spread with_old, with_new;  ///< ns, of repeated trial steps of a swap, with warm caches; no samples: not measured
 };
 
 /// Changes that requests made to the structure and to parameters, for observers that keep a copy of the catalogue.

@@ -61,8 +61,10 @@ public:
     bool adapts() const { return book_.adapts(); }
     /// Whether all detectors have looked at all bodies where these are now.
     bool has_looked_at_all() const { return hard_.has_looked_at_all(); }
-    /// For a part of a scene whose other bodies stay where they are, if has_looked_at_all() of the whole scene's stepper: detectors look
-    /// only for pairs with one of these bodies. Null: for all. Must outlive this object.
+    /// Whether all of them look at the bodies of a step once, where these are at its start.
+    bool looks_once() const { return hard_.looks_once(); }
+    /// For a part of a scene whose other bodies stay where they are, if all detectors have looked at all bodies there: from now on they
+    /// look only for pairs with one of these bodies. Null: for all. Must outlive this object.
     void look_among(const IndexSet* bodies) { book_.look_among(bodies); }
     /// The bodies are back where they were: the detectors look at them there. False if look_among() was not called.
     bool look_again();
@@ -135,6 +137,7 @@ private:
     // stepper_build.cpp
     Errors derive_structure(bool comparable, GroupsChange& change);
     void choose_solvers();
+    void choose_answers(GroupsChange& change);
     void set_up_motion();
     std::vector<std::uint32_t> coupled_groups() const;
     void connect_materials(Errors& errors);

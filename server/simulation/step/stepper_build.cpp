@@ -88,11 +88,14 @@ Result<void> Stepper::rebuild()
 {
     const world::Revisions now = step_.world.revisions();
     const bool only_solvers = built_from_ && now.only_solvers_since(*built_from_);
+    const bool only_answers = built_from_ && now.only_answers_since(*built_from_);
     const bool no_solvers = built_from_ && now.order == built_from_->order && now.solvers == built_from_->solvers;
     built_from_.reset();
     GroupsChange change;
     if (only_solvers)
         choose_solvers();
+    else if (only_answers)
+        choose_answers(change);
     else if (Errors refused = derive_structure(no_solvers, change); !refused.empty())
         return refused;
     if (Errors refused = book_.rebuild(part_ == nullptr); !refused.empty()) return refused;
@@ -116,6 +119,13 @@ void Stepper::choose_solvers()
 {
     rebuild_solvers(step_.schedule, step_.world, part_);
     simulation::choose_solvers(step_.world, step_.groups);
+}
+
+/// Responses, resolutions and managers join nothing: of what derive_structure() would make, only the schedule changes.
+void Stepper::choose_answers(GroupsChange& change)
+{
+    step_.schedule = build_schedule(step_.world, part_);
+    change.all = false;
 }
 
 /// `comparable`: ranks and solvers are those of the last rebuild, so its groups can be compared with the present ones.

@@ -98,6 +98,8 @@ private:
     void mark_touched(TrialScope& scope) const;
     TrialStep next_step() const;
     double budget_ns() const;
+    /// Objects on which a swap is tried at most; 0: no limit.
+    std::size_t most_in_trial() const;
     /// The time (ns) until which trial steps may be repeated only to measure their cost.
     std::uint64_t measure_until(double share) const;
     std::vector<std::uint32_t> swapped() const;
@@ -129,6 +131,7 @@ private:
     std::vector<std::size_t> held_before_;                                ///< contact points, by swap
     double energy_before_ = 0, energy_applied_ = 0, kinetic_before_ = 0;  ///< J, of the whole scene at the boundary
     world::Revisions revisions_before_;                                   ///< of the world at the boundary
+    bool looked_ = false;                                                 ///< see TrialStep::looked; at that time
     bool structural_ = false;
     std::vector<std::string> touched_;  ///< ids that were added, removed or changed
     std::vector<std::string> added_;    ///< by add operations

@@ -164,6 +164,7 @@ void Transaction::run_on_scene(bool swaps)
     const Energies first = energies_of(run_->world(), run_->stepper(), run_->clock.time(), run_->clock.tick);
     energy_before_ = first.kinetic + first.stored, kinetic_before_ = first.kinetic;
     revisions_before_ = run_->world().revisions();
+    looked_ = request_->trial.is_wanted() && run_->stepper().has_looked_at_all();
     TrialScope scope(run_->world());
     if (swaps && request_->trial.is_wanted()) mark_touched(scope), try_old(scope);
     apply_all();
@@ -183,7 +184,7 @@ Result<FirstStep> Transaction::first_step(const FirstStepChoice& choice)
 {
     if (auto expanded = expand_patterns(); !expanded) return expanded.errors();
     saved_.begin(*run_, changes_contacts());
-    revisions_before_ = run_->world().revisions();
+    revisions_before_ = run_->world().revisions(), looked_ = run_->stepper().has_looked_at_all();
     TrialScope scope(run_->world());
     mark_touched(scope);
     FirstStep out;

@@ -24,6 +24,9 @@ constexpr double kStepsOfBudget = 10;
 constexpr double kMeasureOld = 0.45, kMeasureNew = 0.95;
 constexpr double kMeasureUnlimited = 2e7;
 constexpr double kMostToMeasure = 4e6;  // ns, of a budget that the request does not name
+/// With such a budget, a swap is tried on so many objects that a step of them costs about kSampleStep, ns, but on kLeastSample or more.
+constexpr double kSampleStep = 2.5e5;
+constexpr std::size_t kLeastSample = 128;
 
 bool adds(const Operation& op) { return std::holds_alternative<AddOperation>(op) || std::holds_alternative<AddBlueprintOperation>(op); }
 
@@ -104,7 +107,8 @@ void Transaction::mark_touched(TrialScope& scope) const
 TrialStep Transaction::next_step() const
 {
     const double start = run_->clock.time_at(run_->clock.tick);
-    return {run_->clock.tick, start, run_->clock.time_at(run_->clock.tick + 1) - start};
+    const bool looked = looked_ && run_->world().revisions().keeps_bodies_since(revisions_before_);
+    return {run_->clock.tick, start, run_->clock.time_at(run_->clock.tick + 1) - start, 1, looked};
 }
 
 double Transaction::budget_ns() const
@@ -121,6 +125,18 @@ double Transaction::budget_ns() const
             break;
     }
     return context_->mean_step_ns > 0 ? std::max(kLeastBudget, kStepsOfBudget * context_->mean_step_ns) : kUnknownBudget;
+}
+
+/// A pause of two steps of everything is too long for a loop that others watch. Who names a budget, or wants no exchange without a trial,
+/// gets all of it.
+std::size_t Transaction::most_in_trial() const
+{
+    const TrialChoice& choice = request_->trial;
+    if (choice.most != 0 || choice.everything || choice.must || choice.budget != TrialChoice::Budget::Automatic) return choice.most;
+    if (!(context_->mean_step_ns > 0)) return 0;
+    const world::HostTables& host = run_->world().host();
+    const auto objects = static_cast<double>(host.bodies.size() + host.shafts.size() + host.quantities.size());
+    return std::max(kLeastSample, static_cast<std::size_t>(objects * std::min(1.0, kSampleStep / context_->mean_step_ns)));
 }
 
 std::vector<std::uint32_t> Transaction::swapped() const
@@ -147,6 +163,7 @@ std::uint64_t Transaction::measure_until(double share) const
 void Transaction::try_old(TrialScope& scope)
 {
     const double budget = budget_ns();
+    scope.limit_to(most_in_trial());
     Interruption deadline(context_->interruption);
     // The other half is for the new components, whose trial decides whether the request takes effect.
     if (std::isfinite(budget)) deadline.ask(as_duration(0.5 * budget));
@@ -155,6 +172,8 @@ void Transaction::try_old(TrialScope& scope)
         Trial(run_->world(), run_->stepper(), next_step()).run(scope, swapped(), deadline, context_->progress, measure_until(kMeasureOld));
     context_->progress.end();
     old_tried_ = !old_.given_up;
+    // The new components are tried on the objects that the old ones were tried on: their figures are compared.
+    if (!scope.is_sample()) scope.limit_to(0);
 }
 
 Result<void> Transaction::try_new(TrialScope& scope)
@@ -173,6 +192,7 @@ Result<void> Transaction::try_new(TrialScope& scope)
     context_->progress.end();
     reported.ns = static_cast<double>(now_ns() - trial_begin_), reported.objects = scope.objects(),
     reported.everything = scope.has_everything();
+    if (scope.is_sample()) reported.sample_of = scope.concerned(), reported.held = scope.holds_neighbours();
     reported.outcome = with_new.given_up                      ? TrialReport::Outcome::GivenUp
                        : !reply_.swaps.empty() && !old_tried_ ? TrialReport::Outcome::WithoutOld
                                                               : TrialReport::Outcome::Made;
@@ -213,7 +233,11 @@ std::string Transaction::makes_energy(const TrialResult& with_new) const
 {
     if (reply_.swaps.empty() || !std::isfinite(request_->trial.energy_factor)) return {};
     const double scale = std::max({with_new.least, with_new.moving, old_tried_ ? old_.moving : 0.0, old_tried_ ? old_.kinetic_after : 0.0});
-    const double gain = energy_applied_ - energy_before_ + with_new.outcome.energy - with_new.before;
+    // What the swap changed at once: of a sample only its own share counts.
+    const double at_once = reply_.trial.sample_of == 0 ? energy_applied_ - energy_before_
+                           : old_tried_                ? with_new.before - old_.before
+                                                       : 0.0;
+    const double gain = at_once + with_new.outcome.energy - with_new.before;
     const double made = std::min(with_new.kinetic_after, gain);
     if (!(made > request_->trial.energy_factor * scale)) return {};
     return "the first step would raise the kinetic energy of the objects concerned from " + model::format_real(with_new.moving) + " J to " +

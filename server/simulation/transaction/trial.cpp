@@ -127,7 +127,7 @@ void Trial::set_up(Stepper& part) const
 /// To be called before the others are fixed.
 void Trial::choose_bodies(Stepper& part, const TrialScope& scope)
 {
-    if (scope.has_everything() || !stepper_.has_looked_at_all()) return;
+    if (scope.has_everything() || !step_.looked) return;
     const Bodies& bodies = world_.host().bodies;
     moving_.begin(bodies.size());
     for (const std::uint32_t b : scope.bodies())
@@ -176,18 +176,20 @@ void Trial::apply_changes(void* self, std::vector<ParameterChange>& changes)
     (void)trial.part_->rebuild();
 }
 
-/// Adds moving objects outside the scope that touched an object in it during the step. Returns false if there were none.
+/// Adds moving objects outside the scope that touched an object in it during the step. Returns false if there were none, or if the scope is
+/// a sample, which holds them still.
 bool Trial::grow(TrialScope& scope, const Stepper& part) const
 {
     if (scope.has_everything()) return false;
+    const bool sample = scope.is_sample();
     bool grown = false;
     const auto meet = [&](Ref a, Ref b)
     {
         for (const Ref r : {a, b})
         {
             if (r.facet != Facet::Body || scope.holds(r) || world_.host().bodies.motion[r.index] == Motion::Static) continue;
-            scope.add(r);
-            grown = true;
+            grown = !sample;
+            sample ? scope.note_neighbour() : scope.add(r);
         }
     };
     const auto extend = [&](const auto& p)
@@ -298,6 +300,7 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
             out.failure = built.error().text(), part.look_among(nullptr);
         else
         {
+            if (!part.looks_once()) part.look_among(nullptr);
             // The stepper may have written values that it derives from the structure.
             if (step_.derives) host_.take_derived(world_.host());
             host_.restore_derived(world_.host()), host_.restore_moved(world_.host());
@@ -308,7 +311,8 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         }
         end_step(part);  // before the scope grows: from here on nothing is fixed
         if (tried) grown = grow(scope, part);
-        if (tried && !grown && out.failure.empty())
+        // A sample is there to keep the pause short.
+        if (tried && !grown && out.failure.empty() && !scope.is_sample())
             out.cost = measure(part, deadline, step_.measure_ns > 0 ? now_ns() + step_.measure_ns : until_ns);
         part_ = nullptr;
         if (!grown) break;

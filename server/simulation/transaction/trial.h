@@ -19,6 +19,7 @@ struct TrialStep
     bool course = false;           ///< also the motion after each of them
     std::uint64_t measure_ns = 0;  ///< time for which the first step is repeated after the trial, in place of a time until which
     bool derives = false;  ///< the scene's stepper has not been rebuilt for the present structure: the trial's own one derives from it
+    bool looked = false;   ///< all detectors have looked at all bodies where these are now
 };
 
 /// How a body or a shaft moves at the end of a trial.
@@ -56,7 +57,7 @@ public:
     Trial(world::World& world, const Stepper& stepper, const TrialStep& step);
     /// Makes the step and undoes it. If an object in the scope touches one outside during the step, the scope is extended by it and the
     /// step is made again. `components`: those whose errors are wanted. `until_ns`: until then the step is repeated a limited number of
-    /// times to measure its cost (0: no repetition). The world is left as it was, whatever the result.
+    /// times to measure its cost (0: no repetition; nor is there one of a sample). The world is left as it was, whatever the result.
     TrialResult run(TrialScope& scope, const std::vector<std::uint32_t>& components, const Interruption& deadline, Progress& progress,
                     std::uint64_t until_ns);
 

@@ -1,6 +1,7 @@
 #include "simulation/transaction/trial_scope.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -14,9 +15,11 @@ bool is_object(Facet facet) { return facet == Facet::Body || facet == Facet::Sha
 
 bool names_objects(const Role& role) { return std::any_of(role.facets.begin(), role.facets.end(), is_object); }
 
+}  // namespace
+
 /// For each body, those that it touches: known pairs, in either direction. Built once, so that a scope is closed in a time that is linear
 /// in the pairs, however long the chains of touching bodies are.
-class TouchingBodies
+class TrialScope::TouchingBodies
 {
 public:
     TouchingBodies(const world::World& world, const ContactCache& contacts)
@@ -43,8 +46,6 @@ private:
     std::vector<std::uint32_t> begin_, others_;  ///< by body, and one more
 };
 
-}  // namespace
-
 void TrialScope::fit()
 {
     const world::HostTables& host = world_->host();
@@ -67,6 +68,7 @@ bool TrialScope::mark(Ref object)
 
 void TrialScope::add(Ref object)
 {
+    if (sample_) return;
     fit();
     (void)mark(object);
 }
@@ -78,6 +80,7 @@ void TrialScope::add_object(Ref object)
 
 void TrialScope::add(std::uint32_t component)
 {
+    if (sample_) return;
     fit();
     ++visit_;
     visit(component);
@@ -155,28 +158,104 @@ bool TrialScope::rewinds_everything(const Stepper& stepper) const
     return std::any_of(stepper.detectors().begin(), stepper.detectors().end(), concerns);
 }
 
-/// From each object that is found, on to what moves with it, reads it or touches it.
+/// Follows objects to what moves with them, reads them or touches them.
+class TrialScope::Closure
+{
+public:
+    Closure(TrialScope& scope, const Stepper& stepper) : scope_(scope), stepper_(stepper), whole_(stepper.groups().clusters, 0) {}
+
+    /// Marks the objects that touch a body. With `look` none is marked. Returns whether there is one that is not in the scope.
+    bool mark_touching(std::uint32_t body, bool look = false)
+    {
+        if (!touching_) touching_.emplace(*scope_.world_, stepper_.contacts());
+        bool any = false;
+        const auto visit = [&](std::uint32_t other)
+        {
+            const Ref object{Facet::Body, other};
+            any = any || (look && scope_.world_->host().bodies.motion[other] != Motion::Static && !scope_.holds(object));
+            if (!look) (void)scope_.mark(object);
+        };
+        touching_->for_each_at(body, visit);
+        return any;
+    }
+    /// From each object that is marked, beginning with this one. Contacts are followed only while fewer than `most` objects are marked;
+    /// what is integrated or coupled with an object is always marked. Returns whether nothing was left out.
+    bool follow(std::size_t from, std::size_t most)
+    {
+        const Groups& groups = stepper_.groups();
+        bool all = true;
+        for (std::size_t k = from; k < scope_.marked_.size(); ++k)
+        {
+            const Ref object = scope_.marked_[k];
+            const std::uint32_t g = groups.of(object);
+            // The cluster is in the scope as a whole.
+            if (g != kNoIndex && std::exchange(whole_[groups.all[g].cluster], 1) == 0) scope_.mark_cluster(groups, groups.all[g].cluster);
+            if (!scope_.carries_on(object)) continue;
+            const bool full = scope_.marked_.size() >= most;
+            all = !(mark_touching(object.index, full) && full) && all;
+        }
+        return all;
+    }
+    /// Nothing is in the scope any more.
+    void restart() { std::fill(whole_.begin(), whole_.end(), std::uint8_t{0}); }
+
+private:
+    TrialScope& scope_;
+    const Stepper& stepper_;
+    std::optional<TouchingBodies> touching_;
+    std::vector<std::uint8_t> whole_;  ///< by cluster: all of it is in the scope
+};
+
+void TrialScope::unmark()
+{
+    for (const Ref object : marked_)
+        (object.facet == Facet::Body ? bodies_ : object.facet == Facet::Shaft ? shafts_ : quantities_)[object.index] = 0;
+    marked_.clear();
+}
+
+/// Objects are taken from the list at equal distances (of the golden section, so that they are spread evenly wherever this ends), each with
+/// its share of the limit. Returns false if so much is coupled with one another that it is no sample.
+bool TrialScope::draw_sample(Closure& closure, const std::vector<Ref>& all)
+{
+    constexpr std::size_t kPieces = 8;     // at least, if there are as many objects
+    constexpr std::size_t kMostTimes = 4;  // the limit, by what is coupled
+    const std::size_t n = all.size(), share = std::max<std::size_t>(1, most_ / std::min(kPieces, n));
+    std::size_t distance = std::max<std::size_t>(1, static_cast<std::size_t>(0.618 * static_cast<double>(n)));
+    while (std::gcd(distance, n) != 1) ++distance;
+    unmark(), closure.restart();
+    holds_neighbours_ = false;
+    for (std::size_t i = 0, at = 0; i < n && marked_.size() < most_; ++i, at = (at + distance) % n)
+    {
+        const std::size_t from = marked_.size();
+        if (!mark(all[at])) continue;
+        holds_neighbours_ = !closure.follow(from, std::min(from + share, most_)) || holds_neighbours_;
+    }
+    return marked_.size() <= kMostTimes * most_;
+}
+
 void TrialScope::close(const Stepper& stepper)
 {
     fit();
-    std::optional<TouchingBodies> touching;
-    const auto mark_touching = [&](std::uint32_t body)
+    Closure closure(*this, stepper);
+    if (sample_)
     {
-        if (!touching) touching.emplace(*world_, stepper.contacts());
-        touching->for_each_at(body, [&](std::uint32_t other) { (void)mark({Facet::Body, other}); });
-    };
-    const Groups& groups = stepper.groups();
-    std::vector<std::uint8_t> whole(groups.clusters, 0);  // all of the cluster is in the scope
-    if (!everything_)
-        for (const std::uint32_t body : fixed_) mark_touching(body);
-    for (std::size_t k = 0; !everything_ && k < marked_.size(); ++k)
-    {
-        const Ref object = marked_[k];
-        const std::uint32_t g = groups.of(object);
-        if (g != kNoIndex && std::exchange(whole[groups.all[g].cluster], 1) == 0) mark_cluster(groups, groups.all[g].cluster);
-        if (carries_on(object)) mark_touching(object.index);
+        holds_neighbours_ = !closure.follow(0, 0) || holds_neighbours_;
+        return;
     }
+    if (!everything_)
+        for (const std::uint32_t body : fixed_) (void)closure.mark_touching(body);
     everything_ = everything_ || rewinds_everything(stepper);
+    if (everything_) return;
+    const std::vector<Ref> direct = marked_;
+    if (most_ != 0 && (direct.size() > most_ || !closure.follow(0, most_)))
+    {
+        sample_ = draw_sample(closure, direct), concerned_ = direct.size();
+        if (sample_) return;
+        unmark(), closure.restart();
+        for (const Ref object : direct) (void)mark(object);
+    }
+    (void)closure.follow(0, std::numeric_limits<std::size_t>::max());
+    everything_ = rewinds_everything(stepper);
 }
 
 bool TrialScope::acts_on_scope(std::uint32_t component) const

@@ -26,10 +26,24 @@ public:
     void add_new(std::uint32_t component);
     void add_everything() { everything_ = true; }
     bool has_everything() const { return everything_; }
+    /// From now on at most about this many objects are in the scope, unless everything is: if a change acts on more, it is tried on a
+    /// sample of them.
+    void limit_to(std::size_t objects) { most_ = objects; }
 
     /// Extends the scope to all objects that are integrated with, coupled to, read by or in contact with those in it. `stepper`: the one
     /// that knows the present structure.
+    ///
+    /// If these are more than the limit, the scope becomes a sample: islands of objects spread evenly over those that were added, in
+    /// their order. What is integrated or coupled stays together. Of an island that has more than its share of the limit, only the objects
+    /// nearest by contacts to the chosen one are in the sample, and those that touch them are held still (holds_neighbours()). What is
+    /// added to a sample later is ignored: it was drawn from all that the change acts on.
     void close(const Stepper& stepper);
+    bool is_sample() const { return sample_; }
+    /// Whether something moving that touches the sample is outside it.
+    bool holds_neighbours() const { return holds_neighbours_; }
+    void note_neighbour() { holds_neighbours_ = true; }
+    /// Objects that the change acts on directly; of a sample, those from which it was drawn.
+    std::size_t concerned() const { return sample_ ? concerned_ : objects(); }
     /// Determines the components that act on an object in the scope, with their parts. To be called after close().
     void choose_components();
 
@@ -49,7 +63,12 @@ public:
     std::span<const std::uint32_t> other_shafts() const { return other_shaft_rows_; }
 
 private:
+    class TouchingBodies;
+    class Closure;
+
     void fit();
+    void unmark();
+    bool draw_sample(Closure& closure, const std::vector<Ref>& all);
     void visit(std::uint32_t component);
     bool mark(Ref object);
     bool mark_participants(std::uint32_t component);
@@ -64,7 +83,8 @@ private:
     bool acts_on_scope(std::uint32_t component) const;
 
     const world::World* world_;
-    bool everything_ = false;
+    bool everything_ = false, sample_ = false, holds_neighbours_ = false;
+    std::size_t most_ = 0, concerned_ = 0;                    ///< most_: 0: no limit
     std::vector<std::uint8_t> bodies_, shafts_, quantities_;  ///< by host row
     std::vector<Ref> marked_;                                 ///< the same, in the order in which they were found
     std::vector<std::uint32_t> fixed_;    ///< static bodies that are changed, so that bodies resting on them are in the scope

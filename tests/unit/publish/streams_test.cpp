@@ -1,6 +1,7 @@
 // Frames, collisions, events, metrics and status: when they are published, and what they contain.
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <numeric>
 #include <thread>
 
@@ -92,6 +93,37 @@ TEST_CASE("a frame holds the poses of bodies in the frames that the scene's auth
     REQUIRE(frame.shafts.size() == 1);
     CHECK(frame.shafts[0].angle == scene.angle("wheel"));
     CHECK(frame.shafts[0].speed == 4);
+}
+
+TEST_CASE("a large frame, which is written past the caches, holds every bit of every body that is not static")
+{
+    Scene scene(R"(
+      <component id="ball" type="Shape/Sphere" radius="0.1"/>
+      <component id="static" type="State/Static" shape="ball" position="9 9 9"/>
+      <component id="lump" type="State/RigidBody" mass="1" position="1 2 3" linear_velocity="0.3 0 0" angular_velocity="0 0 2">
+        <component id="lump.shape" type="Shape/Placed" of="Shape/Sphere" of.radius="0.1" position="0.5 0 0"/>
+      </component>
+      <repeat id="row" count="40 30" step="1 1 0"><component id="b" type="State/RigidBody" mass="1" shape="ball"
+              linear_velocity="0.1 -0.2 0.3" angular_velocity="1 2 -3"/></repeat>)");
+    REQUIRE_MESSAGE(scene.loaded(), scene.error());
+    Watched run(scene);
+    run.step(7);
+    const auto& frame = run.watcher.frame;
+    REQUIRE(frame.bodies.size() == 1201);
+    std::map<std::uint32_t, std::string> id_of;
+    for (const auto& object : run.watcher.changes[0].objects) id_of[object.handle] = object.component_id;
+    for (const auto& b : frame.bodies)
+    {
+        const std::string id = id_of.at(b.handle);
+        CAPTURE(id);
+        REQUIRE(distance(b.position, scene.vec(id, "position")) <= (id == "lump" ? 1e-14 : 0.0));
+        REQUIRE(b.orientation == std::get<Quat>(scene.simulation().world().get(scene.simulation().world().find(id), "orientation")));
+        // That of the frame's origin is computed where it is not the centre of mass.
+        REQUIRE(distance(b.linear_velocity, scene.vec(id, "linear_velocity")) <= (id == "lump" ? 1e-14 : 0.0));
+        REQUIRE(b.angular_velocity == scene.vec(id, "angular_velocity"));
+        id_of.erase(b.handle);
+    }
+    CHECK(frame.bodies.front().angular_velocity != Vec3{});
 }
 
 TEST_CASE("frames: at their interval, while paused, for newcomers, and for no other readers")
