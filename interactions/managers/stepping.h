@@ -40,7 +40,7 @@ struct StepMemory
     std::vector<Vec3> impulses;    ///< N s, from the parts of the step that are done
     std::vector<double> line_impulses;
     std::vector<Vec3> separations;  ///< contact velocities before the impacts
-    std::vector<Vec3> impacts;      ///< N s, by point; empty if there was no impact
+    std::vector<Vec3> impacts;      ///< N s, by point; empty if there was no impact; in the directions of the points, as `impulses`
     std::vector<double> passing;    ///< m/s, <= 0: closing speed that an impact leaves for the next step to answer
     struct Speeds
     {
@@ -72,6 +72,8 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
 /// these keep gaps from closing, whereas their mean with velocities that lead into an overlap would not.
 void move(const Island& island, const Verdict& found, double h);
 void store_impulses(const Problem& problem, Island& island);
+/// Adds the impulses of the points to what the island's contacts gave, if somebody asks for that.
+void add_impulses(const Problem& problem, Island& island);
 /// Moves and turns the bodies by the movers' velocities, taken as displacements.
 void displace(const Problem& problem, Bodies& bodies, Shafts& shafts);
 
