@@ -19,10 +19,10 @@ const kHeaps = `<plab version="1"><scene title="Heaps" dt="1/240"><camera id="fr
   <component id="floor" type="Shape/Plane"/><component id="ground" type="State/Static" shape="floor"/>
   <component id="cube" type="Shape/Box" half_extents="0.2 0.2 0.1"/><component id="round" type="Shape/Sphere" radius="0.2"/>
   <component id="ramp" type="Shape/Box" half_extents="0.8 0.4 0.05"/>
-  <component id="slope" type="State/Static" shape="ramp" position="1.5 0 0.3" orientation="0.9689 0 0.2474 0" color="0.6 0.6 0.65"/>
+  <component id="slope" type="State/Static" shape="ramp" position="1.5 0 0.3" orientation="0.968912421710645 0 0.247403959254523 0" color="0.6 0.6 0.65"/>
   ${[0, 1, 2, 3, 4].map((k) => `<component id="b${k}" type="State/RigidBody" shape="cube" mass="2" color="0.85 0.6 0.3" position="0 0 ${0.1 + 0.2 * k}"/>`).join('\n')}
   <component id="ball" type="State/RigidBody" shape="round" mass="5" color="0.4 0.7 0.5" position="-0.8 0 0.2"/>
-  <component id="sticks" type="State/RigidBody" shape="cube" mass="3" color="0.7 0.5 0.8" position="1.5718 0 0.4317" orientation="0.9689 0 0.2474 0"/>
+  <component id="sticks" type="State/RigidBody" shape="cube" mass="3" color="0.7 0.5 0.8" position="1.5718 0 0.4317" orientation="0.968912421710645 0 0.247403959254523 0"/>
   <component id="weight" type="Field/Gravity" between="*"/>
   <component id="contact" type="CDetection/ODE" between="*" response="Response/Automatic" response.friction="0.9"/></plab>`;
 
@@ -76,7 +76,7 @@ test('arrows are the forces, on what moves, and the longest is written', async (
     return { full, arrows: out };
   });
   assert.ok(seen.arrows.length >= 20, `${seen.arrows.length} arrows`);
-  assert.ok(seen.full >= 5 * kG && seen.full < 5 * kG * 1.6, `the longest is ${seen.full} N`);
+  assert.ok(seen.full > 4.99 * kG && seen.full < 5 * kG * 1.6, `the longest is ${seen.full} N`);
   // The third column of a matrix is along the arrow: upwards, as all of it moves and lies on something.
   assert.ok(seen.arrows.every(([, , z]) => z > 0), 'all point upwards');
   assert.match(await page.$eval('#force-scale', (e) => e.textContent), /↑ [\d.]+ N/);
@@ -119,13 +119,18 @@ test('ten thousand bodies that lie on the ground: the page draws on', async () =
     plab.view.judgedAt = null;
     plab.view.fitAll();
   });
+  const measure = async () => {
+    const look = () => page.evaluate(() => ({ pictures: plab.view.pictures, bytes: plab.socket.bytes, at: performance.now() }));
+    await sleep(8000); // until it has given up what is too slow
+    const a = await look();
+    await sleep(5000);
+    const b = await look(), seconds = (b.at - a.at) / 1000;
+    return { pictures: (b.pictures - a.pictures) / seconds, megabytes: (b.bytes - a.bytes) / seconds / 1e6 };
+  };
+  const without = await measure();
   await page.click('#show-forces');
   await until('contacts come', async () => (await contactsOf(page))?.points.length >= 512, 30000);
-  await sleep(8000);
-  const measure = () => page.evaluate(() => ({ pictures: plab.view.pictures, frames: plab.view.times.length, bytes: plab.socket.bytes, at: performance.now() }));
-  const a = await measure();
-  await sleep(5000);
-  const b = await measure(), seconds = (b.at - a.at) / 1000;
+  const with_ = await measure();
   const part = await page.evaluate(() => {
     const begin = performance.now();
     for (let i = 0; i < 50; ++i) {
@@ -134,8 +139,8 @@ test('ten thousand bodies that lie on the ground: the page draws on', async () =
     }
     return (performance.now() - begin) / 50;
   });
-  console.log(`10,000 bodies on the ground with forces: ${((b.pictures - a.pictures) / seconds).toFixed(1)} pictures/s, ${((b.bytes - a.bytes) / seconds / 1e6).toFixed(2)} MB/s; arrows take ${part.toFixed(2)} ms of a picture`);
-  assert.ok(b.pictures > a.pictures + 3);
+  console.log(`10,000 bodies on the ground with forces: ${with_.pictures.toFixed(1)} pictures/s, ${with_.megabytes.toFixed(2)} MB/s; without ${without.pictures.toFixed(1)} and ${without.megabytes.toFixed(2)}; arrows take ${part.toFixed(2)} ms of a picture`);
+  assert.ok(with_.pictures > 1);
   assert.ok(part < 10, 'arrows leave most of the 50 ms of a picture at 20 a second');
   assert.ok((await contactsOf(page)).leftOut > 30000);
   await shot(page, 'web-forces-many');

@@ -28,7 +28,7 @@ export class ForceArrows {
     this.mesh.count = 0;
     this.mesh.renderOrder = 4;
     group.add(this.mesh);
-    this.setColours('#0b62c4', '#d81b4a');
+    this.setColours('#1a76e0', '#d81b60');
     this.full = 0; // N: the force whose arrow has the full length
   }
 
