@@ -22,8 +22,6 @@ from .tables import to_dataframe
 from .values import (
     Collision,
     Component,
-    ContactPoint,
-    Contacts,
     Energy,
     Event,
     Interaction,
@@ -45,8 +43,6 @@ __all__ = [
     "BodyState",
     "Collision",
     "Component",
-    "ContactPoint",
-    "Contacts",
     "Energy",
     "Event",
     "Frame",
