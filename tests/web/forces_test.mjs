@@ -70,6 +70,7 @@ test('arrows are the forces, on what moves, and the longest is written', async (
   assert.ok(Math.abs(onGround - 15 * kG) < 0.02 * 15 * kG, `the ground carries ${onGround} N`);
   const slope = points.filter((p) => p.a === 'slope' || p.b === 'slope'), friction = Math.hypot(...slope.reduce((sum, p) => sum.map((v, i) => v + p.friction[i]), [0, 0, 0]));
   assert.ok(Math.abs(friction - 3 * kG * Math.sin(0.5)) < 0.5, `the slope holds it by ${friction} N`);
+  await until('they are drawn', () => page.evaluate(() => plab.view.marks.pressing.mesh.count >= 20));
   const seen = await page.evaluate(() => {
     const { mesh, full } = plab.view.marks.pressing, out = [];
     for (let i = 0; i < mesh.count; ++i) out.push([...mesh.instanceMatrix.array.slice(16 * i + 8, 16 * i + 15)]);
