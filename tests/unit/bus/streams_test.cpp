@@ -1,6 +1,7 @@
 // What is published while there are readers: frames, events, collisions, metrics, images.
 #include <algorithm>
 
+#include "idl/samples.h"
 #include "support.h"
 
 using namespace plab;
@@ -119,7 +120,7 @@ TEST_CASE("contacts arrive as they were filled, and are wanted only while there 
                     CHECK(value.entries[0].b == "ground");
                     CHECK(value.entries[0].asleep);
                     REQUIRE(value.entries[0].points.size() == 2);
-                    CHECK(wire::same_members(value.entries[0].points[1], point));
+                    CHECK(same_members(value.entries[0].points[1], point));
                 });
             return last == 2;
         }));
