@@ -77,6 +77,7 @@ bool Connection::step()
     take_metrics();
     note_figures();
     take_events();
+    contacts_.update(watched(), [this](PageId page, const Json& message) { push_to(page, message); });
     requests_.update();
     preview_.update();
     begin_pages();
@@ -132,6 +133,7 @@ void Connection::take_pages()
 void Connection::leave(PageId page)
 {
     hands_.release(page);
+    contacts_.leave(page);
     watched_.erase(page);
 }
 
@@ -149,6 +151,8 @@ void Connection::handle(const Arrived& arrived)
         watched_[page] = watch->components;
         details_.clear(), metrics_time_ = -1;  // everything once more
     }
+    else if (std::holds_alternative<ContactsAsk>(*said))
+        contacts_.ask(page);
     else if (const auto* grab = std::get_if<Grab>(&*said))
         hands_.grab(page, *grab, [this, page, id = grab->id](const Result<link::Reply>& reply) { answer(page, id, reply); });
     else if (const auto* preview = std::get_if<PreviewAsk>(&*said))

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "link/frame_reader.h"
+#include "web/contacts.h"
 #include "web/feed_hooks.h"
 #include "web/hands.h"
 #include "web/history.h"
@@ -31,7 +32,12 @@ public:
 
 private:
     Connection(const link::Session& session, Audience& pages, FeedHooks hooks, link::Caller caller)
-        : session_(session), pages_(pages), hooks_(std::move(hooks)), requests_(std::move(caller)), hands_(session, requests_)
+        : session_(session),
+          pages_(pages),
+          hooks_(std::move(hooks)),
+          requests_(std::move(caller)),
+          hands_(session, requests_),
+          contacts_(session)
     {
     }
 
@@ -57,6 +63,7 @@ private:
     FeedHooks hooks_;
     link::Requests requests_;
     Hands hands_;
+    ContactFeed contacts_;
     link::SessionOptions options_;  ///< with the server's name
     Preview preview_;
     std::optional<link::Catalogue> catalogue_;

@@ -329,10 +329,11 @@ Result<Said> parse_said(const std::string& text)
     const std::string type = members.text("type");
     if (type == "request") return parse_ask(json, members);
     if (type == "watch") return parse_watch(members);
+    if (type == "contacts") return Said{ContactsAsk{}};
     if (type == "grab" || type == "move" || type == "release") return parse_hand(type, members);
     if (type == "preview") return parse_preview(members);
     if (type == "job") return parse_job(members);
-    return reason("'type' must be request, watch, grab, move, release, preview or job");
+    return reason("'type' must be request, watch, contacts, grab, move, release, preview or job");
 }
 
 }  // namespace plab::web

@@ -67,7 +67,11 @@ struct PreviewAsk
     std::string component, type;
     double seconds = 1;  ///< simulated
 };
-using Said = std::variant<Ask, Watch, Grab, MoveHand, Release, PreviewAsk, JobAsk>;
+/// The next contacts.
+struct ContactsAsk
+{
+};
+using Said = std::variant<Ask, Watch, ContactsAsk, Grab, MoveHand, Release, PreviewAsk, JobAsk>;
 
 inline constexpr std::size_t kMostText = 256u << 10;  ///< bytes of a message from a page
 inline constexpr std::size_t kMostWatched = 16;       ///< components of a page

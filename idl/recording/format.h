@@ -24,7 +24,7 @@ struct Origin
     std::uint32_t threads = 1;
     double state_interval = 0;        ///< s, simulated, between frames; 0: each step
     bool moved_only = false;          ///< frames contain only what moved since the last one
-    std::vector<std::string> topics;  ///< none: all but images
+    std::vector<std::string> topics;  ///< none: all but images and contacts
 };
 Metadata about(const Origin& origin);
 

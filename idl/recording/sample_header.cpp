@@ -54,12 +54,17 @@ SampleHeader header(const plab_v2_Image& i)
     out.key = text(i.camera);
     return out;
 }
-SampleHeader header(const plab_v2_Journal& j)
+/// Of samples that count one each.
+template <class T>
+SampleHeader header_of_numbered(const T& sample)
 {
-    SampleHeader out = header_with_time(j);
-    out.first = j.sequence_number, out.entries = 1;
+    SampleHeader out = header_with_time(sample);
+    out.first = sample.sequence_number, out.entries = 1;
     return out;
 }
+SampleHeader header(const plab_v2_Journal& j) { return header_of_numbered(j); }
+SampleHeader header(const plab_v2_Forces& f) { return header_of_numbered(f); }
+SampleHeader header(const plab_v2_Contacts& c) { return header_of_numbered(c); }
 SampleHeader header(const plab_v2_Snapshot& s)
 {
     SampleHeader out = header_with_time(s);
@@ -113,12 +118,6 @@ SampleHeader header_of_person(const T& s)
 }
 SampleHeader header(const plab_v2_ViewerSample& s) { return header_of_person(s); }
 SampleHeader header(const plab_v2_UserSample& s) { return header_of_person(s); }
-SampleHeader header(const plab_v2_Forces& f)
-{
-    SampleHeader out = header_with_time(f);
-    out.first = f.sequence_number, out.entries = 1;
-    return out;
-}
 
 template <class T>
 class PeekOf final : public Peek
@@ -151,7 +150,7 @@ std::unique_ptr<Peek> make_peek(const wire::Topic& topic)
     return make_one_of<plab_v2_Server, plab_v2_Scene, plab_v2_SceneObject, plab_v2_Shape, plab_v2_Interaction, plab_v2_Type, plab_v2_Frame,
                        plab_v2_FrameUpdate, plab_v2_Collisions, plab_v2_Events, plab_v2_Metrics, plab_v2_Request, plab_v2_Reply,
                        plab_v2_Image, plab_v2_Journal, plab_v2_Hashes, plab_v2_Snapshot, plab_v2_Gone, plab_v2_ViewerSample,
-                       plab_v2_UserSample, plab_v2_Forces>(topic);
+                       plab_v2_UserSample, plab_v2_Forces, plab_v2_Contacts>(topic);
 }
 
 std::string key_of_gone(ByteView bytes)

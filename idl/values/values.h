@@ -226,6 +226,34 @@ struct Collisions
 };
 PLAB_MEMBERS(Collisions, run, sequence_number, step, entries)
 
+struct ContactPoint
+{
+    Vec3 position, normal;
+    double depth = 0, normal_force = 0;
+    Vec3 friction_force;
+    bool is_impact = false;
+};
+PLAB_MEMBERS(ContactPoint, position, normal, depth, normal_force, friction_force, is_impact)
+
+struct ContactInfo
+{
+    std::string detector, a, b;
+    bool asleep = false;
+    std::vector<ContactPoint> points;
+};
+PLAB_MEMBERS(ContactInfo, detector, a, b, asleep, points)
+
+struct Contacts
+{
+    std::uint64_t run = 0, sequence_number = 0;
+    std::int64_t step = 0;
+    double time = 0, step_length = 0;
+    std::uint32_t left_out = 0;
+    double force_left_out = 0;
+    std::vector<ContactInfo> entries;
+};
+PLAB_MEMBERS(Contacts, run, sequence_number, step, time, step_length, left_out, force_left_out, entries)
+
 struct EventInfo
 {
     std::string kind, severity;
@@ -341,8 +369,8 @@ PLAB_MEMBERS(Reply, client, number, outcome, repeated, reasons, run, revision, s
 
 // ---- What a replay needs --------------------------------------------------------------------------------------------
 
-/// Journal::origin of requests that the simulation made itself: what it measured by the clock, which a replay needs, and what a component of
-/// the scene decided, which a replay decides again.
+/// Journal::origin of requests that the simulation made itself: what it measured by the clock, which a replay needs, and what a component
+/// of the scene decided, which a replay decides again.
 inline constexpr const char* kMeasured = "measurement";
 inline constexpr const char* kDecidedByComponent = "component";
 

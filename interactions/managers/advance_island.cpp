@@ -4,9 +4,16 @@
 
 namespace plab::managers
 {
-
 namespace
 {
+
+/// N s on b, W, at each contact: all impulses so far, whose directions may turn within the step.
+void add_impacts(const StepMemory& memory, Island& island)
+{
+    if (island.further_impulses.empty()) return;
+    for (std::size_t i = 0; i < memory.impacts.size(); ++i)
+        island.further_impulses[i] += to_world(memory.problem.points[i], memory.impacts[i]);
+}
 
 /// What a stop has done in an impact is a part of what it did in the step.
 void add_impacts_of_stops(const Problem& problem, Island& island, std::span<const double> impacts)
@@ -26,6 +33,7 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     for (const Point& p : problem.points) guess.push_back(p.impulse);
     for (const Line& line : problem.lines) memory.line_impulses.push_back(line.impulse);
     Verdict out = answer_impacts(island, bodies, shafts, method, memory);
+    add_impacts(memory, island);
     memory.velocities.clear();
     for (const Point& p : problem.points) memory.velocities.push_back(problem.relative_velocity(p));
     for (std::size_t i = 0; i < guess.size(); ++i) problem.points[i].impulse = guess[i];
@@ -45,10 +53,12 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
         problem.write_speeds(bodies, shafts);
         move(island, found, island.h);
         store_impulses(problem, island);
+        add_impulses(problem, island);
     }
     for (std::size_t i = 0; i < memory.impacts.size(); ++i)
         if (island.contacts[i].approach > 0) island.contacts[i].impulse += to_world(problem.points[i], memory.impacts[i]);
     add_impacts_of_stops(problem, island, memory.line_impacts);
+    for (std::size_t i = 0; i < island.further_impulses.size(); ++i) island.further_impulses[i] -= island.contacts[i].impulse;
     const Verdict moved = correct_positions(island, bodies, shafts, method, choices, memory);
     out.iterations += moved.iterations;
     out.fell_back = out.fell_back || moved.fell_back;

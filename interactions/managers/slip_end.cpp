@@ -103,6 +103,7 @@ void SlipEnds::move(const Verdict& found, double h)
     Problem& problem = memory_.problem;
     problem.write_speeds(bodies_, shafts_);
     managers::move(island_, found, h);
+    add_impulses(problem, island_);
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         memory_.impulses[i] += problem.points[i].impulse;

@@ -203,6 +203,12 @@ void store_impulses(const Problem& problem, Island& island)
     for (const Line& line : problem.lines) island.rows[line.row].impulse = line.impulse;
 }
 
+void add_impulses(const Problem& problem, Island& island)
+{
+    for (std::size_t i = 0; i < island.further_impulses.size(); ++i)
+        island.further_impulses[i] += to_world(problem.points[i], problem.points[i].impulse);
+}
+
 void displace(const Problem& problem, Bodies& bodies, Shafts& shafts)
 {
     for (std::size_t i = 0; i < problem.movers.size(); ++i)

@@ -42,7 +42,7 @@ struct StepMemory
     std::vector<Vec3> separations;     ///< contact velocities before the impacts
     std::vector<double> line_rates;    ///< of the rows before the impacts
     std::vector<double> line_impacts;  ///< N s or N m s, by line; empty if there was no impact
-    std::vector<Vec3> impacts;         ///< N s, by point; empty if there was no impact
+    std::vector<Vec3> impacts;         ///< N s, by point; empty if there was no impact; in the directions of the points, as `impulses`
     std::vector<double> passing;       ///< m/s, <= 0: closing speed that an impact leaves for the next step to answer
     struct Speeds
     {
@@ -74,6 +74,8 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
 /// these keep gaps from closing, whereas their mean with velocities that lead into an overlap would not.
 void move(const Island& island, const Verdict& found, double h);
 void store_impulses(const Problem& problem, Island& island);
+/// Adds the impulses of the points to what the island's contacts gave, if somebody asks for that.
+void add_impulses(const Problem& problem, Island& island);
 /// Moves and turns the bodies by the movers' velocities, taken as displacements.
 void displace(const Problem& problem, Bodies& bodies, Shafts& shafts);
 

@@ -55,8 +55,8 @@ public:
             if (record == nullptr) return Sent::Nothing;
             const auto kind = static_cast<std::uint32_t>(Down::Stream) + static_cast<std::uint32_t>(stream_);
             const bool fine = to.send(kind, *record);
-            // A frame's vectors are refilled in place; the memory of a burst of events is released.
-            if constexpr (!std::is_same_v<Record, wire::Frame>) *record = Record{};
+            // The vectors of frames and contacts are refilled in place; the memory of a burst of events is released.
+            if constexpr (!std::is_same_v<Record, wire::Frame> && !std::is_same_v<Record, wire::Contacts>) *record = Record{};
             ring_.end_pop();
             if (!fine) return Sent::Broken;
         }

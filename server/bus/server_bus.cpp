@@ -82,6 +82,8 @@ auto ServerBus::of(publish::Stream stream, Function function) const
             return function(snapshots_);
         case publish::Stream::Forces:
             return function(forces_);
+        case publish::Stream::Contacts:
+            return function(contacts_);
         case publish::Stream::States:
             break;
     }
@@ -101,6 +103,12 @@ std::uint64_t ServerBus::joins(publish::Stream stream) const
 void ServerBus::end_frame()
 {
     states_.end_push();
+    wake_.notify_once();
+}
+
+void ServerBus::end_contacts()
+{
+    contacts_.end_push();
     wake_.notify_once();
 }
 

@@ -263,7 +263,7 @@ template <class Function>
 void ServerBus::each(Function function)
 {
     function(events_), function(collisions_), function(states_), function(metrics_), function(journal_), function(hashes_),
-        function(snapshots_), function(images_), function(forces_);
+        function(snapshots_), function(images_), function(forces_), function(contacts_);
 }
 
 bool ServerBus::send(Clock::time_point now)
@@ -308,7 +308,7 @@ void ServerBus::send_status(Clock::time_point now)
     if (!status_is_new_ && busy.empty() && status_.status.overload == overload_) return;
     status_.status.overload = busy.empty() ? overload_ : std::move(busy);
     status_.dropped = {states_.dropped(),  collisions_.dropped(), events_.dropped(),    metrics_.dropped(), images_.dropped(),
-                       journal_.dropped(), hashes_.dropped(),     snapshots_.dropped(), forces_.dropped()};
+                       journal_.dropped(), hashes_.dropped(),     snapshots_.dropped(), forces_.dropped(),  contacts_.dropped()};
     is_broken_ = !process_->writer().send(Down::Status, status_);
     status_is_new_ = false;
 }

@@ -123,7 +123,8 @@ void add_record_options(CLI::App& app, DaemonOptions& o, std::string& states)
         ->type_name("FILE")
         ->group(group);
     app.add_flag("--overwrite", r.overwrite, "replace an existing recording")->group(group);
-    app.add_option("--record-topics", r.topics, "record only these topics, e.g. plab/states; default: all but plab/images")
+    app.add_option("--record-topics", r.topics,
+                   "record only these topics, e.g. plab/states; default: all but plab/images and plab/contacts")
         ->delimiter(',')
         ->group(group);
     app.add_option("--record-states", states, "frames per simulated second, or all: every step (default)")->group(group);

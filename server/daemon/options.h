@@ -31,7 +31,7 @@ struct RecordChoice
 {
     std::string file;  ///< "": nothing is recorded
     bool overwrite = false;
-    std::vector<std::string> topics;  ///< none: all but images
+    std::vector<std::string> topics;  ///< none: all but images and contacts
     std::string compression = "zstd";
     double state_interval = 0;  ///< s, simulated; 0: each step
     bool moved_only = false;

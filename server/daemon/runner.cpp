@@ -145,6 +145,7 @@ bool Run::serve()
 void Run::step()
 {
     service_.take_people();
+    service_.prepare();
     if (!s_.step())
     {
         if (s_.gave_up()) report_given_up();

@@ -55,6 +55,8 @@ public:
     bool answer();
     /// Journal of the requests that the simulation made itself before the last step: measurements, and what components decided.
     void note_own_requests();
+    /// To be called before a step: lets it note what observers will want to know of it.
+    void prepare() { collector_.prepare(*simulation_); }
     /// Records for observers: after a step, or (`stepped` false) after requests between steps.
     void publish(bool stepped);
     /// While paused: sends what new observers must see.

@@ -33,6 +33,7 @@ Collector::Collector(const CollectorOptions& options, const std::vector<model::T
       catalogue_(types),
       sampler_(options.error_share),
       states_(options.states_per_second),
+      contacts_(options.states_per_second),
       metrics_(options.metrics_per_second),
       scripted_(options.metrics_per_second),
       snapshots_(options.seconds_between_snapshots > 0 ? 1 / options.seconds_between_snapshots : 0)
@@ -71,7 +72,43 @@ void Collector::begin_run(const simulation::Simulation& s)
     if (s.run() == run_) return;
     run_ = s.run();
     // Simulated time has restarted.
-    for (Watcher& w : watchers_) w.next_frame = w.next_metrics = s.time();
+    for (Watcher& w : watchers_) w.next_frame = w.next_contacts = w.next_metrics = s.time();
+}
+
+/// Contacts are noted while a step is made, so it has to be known before whether they are due after it.
+void Collector::prepare(simulation::Simulation& s)
+{
+    if (watchers_.empty()) return;
+    begin_run(s);
+    bool wanted = false, any_due = false;
+    for (Watcher& w : watchers_)
+    {
+        const bool came = fresh(*w.observer, Stream::Contacts, w.contacts);
+        w.contacts_due = w.contacts.wanted && (w.contacts_due || came);
+        wanted = wanted || w.contacts.wanted;
+    }
+    // The final state of a paused scene must be sent, however soon after the last sample.
+    const bool servers_turn = wanted && (contacts_.due(monotonic_now()) || s.pauses_after_step());
+    for (Watcher& w : watchers_)
+    {
+        if (w.contacts.wanted && in_turn(*w.observer, Stream::Contacts, s.time() + s.dt(), w.next_contacts, servers_turn))
+            w.contacts_due = true;
+        any_due = any_due || w.contacts_due;
+    }
+    s.log_contacts(any_due);
+}
+
+void Collector::report_contacts(const simulation::Simulation& s)
+{
+    if (!s.stepper().contact_log().on()) return;
+    for (Watcher& w : watchers_)
+    {
+        if (!std::exchange(w.contacts_due, false)) continue;
+        wire::Contacts& contacts = w.observer->begin_contacts();
+        contacts_of_step_.fill(s, contacts);
+        contacts.sequence_number = ++w.contact_samples;
+        w.observer->end_contacts();
+    }
 }
 
 void Collector::collect(const simulation::Simulation& s, const simulation::Changes& changes, bool stepped)
@@ -91,7 +128,7 @@ void Collector::collect(const simulation::Simulation& s, const simulation::Chang
         report_states(s, now, s.paused() ? When::Now : When::InTurn);
         report_events(s, counts);
         report_metrics(s, now, requested ? When::Now : When::InTurn);
-        if (stepped) report_hash(s);
+        if (stepped) report_contacts(s), report_hash(s);
     }
     next_collision_ += counts.collisions, next_event_ += counts.others;
 }

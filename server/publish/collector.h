@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "publish/catalogue_tracker.h"
+#include "publish/contacts.h"
 #include "publish/observer.h"
 #include "publish/pace.h"
 #include "publish/sampler.h"
@@ -31,6 +32,8 @@ public:
     /// Call before the first collect(): earlier changes are not known. The observer must outlive this object.
     void attach(Observer& observer);
 
+    /// Call before each step: lets it note what observers will want to know of it, and nothing else.
+    void prepare(simulation::Simulation& simulation);
     /// Call after each step, and after requests that took effect between steps (then `stepped` is false: events are not
     /// collected again). `changes` describes what requests did to the structure since the last call. Frames are sent on
     /// schedule, and always while the simulation is paused; metrics on schedule, and soon after requests.
@@ -71,10 +74,12 @@ private:
         Observer* observer = nullptr;
         bool needs_everything = true;
         Pace retry{1};
-        Wish states, metrics, snapshots;
-        double next_frame = 0, next_metrics = 0, next_snapshot = 0;  ///< s, simulated: of those with intervals of their own
+        Wish states, contacts, metrics, snapshots;
+        bool contacts_due = false;  ///< of the next step
+        double next_frame = 0, next_contacts = 0, next_metrics = 0,
+               next_snapshot = 0;  ///< s, simulated: of those with intervals of their own
         std::uint64_t snapshot_run = 0;
-        std::uint64_t frames = 0;  ///< number of frames handed over
+        std::uint64_t frames = 0, contact_samples = 0;  ///< number of those handed over
     };
     enum class When
     {
@@ -88,6 +93,7 @@ private:
     void report_moment(const simulation::Simulation& simulation);
     void report_catalogue(const simulation::Simulation& simulation, Nanoseconds now);
     void report_states(const simulation::Simulation& simulation, Nanoseconds now, When when);
+    void report_contacts(const simulation::Simulation& simulation);
     void report_events(const simulation::Simulation& simulation, const Counts& counts);
     void report_metrics(const simulation::Simulation& simulation, Nanoseconds now, When when);
     void report_hash(const simulation::Simulation& simulation);
@@ -97,7 +103,8 @@ private:
     CatalogueTracker catalogue_;
     Sampler sampler_;
     std::vector<Watcher> watchers_;
-    Pace states_, metrics_, scripted_, snapshots_;
+    ContactRecords contacts_of_step_;
+    Pace states_, contacts_, metrics_, scripted_, snapshots_;
     std::uint64_t run_ = 0;
     Nanoseconds sampled_ = 0;     ///< time of the last sample of metrics
     bool metrics_asked_ = false;  ///< a sample out of turn was requested

@@ -21,6 +21,7 @@ enum class Stream : std::uint8_t
     Hashes,
     Snapshots,
     Forces,
+    Contacts,
 };
 
 class Observer
@@ -32,7 +33,7 @@ public:
     virtual bool wants(Stream stream) const = 0;
     /// Counts the readers that began to want it: a new reader gets a frame, or a sample of metrics, even if nothing moves.
     virtual std::uint64_t joins(Stream) const { return 0; }
-    /// Interval of simulated time between States, Metrics or Snapshots, s; 0: each step. Empty: use the server's schedule, by
+    /// Interval of simulated time between States, Contacts, Metrics or Snapshots, s; 0: each step. Empty: use the server's schedule, by
     /// real time.
     virtual std::optional<double> interval(Stream) const { return {}; }
 
@@ -42,6 +43,9 @@ public:
     /// in use, the oldest unsent one is dropped.
     virtual wire::Frame& begin_frame() = 0;
     virtual void end_frame() = 0;
+    /// The same for the contacts of a step.
+    virtual wire::Contacts& begin_contacts() = 0;
+    virtual void end_contacts() = 0;
     virtual void collisions(wire::Collisions&& batch) = 0;
     virtual void events(wire::Events&& batch) = 0;
     virtual void metrics(wire::Metrics&& metrics) = 0;

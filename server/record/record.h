@@ -17,7 +17,7 @@ struct RecordOptions
     std::string file;
     bool overwrite = false;
     std::string compression = "zstd";            ///< "none", "lz4", "zstd"
-    std::vector<std::string> topics;             ///< none: all but images
+    std::vector<std::string> topics;             ///< none: all but images and contacts
     double state_interval = 0;                   ///< s, simulated, between frames; 0: each step
     bool moved_only = false;                     ///< frames contain only what moved since the last one; a full one each second
     double metrics_interval = 0.25;              ///< s, simulated

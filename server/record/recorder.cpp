@@ -136,13 +136,15 @@ bool Recorder::wants(publish::Stream stream) const
             return topics_.has(wire::topic_of<plab_v2_Snapshot>().name);
         case publish::Stream::Forces:
             return false;
+        case publish::Stream::Contacts:
+            return topics_.has(wire::topic_of<plab_v2_Contacts>().name);
     }
     return false;
 }
 
 std::optional<double> Recorder::interval(publish::Stream stream) const
 {
-    if (stream == publish::Stream::States) return options_.state_interval;
+    if (stream == publish::Stream::States || stream == publish::Stream::Contacts) return options_.state_interval;
     if (stream == publish::Stream::Metrics) return options_.metrics_interval;
     if (stream == publish::Stream::Snapshots) return options_.snapshot_interval;
     return {};
@@ -168,6 +170,13 @@ void Recorder::end_frame()
         sizeof(wire::Frame) + filling_->bodies.size() * sizeof(wire::BodyState) + filling_->shafts.size() * sizeof(wire::ShaftState);
     if (!writer_.has_room(bytes, Weight::Detail)) return writer_.drop(bytes);  // the frame stays here and is refilled
     (void)push(std::move(filling_), bytes, Weight::Detail);
+}
+
+void Recorder::end_contacts()
+{
+    std::size_t bytes = sizeof contacts_;
+    for (const wire::ContactInfo& c : contacts_.entries) bytes += sizeof c + c.points.size() * sizeof(wire::ContactPoint);
+    (void)push(std::exchange(contacts_, {}), bytes, Weight::Detail);
 }
 
 void Recorder::collisions(wire::Collisions&& batch)

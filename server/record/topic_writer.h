@@ -42,7 +42,7 @@ private:
 
     recording::TopicFile* file_ = nullptr;  ///< during put()
     wire::Identity identity_;
-    std::vector<std::string> topics_;  ///< none: all but images
+    std::vector<std::string> topics_;  ///< none: all but images and contacts
     recording::Encoder encoder_;
     std::map<std::string, std::set<std::string>> known_;  ///< catalogue: keys by topic
     std::optional<MovedFilter> moved_;
@@ -61,6 +61,7 @@ private:
     wire::SampleView<plab_v2_Journal> journal_;
     wire::SampleView<plab_v2_Hashes> hashes_;
     wire::SampleView<plab_v2_Snapshot> snapshot_;
+    wire::SampleView<plab_v2_Contacts> contacts_;
 };
 
 }  // namespace plab::record

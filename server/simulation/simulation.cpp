@@ -204,6 +204,7 @@ bool Simulation::run_step()
     if (may_be_given_up) step_start_.save(run_.world(), run_.stepper());
     const double start = run_.clock.time_at(run_.clock.tick);
     run_.stepper().draw_for(images_);
+    run_.stepper().log_contacts(logs_contacts_);
     run_.watch->before_step(run_.view());
     const std::uint64_t begin = now_ns(), thread_begin = run_.levels().watches_anything() ? thread_ns() : 0;
     context_.progress.begin(Activity::Step, run_.clock.tick, begin);

@@ -82,10 +82,15 @@ public:
     /// Where the cameras of the scene send their pictures. Null: cameras do not draw.
     void draw_for(ImageSink* images) { images_ = images; }
 
+    /// Whether the steps from the next one on are to note what contacts do in them (Stepper::contact_log); no by default.
+    void log_contacts(bool on) { logs_contacts_ = on; }
+
     Tick tick() const { return run_.clock.tick; }
     double time() const { return run_.clock.time(); }
     double dt() const { return run_.clock.dt.seconds; }
     bool paused() const { return run_.clock.paused && run_.clock.steps_left == 0; }
+    /// Whether it will be paused once one more step has been made.
+    bool pauses_after_step() const { return run_.clock.paused && run_.clock.steps_left <= 1; }
     double rate() const { return run_.clock.rate; }
     /// Counts the runs: it increases with each load, each reset and each restored snapshot.
     std::uint64_t run() const { return run_.number; }
@@ -145,6 +150,7 @@ private:
     History history_;
     std::vector<Reply> replies_, own_requests_;
     ImageSink* images_ = nullptr;
+    bool logs_contacts_ = false;
     struct ScriptChange
     {
         std::uint32_t component;

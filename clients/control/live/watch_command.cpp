@@ -15,7 +15,7 @@ namespace plab::cli
 namespace
 {
 
-const std::vector<std::string> kStreams{"states", "collisions", "events", "metrics"};
+const std::vector<std::string> kStreams{"states", "contacts", "collisions", "events", "metrics"};
 
 struct WatchOptions
 {
@@ -150,15 +150,17 @@ Exit watch_states(Watch& w)
     return e;
 }
 
-Exit watch_metrics(Watch& w)
+/// Samples of T as values, one in each interval.
+template <class T, class Value, class Print>
+Exit watch_samples(Watch& w, Print print)
 {
-    return stream<plab_v2_Metrics>(w,
-                                   [&](const plab_v2_Metrics& sample)
-                                   {
-                                       if (!w.thinning.takes(sample.run, sample.time)) return;
-                                       w.printer.metrics(wire::value_of<link::Metrics>(sample));
-                                       w.limit.count();
-                                   });
+    return stream<T>(w,
+                     [&](const T& sample)
+                     {
+                         if (!w.thinning.takes(sample.run, sample.time)) return;
+                         print(wire::value_of<Value>(sample));
+                         w.limit.count();
+                     });
 }
 
 template <class T, class Print>
@@ -197,7 +199,7 @@ link::Parts parts_for(const WatchOptions& o)
     return link::Part::Objects | link::Part::Interactions | link::Part::Shapes;
 }
 
-/// States and metrics of an unknown object would stay empty: that is an error. Collisions and events may concern a component
+/// States and metrics of an unknown object would stay empty: that is an error. The others may concern a component
 /// that is added later: then a note is printed, and the command waits.
 Exit check_names(const Context& c, const WatchOptions& o, const link::CatalogueContents& now)
 {
@@ -228,13 +230,16 @@ Exit run_watch(Context& c, const WatchOptions& o)
     if (!catalogue) return c.fail(Exit::Failed, catalogue.errors());
     if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
     if (const Exit e = check_names(c, o, catalogue->now()); e != Exit::Done) return e;
-    // Events and collisions come when something happens, which may take long: say so where a person waits.
-    if (c.console.is_terminal() && (o.stream == "events" || o.stream == "collisions"))
+    // These come when something happens, which may take long: say so where a person waits.
+    if (c.console.is_terminal() && o.stream != "states" && o.stream != "metrics")
         c.console.say("plabctl: " + o.stream + " of server '" + printable(c.session().server()) + "' as they come; Ctrl-C ends");
     const Selection selection{{o.only.begin(), o.only.end()}};
     Watch w{c, *catalogue, WatchPrinter(c.console, c.settings.json, selection), Limit(c), Thinning(o.every), {}};
     if (o.stream == "states") return watch_states(w);
-    if (o.stream == "metrics") return watch_metrics(w);
+    if (o.stream == "metrics")
+        return watch_samples<plab_v2_Metrics, wire::Metrics>(w, [&](const wire::Metrics& m) { w.printer.metrics(m); });
+    if (o.stream == "contacts")
+        return watch_samples<plab_v2_Contacts, wire::Contacts>(w, [&](wire::Contacts&& all) { w.printer.contacts(std::move(all)); });
     if (o.stream == "collisions")
         return watch_log<plab_v2_Collisions>(w, "collisions",
                                              [&](const auto& sample, std::uint32_t i) { return w.printer.collision(sample, i); });
@@ -245,7 +250,7 @@ std::string check_stream(const std::string& text)
 {
     for (const std::string& known : kStreams)
         if (text == known) return {};
-    return "no stream '" + text + "'" + link::did_you_mean(text, kStreams) + " There are states, collisions, events and metrics";
+    return "no stream '" + text + "'" + link::did_you_mean(text, kStreams) + " There are states, contacts, collisions, events and metrics";
 }
 
 }  // namespace
@@ -256,14 +261,18 @@ void add_watch_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<WatchOptions>();
     const Command command = add_command(app, context,
-                                        {"watch", "print states, collisions, events or metrics as they arrive",
+                                        {"watch", "print states, contacts, collisions, events or metrics as they arrive",
                                          "  plabctl watch events\n"
                                          "  plabctl watch states --every 0.5 --only red -n 20\n"
+                                         "  plabctl watch contacts --only red -n 1\n"
                                          "  plabctl watch collisions -d 60 --json > collisions.ndjson\n"},
                                         [o](Context& c) { return run_watch(c, *o); });
-    command.add_option("stream", o->stream, "states, collisions, events or metrics").required().type_name("STREAM").check(check_stream);
+    command.add_option("stream", o->stream, "states, contacts, collisions, events or metrics")
+        .required()
+        .type_name("STREAM")
+        .check(check_stream);
     command.add_option("--only", o->only, "only what concerns this component (may be repeated)").repeated().type_name("ID");
-    command.add_option("--every", o->every, "of states and metrics: one sample per this much simulated time")
+    command.add_option("--every", o->every, "of states, contacts and metrics: one sample per this much simulated time")
         .check(link::check_positive)
         .type_name("SECONDS");
 }

@@ -68,6 +68,30 @@ std::string algorithm_of(const link::InteractionMetrics& i)
     return i.resolved.empty() || i.resolved.starts_with(i.requested) ? i.requested : i.resolved;
 }
 
+std::string remark(const wire::ContactInfo& pair, const wire::ContactPoint& point)
+{
+    return pair.asleep ? "asleep" : point.is_impact ? "impact" : "";
+}
+
+/// One line for each point.
+Table contact_table(const wire::Contacts& contacts)
+{
+    Table table({{"a", Align::Left, Shrink::Middle},
+                 {"b", Align::Left, Shrink::Middle},
+                 {"x", Align::Right},
+                 {"y", Align::Right},
+                 {"z", Align::Right},
+                 {"normal N", Align::Right},
+                 {"friction N", Align::Right},
+                 {"depth m", Align::Right, Shrink::Never, 1},
+                 {"remark", Align::Left}});
+    for (const wire::ContactInfo& pair : contacts.entries)
+        for (const wire::ContactPoint& p : pair.points)
+            table.add({pair.a, pair.b, four_decimals(p.position.x), four_decimals(p.position.y), four_decimals(p.position.z),
+                       number(p.normal_force), number(length(p.friction_force)), number(p.depth), remark(pair, p)});
+    return table;
+}
+
 Style style_of(std::string_view severity)
 {
     return severity == "failure" ? Style::Red : severity == "warning" ? Style::Yellow : Style::Plain;
@@ -108,6 +132,17 @@ void WatchPrinter::metrics(const link::Metrics& metrics)
                   i.quarantined ? Style::Red : Style::Plain);
     table.print(console_, !has_title_);
     has_title_ = true;
+}
+
+void WatchPrinter::contacts(wire::Contacts c)
+{
+    std::erase_if(c.entries, [&](const wire::ContactInfo& e)
+                  { return !selection_.takes(e.a) && !selection_.takes(e.b) && !selection_.takes(e.detector); });
+    if (json_) return print(console_, json_of(c));
+    const std::string left_out =
+        c.left_out == 0 ? "" : "  " + std::to_string(c.left_out) + " points with " + number(c.force_left_out) + " N are not sent";
+    console_.out(console_.styled(Style::Bold, when(c.step, c.time)) + "  " + std::to_string(c.entries.size()) + " pairs" + left_out + "\n");
+    if (!c.entries.empty()) contact_table(c).print(console_);
 }
 
 bool WatchPrinter::collision(const plab_v2_Collisions& sample, std::uint32_t entry)

@@ -179,7 +179,8 @@ void add_record_command(const Command& app, Context& context)
                     [o](Context& c) { return run_record(c, *o); });
     command.add_option("-o,--output", o->recorder.writer.file, "default: SERVER_DATE_TIME.mcap").type_name("FILE.mcap");
     command.add_flag("--overwrite", o->recorder.writer.overwrite, "replace an existing file");
-    command.add_option("--topics", o->recorder.topics, "record only these topics; default: all but plab/images").type_name("TOPIC ..");
+    command.add_option("--topics", o->recorder.topics, "record only these topics; default: all but plab/images and plab/contacts")
+        .type_name("TOPIC ..");
     command.add_option("--until", o->recorder.until, "end at this simulated time").check(link::check_not_negative).type_name("SECONDS");
     command.add_option("--max-size", o->max_megabytes, "end when the file has so many MB (a little more is written)")
         .check(link::check_positive)

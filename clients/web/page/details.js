@@ -2,6 +2,25 @@
 import { byId, duration, h, isPressed, levelText, number, present, shortText, shortType } from './dom.js';
 import { previewCard, swapCard } from './card.js';
 
+const kMostPairs = 12;
+
+// Of a body: the other body -> { points, normal: N, friction: N, depth: m, isImpact, asleep }.
+function pairsOf(points, id) {
+  const out = new Map();
+  for (const point of points) {
+    const other = point.a === id ? point.b : point.b === id ? point.a : null;
+    if (other === null) continue;
+    const pair = out.get(other) ?? { points: 0, normal: 0, friction: [0, 0, 0], depth: -Infinity, isImpact: false, asleep: point.asleep };
+    ++pair.points;
+    pair.normal += point.normal;
+    pair.friction = pair.friction.map((value, i) => value + point.friction[i]);
+    pair.depth = Math.max(pair.depth, point.depth);
+    pair.isImpact ||= point.isImpact;
+    out.set(other, pair);
+  }
+  return out;
+}
+
 export class Details {
   // actions: { ask(text, ...operations) -> reply, plot(name), look(id), follow() }
   constructor(model, actions) {
@@ -17,6 +36,7 @@ export class Details {
     model.on('detail', (id) => id === model.selected && this.fillParameters());
     model.on('metrics', () => isPressed() || this.updateNumbers());
     model.on('poses', () => isPressed() || this.updateMotion());
+    model.on('contacts', () => isPressed() || this.updateContacts());
     this.fill();
   }
 
@@ -31,6 +51,7 @@ export class Details {
     const isObject = thing.handle !== undefined, type = this.model.types.get(thing.type);
     this.numbers = h('dl.numbers');
     this.parameters = h('div');
+    this.contacts = isObject && thing.kind !== 'shaft' ? h('section', { 'aria-label': 'Contacts' }) : null;
     this.box.replaceChildren(...present([
       h('h2', {}, thing.name || thing.id),
       h('p.sub', {}, `${thing.id} · ${thing.type}`),
@@ -38,6 +59,7 @@ export class Details {
       thing.quarantined && h('p.bad', { role: 'alert' }, 'It is quarantined: it failed in a step and no longer takes part.'),
       isObject ? this.objectActions(thing) : this.roles(thing),
       this.numbers,
+      this.contacts,
       this.card,
       isObject ? null : this.ladder(thing),
       h('h3', {}, 'Parameters'),
@@ -45,6 +67,7 @@ export class Details {
     ]));
     this.updateNumbers();
     this.updateMotion();
+    this.updateContacts();
     this.fillParameters();
   }
 
@@ -111,6 +134,24 @@ export class Details {
       }), ` ${unit}`));
     }
     this.numbers.replaceChildren(...rows);
+  }
+
+  // One line for each body that it touches.
+  updateContacts() {
+    const thing = this.thing, { contacts } = this.model, now = performance.now();
+    if (!thing || !this.contacts) return;
+    if (contacts && this.contactsAt && now - this.contactsAt < 150 && this.contactsId === thing.id) return;
+    this.contactsAt = now;
+    this.contactsId = thing.id;
+    if (!contacts) return this.contacts.replaceChildren(h('h3', {}, 'Contacts'), h('p.hint', {}, 'Known with the next step.'));
+    const pairs = pairsOf(contacts.points, thing.id);
+    if (pairs.size === 0) return this.contacts.replaceChildren(h('h3', {}, 'Contacts'), h('p.hint', {}, 'It touches nothing.'));
+    const largest = [...pairs].sort(([, x], [, y]) => y.normal - x.normal);
+    const row = ([id, pair]) => h('tr', {}, h('th', { scope: 'row' }, h('button.link', { onclick: () => this.model.select(id) }, id)),
+      h('td', {}, pair.isImpact ? 'impact' : pair.asleep ? 'asleep' : ''), h('td', {}, String(pair.points)), h('td', {}, number(pair.normal)), h('td', {}, number(Math.hypot(...pair.friction))), h('td', {}, number(1000 * pair.depth, 3)));
+    this.contacts.replaceChildren(h('h3', {}, 'Contacts'), h('table.contacts', {},
+      h('thead', {}, h('tr', {}, ...['with', '', 'points', 'normal N', 'friction N', 'depth mm'].map((title) => h('th', { scope: 'col' }, title)))),
+      h('tbody', {}, ...largest.slice(0, kMostPairs).map(row))), largest.length > kMostPairs ? h('p.hint', {}, `and ${largest.length - kMostPairs} more`) : '');
   }
 
   // ---- Algorithms ----

@@ -70,6 +70,26 @@ function sendWatch() {
 model.on('selected', sendWatch);
 model.on('begin', sendWatch);
 
+// Contacts are read only while they are shown, and no faster than that: the next are asked for when these have come.
+let contactsAsked = false;
+const wantsContacts = () => view.marks.show.forces || model.objects.get(model.selected)?.kind === 'body';
+function followContacts() {
+  if (contactsAsked || !wantsContacts() || document.hidden) return;
+  contactsAsked = true;
+  socket.send({ type: 'contacts' });
+}
+model.on('contacts', (contacts) => {
+  if (!contacts) return;
+  contactsAsked = false;
+  requestAnimationFrame(followContacts);
+});
+model.on('selected', followContacts);
+model.on('begin', () => {
+  contactsAsked = false;
+  followContacts();
+});
+document.addEventListener('visibilitychange', followContacts);
+
 const hand = {
   async grab(id, position) {
     const force = Math.max(1, 60 * (model.objects.get(id)?.mass ?? 1));
@@ -163,6 +183,11 @@ byId('show-joints').onchange = (event) => {
   view.marks.show.joints = event.target.checked;
   view.isChanged = true;
 };
+byId('show-forces').onchange = (event) => {
+  view.marks.show.forces = event.target.checked;
+  view.isChanged = true;
+  followContacts();
+};
 byId('show-contacts').onchange = (event) => {
   view.marks.show.contacts = event.target.checked;
   view.isChanged = true;
@@ -212,6 +237,10 @@ setInterval(() => {
   if (model.state.kind === 'there' && model.heardAt && performance.now() - model.heardAt > 3000) model.setState('silent', 'The server has said nothing for 3 s. It may be stopped or gone; waiting for it.');
   timeline.follow(view.shownTime);
   byId('clock').textContent = seconds(view.shownTime ?? model.server?.time ?? 0);
+  // The bus is read only while a page has asked lately.
+  if (contactsAsked && wantsContacts() && !document.hidden) socket.send({ type: 'contacts' });
+  const { full } = view.marks.pressing;
+  byId('force-scale').textContent = view.marks.show.forces ? (model.contacts ? `↑ ${number(full, 3)} N` : 'with the next step') : '';
   byId('facts').textContent = [
     isPaused() ? 'paused' : `× ${number(model.server?.rate_reached ?? 0, 3)}`, model.metrics && `step ${duration(model.metrics.step_ns)}`,
     model.metrics && `${model.metrics.contacts} contacts`, `${Math.round(view.picturesPerSecond)} pictures/s`,
@@ -241,7 +270,7 @@ function useTheme(theme) {
   localStorage.setItem('plab-theme', theme);
   byId('theme').value = theme;
   const style = getComputedStyle(document.documentElement);
-  view.setBackground(style.getPropertyValue('--sky').trim(), style.getPropertyValue('--grid').trim());
+  view.setBackground(...['--sky', '--grid', '--force', '--impact'].map((name) => style.getPropertyValue(name).trim()));
   plots.isStale = true;
 }
 byId('theme').onchange = (event) => useTheme(event.target.value);

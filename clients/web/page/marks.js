@@ -1,5 +1,6 @@
 // Drawn over the shapes: the selection, contacts, impulses and forces as arrows, and joints as lines.
 import * as THREE from 'three';
+import { ForceArrows } from './force_arrows.js';
 import { vector } from './dom.js';
 
 const kMostContacts = 512, kFewContacts = 48, kMostArrows = 48, kMostJoints = 4000;
@@ -13,10 +14,11 @@ export class Marks {
     this.contacts = new Map();
     this.impulses = [];
     this.strongest = 1e-9; // N s, of those seen lately
-    this.show = { contacts: true, joints: true };
+    this.show = { contacts: true, joints: true, forces: false };
     this.makeSelection();
     this.makeContacts();
     this.makeArrows();
+    this.pressing = new ForceArrows(group);
     this.makeJoints();
   }
 
@@ -111,6 +113,7 @@ export class Marks {
     this.updateSelection();
     this.updateContacts(dot);
     this.updateArrows(now, reach);
+    this.pressing.update(this.show.forces ? this.model : null, reach);
     this.updateJoints();
   }
 

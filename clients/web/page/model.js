@@ -15,6 +15,7 @@ export class Model {
     this.rows = new Map(); // component -> { resolved, cost, error, work }
     this.details = new Map(); // component -> parameters
     this.outputs = new Map(); // component -> outputs, of the newest metrics
+    this.contacts = null; // { time, left_out, pairs, points }: what presses on what
     this.events = []; // { time, kind, text, severity, component }
     this.energy = []; // [time, kinetic, stored, work, of_requests, unexplained, step_ns, rate]
     this.selected = null;
@@ -55,6 +56,7 @@ export class Model {
       history: () => this.takeHistory(message),
       events: () => this.takeEvents(message.entries.map(eventOf), message.left_out),
       collisions: () => this.takeCollisions(message),
+      contacts: () => this.takeContacts(message),
       gone: () => this.setState('gone', message.reason),
       error: () => this.tell('trouble', message.reason),
     };
@@ -78,6 +80,7 @@ export class Model {
     this.rows.clear();
     this.details.clear();
     this.outputs.clear();
+    this.contacts = null;
     this.heardAt = performance.now();
     this.setState('there', '');
     this.rebuild();
@@ -111,6 +114,7 @@ export class Model {
       // After a reset nothing is left of what was; after a rewind, what was before that time.
       for (const event of this.events) event.isUndone ||= event.time > server.time;
       this.energy = this.energy.filter((row) => row[0] <= server.time);
+      this.forgetContacts();
       this.tell('run', server.run);
     }
     this.tell('server', server);
@@ -129,6 +133,24 @@ export class Model {
       while (this.energy.length && this.energy.at(-1)[0] >= metrics.time) this.energy.pop();
     }
     this.tell('metrics', metrics);
+  }
+
+  // The force of a point is that on the second body of its pair.
+  takeContacts({ time, left_out, pairs, points }) {
+    this.contacts = {
+      time, leftOut: left_out,
+      points: points.map((row) => {
+        const [a, b, asleep] = pairs[row[0]], friction = row.slice(7, 10), [normal, depth, impact] = row.slice(10);
+        const force = friction.map((value, i) => value + normal * row[4 + i]);
+        return { a, b, asleep, at: row.slice(1, 4), friction, normal, depth, force, isImpact: impact === 1 };
+      }),
+    };
+    this.tell('contacts', this.contacts);
+  }
+
+  forgetContacts() {
+    this.contacts = null;
+    this.tell('contacts', null);
   }
 
   takeHistory(message) {

@@ -75,6 +75,7 @@ export class View {
       this.isChanged = true;
     });
     this.model.on('metrics', () => { this.isChanged ||= this.model.outputs.size > 0; });
+    this.model.on('contacts', () => { this.isChanged ||= this.marks.show.forces; });
     this.model.on('collisions', (entries) => {
       this.marks.takeCollisions(entries);
       this.isChanged = true;
@@ -97,8 +98,9 @@ export class View {
     this.isChanged = true;
   }
 
-  setBackground(background, lines) {
+  setBackground(background, lines, force, impact) {
     this.scene.background = new THREE.Color(background);
+    this.marks.pressing.setColours(force, impact);
     this.lineColor = lines;
     this.isChanged = true;
     this.fitGround();

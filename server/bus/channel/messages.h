@@ -14,7 +14,7 @@
 namespace plab::bus
 {
 
-inline constexpr std::size_t kStreams = static_cast<std::size_t>(publish::Stream::Forces) + 1;
+inline constexpr std::size_t kStreams = static_cast<std::size_t>(publish::Stream::Contacts) + 1;
 
 /// From plabd to plab-bus.
 enum class Down : std::uint32_t

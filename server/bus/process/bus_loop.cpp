@@ -68,7 +68,7 @@ void BusLoop::each(Function function)
     function(publish::Stream::Events, events_), function(publish::Stream::Metrics, metrics_);
     function(publish::Stream::Images, images_), function(publish::Stream::Journal, journal_);
     function(publish::Stream::Hashes, hashes_), function(publish::Stream::Snapshots, snapshots_);
-    function(publish::Stream::Forces, forces_);
+    function(publish::Stream::Forces, forces_), function(publish::Stream::Contacts, contacts_);
 }
 
 bool BusLoop::join()

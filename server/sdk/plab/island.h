@@ -49,6 +49,9 @@ struct Island
     double residual = 0;  ///< m/s: largest remaining violation of the speeds that contact law and rows require
     bool converged = true;
     bool fell_back = false;  ///< the requested algorithm failed and another one finished the step
+    /// Out, by contact: N s on b, W, that the step gave besides Contact::impulse, which tells how hard a contact presses: impacts that went
+    /// through it. All zero on input; empty: nobody asks.
+    std::span<Vec3> further_impulses;
 
     bool interrupted() const { return interruption && interruption->due(); }
 };

@@ -22,6 +22,32 @@ void ContactForces::report(std::vector<FoundContact>& found)
     }
 }
 
+/// Notes what the springs that push at the end of the step have given in it: each knows its impulse since it began.
+void ContactForces::log_contacts(const std::vector<FoundContact>& found)
+{
+    const std::vector<ForcePair>& at_start = contacts_.cache().force_pairs();
+    auto near = at_start.begin();  // both lists are in the order of pairs
+    const auto before = [&](const FoundContact& f, std::uint64_t id)
+    {
+        const std::uint32_t detector = contacts_.detectors()[f.detector].component;
+        const auto is_it = [&](const ForcePair& p) { return p.detector == detector && p.a == f.contact.a && p.b == f.contact.b; };
+        const auto pair = std::find_if(near, at_start.end(), is_it);
+        if (pair == at_start.end()) return Vec3{};
+        near = pair;
+        for (const ForceContact& k : pair->all())
+            if (k.id == id) return k.impulse;
+        return Vec3{};
+    };
+    for (const FoundContact& f : found)
+    {
+        const ForceContact* known = by_force_[f.detector] ? find_known(f) : nullptr;
+        if (!known) continue;
+        Contact c = f.contact;
+        c.impulse = known->impulse - before(f, known->id);
+        contacts_.log().add(c, contacts_.detectors()[f.detector].component, c.depth, 0, step_.frame.step, false);
+    }
+}
+
 /// Evaluates each law once more for all of its contacts together, so that its outputs describe the whole scene at the end of the step.
 void ContactForces::run_outputs(std::vector<FoundContact>& found)
 {
@@ -83,6 +109,7 @@ void ContactForces::emit_stiff()
 void ContactForces::finish_step(std::vector<FoundContact>& found)
 {
     report(found);
+    if (contacts_.log().on()) log_contacts(found);
     run_outputs(found);
     emit_events();
     emit_stiff();

@@ -226,6 +226,7 @@ private:
     // contact_force_finish.cpp
     void report(std::vector<FoundContact>& found);
     void run_outputs(std::vector<FoundContact>& found);
+    void log_contacts(const std::vector<FoundContact>& found);
     void emit_events();
     void emit_stiff();
 

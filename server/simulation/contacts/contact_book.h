@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "simulation/contacts/contact_log.h"
 #include "simulation/contacts/resting_pairs.h"
 #include "simulation/motion/step_state.h"
 
@@ -34,7 +35,7 @@ public:
     /// at all bodies before, and nobody else may have moved since or may move. Must outlive this object.
     void look_among(const IndexSet* bodies) { part_ = bodies; }
     bool looks_among_some() const { return part_ != nullptr; }
-    void begin_step() { releases_.clear(), resting_.forget(); }
+    void begin_step() { releases_.clear(), resting_.forget(), log_.begin_step(); }
     /// Lets the resolutions that adapt choose how the impacts of this step are found. True if one of them chose otherwise than before: then
     /// what was detected with the former margins does not serve this step.
     bool choose_search();
@@ -47,6 +48,9 @@ public:
     const std::vector<Detector>& detectors() const { return detectors_; }
     ContactCache& cache() { return cache_; }
     const ContactCache& cache() const { return cache_; }
+    /// What contacts do in this step, for whoever reads it afterwards.
+    ContactLog& log() { return log_; }
+    const ContactLog& log() const { return log_; }
     /// The persistent pairs of some groups.
     RestingPairs& resting() { return resting_; }
     /// Contacts at the end of the last step, or at the start of the present one until its end is known.
@@ -173,6 +177,7 @@ private:
     bool keeps_found_ = false;                    ///< the last rebuild left found_ as it was
     bool has_sizes_ = false;                      ///< those of bodies are those of the revisions built_from_
     ContactCache cache_;
+    ContactLog log_;
     RestingPairs resting_{step_.world, step_.groups, cache_, step_.report.visited};
     std::vector<FoundContact> found_;
     std::vector<FoundRun> runs_;                ///< of found_

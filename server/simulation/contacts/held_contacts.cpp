@@ -221,12 +221,15 @@ void HeldIslands::make_room(std::span<HeldIsland*> islands)
     std::size_t count = 0;
     for (const HeldIsland* island : islands) count += island->contact_count();
     if (contact_memory_.size() < count) contact_memory_.resize(count), slot_memory_.resize(count), jam_memory_.resize(count);
+    const bool logs = contacts_.log().on();
+    if (logs) further_memory_.assign(count, Vec3{});
     std::size_t first = 0;
     for (HeldIsland* island : islands)
     {
         const std::size_t own = island->contact_count();
         island->contacts = std::span(contact_memory_).subspan(first, own);
         island->slots = std::span(slot_memory_).subspan(first, own), island->jams = std::span(jam_memory_).subspan(first, own);
+        island->further = logs ? std::span(further_memory_).subspan(first, own) : std::span<Vec3>();
         first += own;
     }
 }

@@ -133,6 +133,7 @@ void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets&
 {
     // An advance by no time, to query the start of a piece: no impulses.
     if (!(to > from)) return;
+    if (book.work && book.sign < 0 && contacts_.log().on()) take_back_contacts(from);
     make_islands(islands);
     collect_contacts(from, to - from, trial);
     plain_.clear(), jointed_.clear(), plain_groups_.clear();

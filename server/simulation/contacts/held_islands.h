@@ -177,6 +177,7 @@ private:
         std::vector<Run> runs;
         std::span<std::uint32_t> slots;  ///< of each contact: FoundContact::slot
         std::span<std::uint8_t> jams;    ///< of each contact: whether it has Painleve's paradox
+        std::span<Vec3> further;         ///< Island::further_impulses
         HeldMotion motion;
         double size = 0;    ///< m, smallest radius of gyration
         double energy = 0;  ///< J, kinetic, when the manager begins
@@ -218,6 +219,8 @@ private:
     void advance_to_midpoint(std::span<HeldIsland*> islands, GroupSystem& system, double h);
     static void divide_work(HeldIsland& island);
     void book_contacts(const HeldIsland& island, WorkBook book);
+    void log_contacts(const HeldIsland& island, double from, double to);
+    void take_back_contacts(double from);
     void keep(HeldIsland& island);
     void keep_run(HeldIsland& island, const Run& run);
     static KnownContact* kept(const HeldIsland& island, const Run& run, std::uint32_t contact);
@@ -257,6 +260,7 @@ private:
     std::vector<Contact> contact_memory_;
     std::vector<std::uint32_t> slot_memory_;
     std::vector<std::uint8_t> jam_memory_;
+    std::vector<Vec3> further_memory_;
     std::vector<Island> solved_;          ///< what a manager is given
     std::vector<HeldIsland*> solved_of_;  ///< parallel
     Shares shares_;

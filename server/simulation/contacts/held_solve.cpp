@@ -55,6 +55,7 @@ void HeldIslands::solve(std::span<HeldIsland*> islands, GroupSystem& system, dou
     for (HeldIsland* island : islands)
     {
         if (books) book_contacts(*island, book);
+        if (books && book.sign > 0 && contacts_.log().on()) log_contacts(*island, from, to);
         // The cost per row of a factorisation grows with the number of rows. For kFactored rows it is taken to cost one more sweep.
         constexpr std::size_t kFactored = 400;
         const std::size_t rows = 3 * island->contacts.size() + island->rows.size();
@@ -84,6 +85,7 @@ Island HeldIslands::describe(HeldIsland& held, double from, double to)
     island.size = held.size;
     island.shaft_mobility = shaft_mobility_;
     island.rows = held.rows, island.contacts = held.contacts, island.motion = &held.motion;
+    island.further_impulses = held.further;
     return island;
 }
 
@@ -139,6 +141,29 @@ void HeldIslands::book_contacts(const HeldIsland& island, WorkBook book)
     (*book.work)[island.manager] += book.sign * island.work;
     ContactEnergy& own = step_.contact_energy[island.manager];
     own.created += book.sign * island.created, own.by_correction += book.sign * island.by_correction;
+}
+
+void HeldIslands::log_contacts(const HeldIsland& island, double from, double to)
+{
+    ContactLog& log = contacts_.log();
+    for (const Run& run : island.runs)
+        for (std::uint32_t i = run.first; i < run.end; ++i)
+        {
+            Contact c = island.contacts[i];
+            const double depth = island.motion.start_depth(i);
+            const bool meets = c.approach > 0, passes_on = !meets && island.meets;
+            if (!passes_on) c.impulse += island.further[i];
+            if (!run.pair->ahead || !(c.impulse == Vec3{})) log.add(c, run.pair->detector, depth, from, to, meets);
+            if (!passes_on || island.further[i] == Vec3{}) continue;
+            c.impulse = island.further[i];
+            log.add(c, run.pair->detector, depth, from, to, true);
+        }
+}
+
+/// The work of the groups that are held is taken back from this time on.
+void HeldIslands::take_back_contacts(double from)
+{
+    contacts_.log().take_back(from, [&](Ref r) { return std::binary_search(held_.begin(), held_.end(), step_.groups.of(r)); });
 }
 
 /// Reports the impulses of the joints, and moves their work from the manager's account to theirs.

@@ -23,10 +23,11 @@ bool ImpulseIslands::meets_any(const GroupSystem& system, double h) const
 
 /// Stops such corners without a bounce before the step: moving with the mean of the velocities before and after the impact would carry
 /// them into the other body.
-void ImpulseIslands::stop_closing(double h, WorkBook book, bool trial)
+void ImpulseIslands::stop_closing(std::span<const std::uint32_t> island, double from, double to, WorkBook book, bool trial)
 {
     for (FoundContact& f : touching_) f.contact.impulse = {};
-    contacts_.respond(touching_, ImpactMode::Rest, h, book);
+    contacts_.respond(touching_, ImpactMode::Rest, to - from, book);
+    log_touching(island, from, to, true, book);
     // The impulse of the impact is not an estimate of how hard the contact will press; that of the last step is.
     contacts_.warm_start(touching_, trial);
 }
@@ -51,11 +52,12 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
         for (const FoundContact& f : touching_)
             if (contacts_.is_paradox(f.contact))
                 contacts_.report_paradox(f.contact, *contacts_.find_pair(f), step_.frame.start_time + from);
-    if (!at_midpoint && meets_any(system, h)) stop_closing(h, book, trial), system.join();
+    if (!at_midpoint && meets_any(system, h)) stop_closing(island, from, to, book, trial), system.join();
 
     moved_.kick(system, bodies, members_, h);
     if (!trial) positions_.note_forces(system);
     contacts_.respond(touching_, ImpactMode::Rest, h, book);
+    log_touching(island, from, to, false, book);
     if (!trial) keep_impulses(touching_, from, h);
     system.join();  // contact impulses ignore joints: project the velocities onto them
     const double work = moved_.move_mean(h);
@@ -85,6 +87,18 @@ void ImpulseIslands::update_touching(double h)
     places_.resize(touching_.size());
     std::iota(places_.begin(), places_.end(), 0u);
     midpoint_.update_contacts(places_, touching_, h);
+}
+
+/// Notes what the touching points took. An advance whose work is taken back has nothing left from its start on.
+void ImpulseIslands::log_touching(std::span<const std::uint32_t> island, double from, double to, bool is_impact, WorkBook book)
+{
+    ContactLog& log = contacts_.log();
+    if (!log.on() || !book.work) return;
+    if (book.sign < 0)
+        return log.take_back(from, [&](Ref r) { return std::binary_search(island.begin(), island.end(), step_.groups.of(r)); });
+    for (const FoundContact& f : touching_)
+        if (!is_impact || !(f.contact.impulse == Vec3{}))
+            log.add(f.contact, contacts_.detectors()[f.detector].component, f.contact.depth, from, to, is_impact);
 }
 
 /// Corrects the booked work of resting contacts. Along the actual displacements it must not be positive if no kinematic body takes part.

@@ -339,10 +339,21 @@ void EventLocator::answer()
     }
     note_paradoxes();
     respond(first.time);
+    log_impact(first.time);
     if (first.stuck)
         for (std::size_t i = 0; i < own; ++i) keep_if_it_cannot_leave(impact_[i].contact);
     for (const std::uint32_t slot : chosen_) record_answered(candidates_[slot], time);
     ++step_.report.events;
+}
+
+/// Notes the impulses of all points of the impact, at `time` (s since the start of the step).
+void EventLocator::log_impact(double time)
+{
+    ContactLog& log = contacts_.log();
+    if (!log.on()) return;
+    for (const FoundContact& f : impact_)
+        if (!(f.contact.impulse == Vec3{}))
+            log.add(f.contact, contacts_.detectors()[f.detector].component, f.contact.depth, time, time, true);
 }
 
 /// Records and reports the outcome for a chosen pair, which may have bounced for the last time.

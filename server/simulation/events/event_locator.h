@@ -215,6 +215,7 @@ private:
     void suppress_resting_bounce(std::vector<FoundContact>& contacts) const;
     void keep_if_it_cannot_leave(Contact& c) const;
     void answer();
+    void log_impact(double time);
     void complete(Candidate& candidate);
     void contacts_from_clear_side(Candidate& candidate);
     void rate_of_approach(std::vector<FoundContact>& contacts, double at);

@@ -105,6 +105,7 @@ void Stepper::finish_contacts()
 {
     if (forces_.any()) forces_.finish_step(book_.found());
     hard_.finish_step();
+    if (book_.log().on()) sleeping_contacts_.finish_step();
 }
 
 void Stepper::finish()

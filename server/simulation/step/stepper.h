@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "simulation/contacts/body_touches.h"
+#include "simulation/contacts/sleeping_contacts.h"
 #include "simulation/costs/cost_book.h"
 #include "simulation/events/event_locator.h"
 #include "simulation/shafts/coupling_watch.h"
@@ -84,6 +85,9 @@ public:
     const ContactCache& contacts() const { return book_.cache(); }
     const ContactForces& forces() const { return forces_; }
     const std::vector<FoundContact>& touching() const { return book_.found(); }
+    /// Whether the steps from the next one on are to note what contacts do in them, and the notes of the last step.
+    void log_contacts(bool on) { book_.log().keep(on); }
+    const ContactLog& contact_log() const { return book_.log(); }
 
     // Ledger ----------------------------------------------------------------------------------------------------------
     std::vector<ContactEnergy>& contact_energy() { return step_.contact_energy; }
@@ -156,6 +160,7 @@ private:
     HardContacts hard_{step_, motion_, book_};
     ContactForces forces_{step_, motion_, book_, hard_};
     BodyTouches touches_{step_, book_};
+    SleepingContacts sleeping_contacts_{step_, book_};
     Advance advance_;
     std::optional<EventLocator> locator_;  ///< made when it is needed first; reset when the structure changes
     ShaftSystem speed_system_;

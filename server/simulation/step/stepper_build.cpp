@@ -106,6 +106,7 @@ Result<void> Stepper::rebuild()
     hard_.rebuild();
     forces_.rebuild();
     touches_.rebuild();
+    sleeping_contacts_.rebuild();
     locator_.reset();
     saved_mark_ = nullptr;
     rebuild_costs();

@@ -1,6 +1,7 @@
 // What is published while there are readers: frames, events, collisions, metrics, images.
 #include <algorithm>
 
+#include "idl/samples.h"
 #include "support.h"
 
 using namespace plab;
@@ -83,6 +84,46 @@ TEST_CASE("a frame arrives as it was filled")
             CHECK(f.shafts._buffer[0].speed == -2.5);
         });
     CHECK(frames == 1);
+}
+
+TEST_CASE("contacts arrive as they were filled, and are wanted only while there is a reader")
+{
+    TestBus bus;
+    const link::Session session = bus.session();
+    CHECK_FALSE(bus->wants(publish::Stream::Contacts));
+    auto reader = reader_of<plab_v2_Contacts>(session);
+    REQUIRE(eventually([&] { return bus->wants(publish::Stream::Contacts); }));
+    const wire::ContactPoint point{{1, 2, 3}, {0, 0, 1}, 1e-6, 9.81, {0.5, -0.25, 0}, true};
+    for (std::uint64_t i = 1; i <= 2; ++i)
+    {
+        wire::Contacts& contacts = bus->begin_contacts();
+        contacts.run = 3, contacts.sequence_number = i, contacts.step = 36, contacts.time = 2.25, contacts.step_length = 0.125;
+        contacts.left_out = 7, contacts.force_left_out = 0.5;
+        contacts.entries = {{"contact", "box", "ground", true, {point, point}}};
+        bus->end_contacts();
+    }
+    std::uint64_t last = 0;
+    REQUIRE(eventually(
+        [&]
+        {
+            (void)reader.take(
+                [&](const plab_v2_Contacts& c, const dds_sample_info_t&)
+                {
+                    last = c.sequence_number;
+                    const auto value = wire::value_of<wire::Contacts>(c);
+                    CHECK(value.run == 3);
+                    CHECK(value.step == 36);
+                    CHECK(value.step_length == 0.125);
+                    CHECK(value.left_out == 7);
+                    CHECK(value.force_left_out == 0.5);
+                    REQUIRE(value.entries.size() == 1);
+                    CHECK(value.entries[0].b == "ground");
+                    CHECK(value.entries[0].asleep);
+                    REQUIRE(value.entries[0].points.size() == 2);
+                    CHECK(same_members(value.entries[0].points[1], point));
+                });
+            return last == 2;
+        }));
 }
 
 TEST_CASE("frames that come too fast are dropped, the oldest first: numbers increase, gaps are counted, the last one arrives")

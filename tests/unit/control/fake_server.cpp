@@ -56,6 +56,7 @@ struct FakeServer::Ends
     wire::DataWriter<plab_v2_Type> types;
     wire::FrameWriter states;
     wire::DataWriter<plab_v2_Collisions> collisions;
+    wire::DataWriter<plab_v2_Contacts> contacts;
     wire::DataWriter<plab_v2_Events> events;
     wire::DataWriter<plab_v2_Metrics> metrics;
     wire::DataWriter<plab_v2_Reply> replies;
@@ -76,7 +77,7 @@ FakeServer::FakeServer(std::uint32_t domain, std::string name) : name_(std::move
     e.subscriber = need(wire::make_subscriber(e.participant, name_));
     e.open(e.server), e.open(e.scene), e.open(e.objects), e.open(e.shapes), e.open(e.interactions), e.open(e.types);
     e.states = need(wire::FrameWriter::make(e.participant, e.publisher));
-    e.open(e.collisions), e.open(e.events), e.open(e.metrics), e.open(e.replies);
+    e.open(e.collisions), e.open(e.contacts), e.open(e.events), e.open(e.metrics), e.open(e.replies);
     e.requests = need(wire::DataReader<plab_v2_Request>::make(e.participant, e.subscriber));
     publish_catalogue();
     publish_types();
@@ -219,6 +220,10 @@ void FakeServer::publish_motion()
     frame.bodies = {1, 1, &red, false}, frame.shafts = {1, 1, &fan, false};
     (void)ends_->states.write(frame);
     publish_metrics();
+    plab_v2_ContactPoint points[2]{{{0, 0, 1}, {0, 0, 1}, 1e-6, 3.5, {0.25, 0, 0}, false}, {{1, 0, 1}, {0, 0, 1}, 0, 1.5, {0, 0, 0}, true}};
+    plab_v2_ContactInfo pairs[2]{{text("contact"), text("red"), text("green"), false, {2, 2, points, false}},
+                                 {text("contact"), text("floor"), text("green"), true, {1, 1, points, false}}};
+    (void)ends_->contacts.write(plab_v2_Contacts{1, frames_, step_, frame.time, kDt, 7, 2.5, {2, 2, pairs, false}});
 }
 
 void FakeServer::publish_log()

@@ -39,6 +39,27 @@ TEST_CASE("watch in readable form, thinned out and filtered")
     CHECK(Json::parse(states.lines()[0])["shafts"].empty());
 }
 
+TEST_CASE("watch contacts prints a line for each point, or one JSON object for each sample; --only chooses pairs")
+{
+    FakeServer server(test_domain(), "lab");
+    const std::string text = lab("watch contacts -n 1").out;
+    CHECK_MESSAGE(has(text, "2 pairs  7 points with 2.5 N are not sent"), text);
+    CHECK_MESSAGE(has(text, "impact"), text);
+    CHECK_MESSAGE(has(text, "asleep"), text);
+    const Json all = lab("watch contacts -n 1 --json").json();
+    CHECK(all["left_out"] == 7);
+    REQUIRE(all["entries"].size() == 2);
+    CHECK(all["entries"][0]["points"][0]["normal_force"] == 3.5);
+    CHECK(all["entries"][0]["points"][0]["friction_force"] == Json({0.25, 0.0, 0.0}));
+    CHECK(all["entries"][0]["points"][1]["is_impact"] == true);
+    const Json some = lab("watch contacts --only floor -n 1 --json").json();
+    REQUIRE(some["entries"].size() == 1);
+    CHECK(some["entries"][0]["a"] == "floor");
+    const Outcome thin = lab("watch contacts --every 0.5 -n 2 --json");
+    REQUIRE(thin.lines().size() == 2);
+    CHECK(Json::parse(thin.lines()[1])["time"].get<double>() - Json::parse(thin.lines()[0])["time"].get<double>() > 0.4);
+}
+
 TEST_CASE("watch --only with an unknown name: refused if it can never match, noted if the component may be added later")
 {
     FakeServer server(test_domain(), "lab");

@@ -17,6 +17,8 @@ public:
     std::uint64_t joins(publish::Stream) const override { return joined; }
     wire::Frame& begin_frame() override { return frame; }
     void end_frame() override { ++frames; }
+    wire::Contacts& begin_contacts() override { return contacts; }
+    void end_contacts() override { ++contact_samples; }
     void collisions(wire::Collisions&& batch) override { collision_batches.push_back(std::move(batch)); }
     void events(wire::Events&& batch) override { event_batches.push_back(std::move(batch)); }
     void metrics(wire::Metrics&& metrics) override { samples.push_back(std::move(metrics)); }
@@ -44,6 +46,8 @@ public:
 
     wire::Frame frame;  ///< the last one
     std::size_t frames = 0;
+    wire::Contacts contacts;  ///< the last ones
+    std::size_t contact_samples = 0;
     std::vector<wire::Collisions> collision_batches;
     std::vector<wire::Events> event_batches;
     std::vector<wire::Metrics> samples;
@@ -73,6 +77,7 @@ public:
     {
         for (std::int64_t i = 0; i < n; ++i)
         {
+            collector.prepare(scene_.simulation());
             scene_.step();
             collector.collect(scene_.simulation(), scene_.simulation().take_changes(), true);
         }

@@ -59,7 +59,7 @@ TEST_CASE("what cannot be understood is refused with a reason, and nothing of it
     CHECK(error_of("[]") == "the message is no JSON object");
     CHECK(error_of("{\"type\":") == "the message is no JSON object");
     CHECK(error_of(std::string(100000, '[')) == "the message is no JSON object");
-    CHECK(error_of("{}") == "'type' must be request, watch, grab, move, release, preview or job");
+    CHECK(error_of("{}") == "'type' must be request, watch, contacts, grab, move, release, preview or job");
     CHECK(error_of(R"({"type":"request","id":1})") == "'operations' must be a list of at least one");
     CHECK(error_of(R"({"type":"request","id":-1,"operations":[{"verb":"pause"}]})") == "'id' must be a whole number");
     CHECK(error_of(R"({"type":"request","id":1,"operations":["pause"]})") == "an operation must be an object");

@@ -83,11 +83,11 @@ Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::str
 {
     // plab/updates has the frames of plab/states once more; a recording holds complete ones.
     const auto on_bus = [](const wire::Topic& t) { return !is_topic<plab_v2_Gone>(t) && !is_topic<plab_v2_FrameUpdate>(t); };
-    // Pictures are large; what people send is in the journal as it took effect.
+    // Pictures and contacts are large; what people send is in the journal as it took effect.
     const auto is_by_itself = [](const wire::Topic& t)
     {
         return !is_topic<plab_v2_Image>(t) && !is_topic<plab_v2_ViewerSample>(t) && !is_topic<plab_v2_UserSample>(t) &&
-               !is_topic<plab_v2_Forces>(t);
+               !is_topic<plab_v2_Forces>(t) && !is_topic<plab_v2_Contacts>(t);
     };
     std::vector<const wire::Topic*> out;
     for (const wire::Topic& t : wire::topics())

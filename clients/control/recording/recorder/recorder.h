@@ -18,7 +18,7 @@ namespace plab::recorder
 struct RecorderOptions
 {
     recording::AsyncWriterOptions writer;
-    std::vector<std::string> topics;   ///< none: all but images
+    std::vector<std::string> topics;   ///< none: all but images and contacts
     std::optional<double> until;       ///< s, simulated: the recording ends there
     std::optional<double> state_rate;  ///< maximum number of frames per simulated second; empty: all
 };
