@@ -77,6 +77,7 @@ std::vector<Channel> make_channels()
     };
     add({0, kSceneTopic, "foxglove::SceneUpdate", std::string(kGeometry) + kSceneUpdate, Keep::Whole, nullptr});
     add({0, kFramesTopic, "foxglove::FrameTransforms", std::string(kGeometry) + kFrameTransforms, Keep::Newest, nullptr});
+    add({0, kContactsTopic, "foxglove::SceneUpdate", std::string(kGeometry) + kSceneUpdate, Keep::Newest, nullptr});
     for (const wire::Topic& topic : wire::topics())
     {
         const auto schema = recording::schema_of(topic);

@@ -29,8 +29,9 @@ struct Channel
     const wire::Topic* source = nullptr;  ///< null: made here
 };
 
-inline constexpr const char* kSceneTopic = "/scene";  ///< foxglove::SceneUpdate
-inline constexpr const char* kFramesTopic = "/tf";    ///< foxglove::FrameTransforms
+inline constexpr const char* kSceneTopic = "/scene";        ///< foxglove::SceneUpdate
+inline constexpr const char* kFramesTopic = "/tf";          ///< foxglove::FrameTransforms
+inline constexpr const char* kContactsTopic = "/contacts";  ///< foxglove::SceneUpdate
 inline constexpr const char* kWorldFrame = "world";
 
 /// In the order of their ids, which count from 1.

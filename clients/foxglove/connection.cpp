@@ -43,7 +43,7 @@ Result<std::unique_ptr<Connection>> Connection::open(const link::Session& sessio
     if (now.server) out->started_ns_ = now.server->started_ns, out->note_time(now.server->time);
     out->version_ = out->catalogue_->version();
     out->sent_ = drawn(now);
-    out->frame_writer_.use(now.objects);
+    out->frame_writer_.use(now.objects), out->contact_arrows_.use(out->sent_);
     audience.begin_anew();
     return out;
 }
@@ -59,6 +59,7 @@ bool Connection::step()
     take_catalogue();
     take_topics();
     take_frames();
+    take_contacts();
     requests_.update();
     send_scene();
     send_kept();
@@ -108,6 +109,10 @@ void Connection::subscribe()
         else if (!readers_.contains(channel.id))
             if (auto reader = TopicReader::open(session_, *channel.source)) readers_.emplace(channel.id, reader.take());
     }
+    const bool wants_contacts = audience_.wants(channel_of(kContactsTopic));
+    if (wants_contacts && !contacts_)
+        if (auto contacts = session_.reader<plab_v2_Contacts>()) contacts_ = contacts.take();
+    if (!wants_contacts) contacts_.reset();
     const bool wanted = audience_.wants(channel_of(kFramesTopic));
     if (wanted == frames_.has_value()) return;
     frames_.reset(), transforms_.reset();
@@ -143,7 +148,7 @@ void Connection::take_catalogue()
     const std::uint64_t stamp = stamp_of({});
     for (const std::string& update : scene_changes(sent_, drawn_now, stamp)) put(channel_of(kSceneTopic), 0, {content_of(update), stamp});
     sent_ = std::move(drawn_now);
-    frame_writer_.use(now.objects);
+    frame_writer_.use(now.objects), contact_arrows_.use(sent_);
     audience_.send_parameters(now);
     if (frames_ && now.server->paused && frames_run_ != run_) send_resting_frames();
     has_news_ = true;
@@ -193,6 +198,20 @@ void Connection::take_frames()
     transforms_ = Stamped{content_of(newest), stamp_of(time)};
     put(channel_of(kFramesTopic), 0, *transforms_);
     note_time(time);
+}
+
+void Connection::take_contacts()
+{
+    if (!contacts_) return;
+    std::optional<wire::Contacts> newest;
+    (void)contacts_->take(
+        [&](const plab_v2_Contacts& sample, const dds_sample_info_t& info)
+        {
+            if (info.valid_data) newest = wire::value_of<wire::Contacts>(sample);
+        });
+    if (!newest) return;
+    const std::uint64_t stamp = stamp_of(newest->time);
+    put(channel_of(kContactsTopic), 0, {content_of(contact_arrows_.update(*newest, sent_, stamp)), stamp});
 }
 
 /// To those who have just subscribed.

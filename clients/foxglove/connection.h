@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "foxglove/audience.h"
+#include "foxglove/contact_arrows.h"
 #include "foxglove/playback.h"
 #include "foxglove/scene.h"
 #include "foxglove/topic_reader.h"
@@ -46,6 +47,7 @@ private:
     void take_topic(const Channel& channel, TopicReader& reader);
     void tell_gone(const Channel& channel, const std::string& key);
     void take_frames();
+    void take_contacts();
     void send_resting_frames();
     void send_kept();
     void send_scene();
@@ -69,9 +71,11 @@ private:
     // Read only while somebody subscribes.
     std::map<ChannelId, TopicReader> readers_;
     std::optional<link::FrameReader> frames_;
+    std::optional<wire::DataReader<plab_v2_Contacts>> contacts_;
 
     DrawnScene sent_;  ///< what subscribers of the scene know
     FrameWriter frame_writer_;
+    ContactArrows contact_arrows_;
     std::optional<Stamped> transforms_;  ///< the newest
     recording::Encoder encoder_;
     bool has_news_ = false, is_over_ = false;

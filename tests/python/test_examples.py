@@ -54,6 +54,10 @@ class ExamplesTest(lab.LabTest):
             coarse, fine = errors[solver][-2:]
             self.assertAlmostEqual(fine / coarse, 0.5**order, delta=0.25 * 0.5**order, msg=solver)
 
+    def test_boxes_are_weighed_by_their_contacts(self):
+        carried, weight = map(float, re.findall(r"([\d.]+) N", run(EXAMPLES / "weigh.py").splitlines()[0]))
+        self.assertAlmostEqual(carried, weight, delta=1e-3 * weight)
+
     def test_an_exchange_in_a_recording(self):
         if find_spec("pandas") is None:
             self.skipTest("no pandas here (Debian: python3-pandas)")

@@ -225,5 +225,31 @@ class EventTest(lab.LabTest):
         self.assertGreater(np.linalg.norm(impact.impulse), 1e-3)
 
 
+class ContactTest(lab.LabTest):
+    SCENE = """<plab version="1">
+      <scene title="Scales" dt="1/240"/>
+      <component id="floor" type="Shape/Plane"/><component id="ground" type="State/Static" shape="floor"/>
+      <component id="cube" type="Shape/Box" half_extents="0.2 0.2 0.1"/>
+      <component id="weight" type="Field/Gravity" between="*"/>
+      <component id="contact" type="CDetection/ODE" between="*"/>
+      <component id="b0" type="State/RigidBody" shape="cube" mass="2" position="0 0 0.1"/>
+      <component id="b1" type="State/RigidBody" shape="cube" mass="3" position="0 0 0.3"/>
+    </plab>"""
+
+    def test_contacts_after_steps(self):
+        session = self.session(self.SCENE)
+        with session.contacts(timeout=10) as stream:
+            session.step(240)
+            contacts = next(stream)
+        self.assertEqual(contacts.step, 240)
+        self.assertAlmostEqual(contacts.step_length, 1 / 240)
+        self.assertEqual(contacts.left_out, 0)
+        weight = 5 * 9.81
+        self.assertAlmostEqual(contacts.force_on("ground")[2], -weight, delta=1e-3 * weight)
+        self.assertAlmostEqual(contacts.force_on("b1")[2], 3 * 9.81, delta=1e-3 * weight)
+        self.assertEqual({(point.a, point.b) for point in contacts.points}, {("b0", "ground"), ("b0", "b1")})
+        self.assertTrue(all(not point.is_impact and abs(point.normal[2]) > 0.999 for point in contacts.points))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -104,7 +104,7 @@ PLAB_PYTHON_API int plab_frames_next(PlabFrames* frames, double slice, PlabFrame
 PLAB_PYTHON_API unsigned plab_frames_writers(PlabFrames* frames);
 PLAB_PYTHON_API void plab_frames_close(PlabFrames* frames);
 
-/// Entries of plab/events or plab/collisions.
+/// Entries of plab/events or plab/collisions, or samples of plab/contacts.
 PLAB_PYTHON_API PlabEntries* plab_entries_open(PlabSession* session, const char* topic);
 /// JSON of the next entry; "" none within the slice.
 PLAB_PYTHON_API const char* plab_entries_next(PlabEntries* entries, double slice);

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "idl/samples.h"
 #include "link/catalogue.h"
 #include "link/frame_reader.h"
 #include "link/json.h"
@@ -132,7 +133,26 @@ Result<int> next_frame(PlabFrames& frames, double slice, PlabFrame& out)
     return 1;
 }
 
-// ---- Events and collisions --------------------------------------------------------------------------------------------------------------
+// ---- Events, collisions and contacts ----------------------------------------------------------------------------------------------------
+
+/// What of a sample is an entry: one of its entries each, of contacts the whole sample.
+template <class T>
+void add_texts(const T& sample, std::deque<std::string>& to)
+{
+    for (std::uint32_t i = 0; i < sample.entries._length; ++i) to.push_back(link::line_of(link::json_of(sample, i)));
+}
+void add_texts(const plab_v2_Contacts& sample, std::deque<std::string>& to)
+{
+    to.assign(1, link::line_of(link::json_of(wire::value_of<wire::Contacts>(sample))));  // the newest
+}
+
+/// How many entries did not arrive before this sample. Of contacts the newest are delivered, and none is missing.
+template <class T>
+std::uint64_t missing_before(const T& sample, dds_instance_handle_t writer, link::Sequence& sequence)
+{
+    return sequence.note(writer, sample.sequence_number, sample.entries._length).count;
+}
+std::uint64_t missing_before(const plab_v2_Contacts&, dds_instance_handle_t, link::Sequence&) { return 0; }
 
 template <class T>
 struct EntriesOf final : PlabEntries
@@ -149,8 +169,8 @@ struct EntriesOf final : PlabEntries
             [&](const T& sample, const dds_sample_info_t& info)
             {
                 if (!info.valid_data) return;
-                missing += sequence.note(info.publication_handle, sample.sequence_number, sample.entries._length).count;
-                for (std::uint32_t i = 0; i < sample.entries._length; ++i) waiting.push_back(link::line_of(link::json_of(sample, i)));
+                missing += missing_before(sample, info.publication_handle, sequence);
+                add_texts(sample, waiting);
             },
             1);
     }
@@ -170,6 +190,7 @@ Result<PlabEntries*> open_entries(const PlabSession& session, const std::string&
 {
     if (topic == wire::topic_of<plab_v2_Events>().name) return open_entries<plab_v2_Events>(session);
     if (topic == wire::topic_of<plab_v2_Collisions>().name) return open_entries<plab_v2_Collisions>(session);
+    if (topic == wire::topic_of<plab_v2_Contacts>().name) return open_entries<plab_v2_Contacts>(session);
     return reason("'" + topic + "' has no entries");
 }
 

@@ -22,6 +22,8 @@ from .tables import to_dataframe
 from .values import (
     Collision,
     Component,
+    ContactPoint,
+    Contacts,
     Energy,
     Event,
     Interaction,
@@ -43,6 +45,8 @@ __all__ = [
     "BodyState",
     "Collision",
     "Component",
+    "ContactPoint",
+    "Contacts",
     "Energy",
     "Event",
     "Frame",

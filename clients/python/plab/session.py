@@ -15,7 +15,7 @@ from .frames import Frame, NameTable
 from .recorder import Recorder
 from .requests import Value, blueprint_of, encode, swap_operations, text_of, texts_of
 from .streams import GONE_AFTER, EntryStream, FrameStream
-from .values import Collision, Component, Event, Interaction, Level, Metrics, Operation, Reply, ServerInfo, Swap, Type
+from .values import Collision, Component, Contacts, Event, Interaction, Level, Metrics, Operation, Reply, ServerInfo, Swap, Type
 
 if TYPE_CHECKING:
     from .server import Server
@@ -193,6 +193,10 @@ class Session:
     def collisions(self, *, timeout: float | None = None) -> EntryStream[Collision]:
         """As ``events``."""
         return self._settled(EntryStream(self, "plab/collisions", Collision._of, timeout))
+
+    def contacts(self, *, timeout: float | None = 10) -> EntryStream[Contacts]:
+        """An iterator of what presses on what, as often as frames: always the newest, and none while the server is paused."""
+        return self._settled(EntryStream(self, "plab/contacts", Contacts._of, timeout))
 
     @staticmethod
     def _settled(stream: EntryStream[Any]) -> EntryStream[Any]:

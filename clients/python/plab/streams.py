@@ -113,7 +113,7 @@ class FrameStream(Stream[Frame]):
 
 
 class EntryStream(Stream[T]):
-    """Events or collisions, all of them: what did not arrive is told by a MissedWarning."""
+    """Events or collisions, all of them: what did not arrive is told by a MissedWarning. Contacts: the newest ones."""
 
     def __init__(self, session: Session, topic: str, make: Callable[[Any], T], timeout: float | None) -> None:
         handle = _native.Handle("entries_", _native.call("entries_open", session._handle.pointer, topic.encode()), "entries_close")

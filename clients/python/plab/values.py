@@ -257,6 +257,59 @@ class Collision:
 
 
 @dataclass(frozen=True, slots=True)
+class ContactPoint:
+    """Where two bodies touch, with the forces on ``b``; those on ``a`` are the opposite."""
+
+    a: str
+    b: str
+    detector: str
+    position: Vector  #: m
+    normal: Vector  #: from a to b
+    depth: float  #: m; below 0: a gap
+    normal_force: float  #: N, along the normal
+    friction_force: Vector  #: N, across the normal
+    is_impact: bool  #: they met here in this step
+    asleep: bool  #: the forces are those of the last step before they fell asleep
+
+    def force_on(self, body: str) -> Vector:
+        """N; zero if the body is neither of the two."""
+        sign = 1 if body == self.b else -1 if body == self.a else 0
+        return tuple(sign * (self.normal_force * n + f) for n, f in zip(self.normal, self.friction_force))  # type: ignore[return-value]
+
+
+@dataclass(frozen=True, slots=True)
+class Contacts:
+    run: int
+    number: int  #: a jump is samples that did not arrive
+    step: int
+    time: float  #: s, at the end of the step
+    step_length: float  #: s
+    points: tuple[ContactPoint, ...]
+    left_out: int  #: points beyond the largest number of a sample
+    force_left_out: float  #: N, sum of their normal forces
+
+    def force_on(self, body: str) -> Vector:
+        """N: of all contacts of a body."""
+        forces = [point.force_on(body) for point in self.points]
+        return (sum(f[0] for f in forces), sum(f[1] for f in forces), sum(f[2] for f in forces))
+
+    @staticmethod
+    def _of(data: Mapping[str, Any]) -> Contacts:
+        points = tuple(
+            ContactPoint(
+                pair["a"], pair["b"], pair["detector"], _vector(p["position"]), _vector(p["normal"]), _number(p["depth"]),
+                _number(p["normal_force"]), _vector(p["friction_force"]), p["is_impact"], pair["asleep"],
+            )  # fmt: skip
+            for pair in data["entries"]
+            for p in pair["points"]
+        )
+        return Contacts(
+            data["run"], data["sequence_number"], data["step"], _number(data["time"]), _number(data["step_length"]), points,
+            data["left_out"], _number(data["force_left_out"]),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
 class Outcome:
     """The first step after a swap, as it was or as it would have been."""
 

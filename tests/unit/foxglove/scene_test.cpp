@@ -1,7 +1,9 @@
 #include "foxglove/scene.h"
+#include "foxglove/contact_arrows.h"
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstring>
 
 using namespace plab;
@@ -94,4 +96,38 @@ TEST_CASE("frames have what moves, in the run to which it belongs")
     frame.run = 2;
     CHECK(first_count(writer.transforms(frame, 0)) == 0);
     CHECK(first_count(writer.transforms(scene.objects, 0)) == 1);
+}
+
+TEST_CASE("contact forces are arrows on what moves, in a scale that fits its weight")
+{
+    DrawnScene scene = small_scene();
+    scene.objects["moves"].mass = 2;
+    ContactArrows arrows;
+    arrows.use(scene);
+    // The weight of 2 kg is as long as the ball is thick.
+    CHECK(arrows.scale() * 2 * 9.81 == doctest::Approx(1));
+    wire::Contacts contacts;
+    const wire::ContactPoint down{{1, 2, 0}, {0, 0, -1}, 0, 2 * 9.81, {0, 0, 0}, false}, weak{{1, 2, 0}, {0, 0, -1}, 0, 1e-9, {}, false};
+    contacts.entries = {{"contact", "moves", "stands", false, {down, weak}}};
+    const std::string cdr = arrows.update(contacts, scene, 1'500'000'000);
+    const auto number_at = [&](std::size_t offset)
+    {
+        double out = 0;
+        std::memcpy(&out, cdr.data() + 4 + offset, sizeof out);
+        return out;
+    };
+    // Deletions, entities, time, "world", "contacts", lifetime, frame_locked, metadata, then the arrows: a length, then position and
+    // rotation.
+    constexpr std::size_t kArrows = 4 + 4 + 8 + 4 + 8 + 4 + 12 + 8 + 4 + 0;
+    std::uint32_t count = 0;
+    std::memcpy(&count, cdr.data() + 4 + kArrows + 4, sizeof count);
+    CHECK(count == 1);
+    const std::size_t first = (kArrows + 8 + 7) / 8 * 8;
+    CHECK(number_at(first) == 1);
+    CHECK(number_at(first + 16) == 0);
+    // x is turned to z, as the ground pushes the ball up: about -y by 90 degrees.
+    CHECK(number_at(first + 32) == doctest::Approx(-std::sqrt(0.5)));
+    CHECK(number_at(first + 48) == doctest::Approx(std::sqrt(0.5)));
+    const double shaft = number_at(first + 56), head = number_at(first + 72);
+    CHECK(shaft + head == doctest::Approx(1));
 }
