@@ -29,7 +29,7 @@ constexpr std::array<Topic, 22> kTopics{{
     {"plab/viewers", &plab_v2_ViewerSample_desc, Delivery::Newest, "from where clients look at the scene"},
     {"plab/users", &plab_v2_UserSample_desc, Delivery::Newest, "hands and devices of people"},
     {"plab/forces", &plab_v2_Forces_desc, Delivery::Newest, "forces on them, after each step"},
-    {"plab/contacts", &plab_v2_Contacts_desc, Delivery::Newest, "where bodies touch, and the forces there"},
+    {"plab/contacts", &plab_v2_ContactForces_desc, Delivery::Newest, "where bodies touch, and the forces there"},
 }};
 
 }  // namespace
@@ -64,7 +64,7 @@ PLAB_TOPIC(plab_v2_Gone, 17)
 PLAB_TOPIC(plab_v2_ViewerSample, 18)
 PLAB_TOPIC(plab_v2_UserSample, 19)
 PLAB_TOPIC(plab_v2_Forces, 20)
-PLAB_TOPIC(plab_v2_Contacts, 21)
+PLAB_TOPIC(plab_v2_ContactForces, 21)
 #undef PLAB_TOPIC
 
 Qos qos_of(Delivery delivery)

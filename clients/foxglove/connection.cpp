@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "foxglove/services.h"
+#include "idl/samples.h"
 
 namespace plab::foxglove
 {
@@ -111,7 +112,7 @@ void Connection::subscribe()
     }
     const bool wants_contacts = audience_.wants(channel_of(kContactsTopic));
     if (wants_contacts && !contacts_)
-        if (auto contacts = session_.reader<plab_v2_Contacts>()) contacts_ = contacts.take();
+        if (auto contacts = session_.reader<plab_v2_ContactForces>()) contacts_ = contacts.take();
     if (!wants_contacts) contacts_.reset();
     const bool wanted = audience_.wants(channel_of(kFramesTopic));
     if (wanted == frames_.has_value()) return;
@@ -203,11 +204,11 @@ void Connection::take_frames()
 void Connection::take_contacts()
 {
     if (!contacts_) return;
-    std::optional<wire::Contacts> newest;
+    std::optional<wire::ContactForces> newest;
     (void)contacts_->take(
-        [&](const plab_v2_Contacts& sample, const dds_sample_info_t& info)
+        [&](const plab_v2_ContactForces& sample, const dds_sample_info_t& info)
         {
-            if (info.valid_data) newest = wire::value_of<wire::Contacts>(sample);
+            if (info.valid_data) newest = wire::value_of<wire::ContactForces>(sample);
         });
     if (!newest) return;
     const std::uint64_t stamp = stamp_of(newest->time);

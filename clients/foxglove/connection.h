@@ -71,7 +71,7 @@ private:
     // Read only while somebody subscribes.
     std::map<ChannelId, TopicReader> readers_;
     std::optional<link::FrameReader> frames_;
-    std::optional<wire::DataReader<plab_v2_Contacts>> contacts_;
+    std::optional<wire::DataReader<plab_v2_ContactForces>> contacts_;
 
     DrawnScene sent_;  ///< what subscribers of the scene know
     FrameWriter frame_writer_;

@@ -72,7 +72,7 @@ void ContactArrows::use(const DrawnScene& scene)
     longest_ = count > 0 ? kLongest * size / static_cast<double>(count) : 0.0;
 }
 
-std::string ContactArrows::update(const wire::Contacts& contacts, const DrawnScene& scene, std::uint64_t time) const
+std::string ContactArrows::update(const wire::ContactForces& contacts, const DrawnScene& scene, std::uint64_t time) const
 {
     CdrWriter out;
     out.count(0), out.count(1);  // no deletions, one entity

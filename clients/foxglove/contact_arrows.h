@@ -17,7 +17,7 @@ public:
     void use(const DrawnScene& scene);
     /// CDR. Of a pair the force on the body that moves is drawn, on the second one if both do; forces of impacts in another colour. `time`:
     /// ns.
-    std::string update(const wire::Contacts& contacts, const DrawnScene& scene, std::uint64_t time) const;
+    std::string update(const wire::ContactForces& contacts, const DrawnScene& scene, std::uint64_t time) const;
 
     /// m of an arrow for each N.
     double scale() const { return scale_; }

@@ -28,7 +28,7 @@ double rounded(double v)
 
 }  // namespace
 
-Json contacts_message(const wire::Contacts& contacts, const std::set<std::string>& watched)
+Json contacts_message(const wire::ContactForces& contacts, const std::set<std::string>& watched)
 {
     struct Point
     {
@@ -83,14 +83,14 @@ void ContactFeed::update(const std::set<std::string>& watched, const std::functi
     {
         reader_.reset();
         if (wanted)
-            if (auto made = session_.reader<plab_v2_Contacts>()) reader_ = made.take();
+            if (auto made = session_.reader<plab_v2_ContactForces>()) reader_ = made.take();
     }
     if (!reader_) return;
     // A sample that nobody takes now is replaced by a newer one.
     if (waiting_.empty() || now - sent_at_ < kBetween) return;
     bool any = false;
     (void)reader_->take(
-        [&](const plab_v2_Contacts& sample, const dds_sample_info_t& info)
+        [&](const plab_v2_ContactForces& sample, const dds_sample_info_t& info)
         {
             if (info.valid_data) wire::read_sample(sample, contacts_), any = true;
         });

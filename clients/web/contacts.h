@@ -21,7 +21,7 @@ inline constexpr std::size_t kMostContactPoints = 512;  ///< of a message, besid
 /// The points with the largest forces, and those of the watched bodies. `pairs` has rows: a, b, whether they sleep. `points` has rows:
 /// place in `pairs`; position (m), normal (from a to b) and friction force on b (N), three numbers each; normal force (N), depth (m), 1 if
 /// it is an impact.
-Json contacts_message(const wire::Contacts& contacts, const std::set<std::string>& watched);
+Json contacts_message(const wire::ContactForces& contacts, const std::set<std::string>& watched);
 
 class ContactFeed
 {
@@ -38,10 +38,10 @@ private:
     using Clock = std::chrono::steady_clock;
 
     const link::Session& session_;
-    std::optional<wire::DataReader<plab_v2_Contacts>> reader_;
+    std::optional<wire::DataReader<plab_v2_ContactForces>> reader_;
     std::set<PageId> waiting_;
     Clock::time_point asked_at_{}, sent_at_{};
-    wire::Contacts contacts_;  ///< keeps its memory
+    wire::ContactForces contacts_;  ///< keeps its memory
 };
 
 }  // namespace plab::web

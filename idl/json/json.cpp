@@ -159,7 +159,7 @@ Json json_of(const Reply& r) { return form_of(r); }
 Json json_of(const SwapReport& s) { return members_of(s); }
 Json json_of(const EventInfo& e) { return members_of(e); }
 Json json_of(const CollisionInfo& c) { return members_of(c); }
-Json json_of(const Contacts& c) { return members_of(c); }
+Json json_of(const ContactForces& c) { return members_of(c); }
 
 std::string line_of(const Json& json)
 {

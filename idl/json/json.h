@@ -26,7 +26,7 @@ Json json_of(const Reply& r);
 Json json_of(const SwapReport& s);
 Json json_of(const EventInfo& e);
 Json json_of(const CollisionInfo& c);
-Json json_of(const Contacts& c);
+Json json_of(const ContactForces& c);
 
 /// One line; text that is not UTF-8 is repaired, and no control character in it reaches a terminal.
 std::string line_of(const Json& json);

@@ -64,7 +64,7 @@ SampleHeader header_of_numbered(const T& sample)
 }
 SampleHeader header(const plab_v2_Journal& j) { return header_of_numbered(j); }
 SampleHeader header(const plab_v2_Forces& f) { return header_of_numbered(f); }
-SampleHeader header(const plab_v2_Contacts& c) { return header_of_numbered(c); }
+SampleHeader header(const plab_v2_ContactForces& c) { return header_of_numbered(c); }
 SampleHeader header(const plab_v2_Snapshot& s)
 {
     SampleHeader out = header_with_time(s);
@@ -150,7 +150,7 @@ std::unique_ptr<Peek> make_peek(const wire::Topic& topic)
     return make_one_of<plab_v2_Server, plab_v2_Scene, plab_v2_SceneObject, plab_v2_Shape, plab_v2_Interaction, plab_v2_Type, plab_v2_Frame,
                        plab_v2_FrameUpdate, plab_v2_Collisions, plab_v2_Events, plab_v2_Metrics, plab_v2_Request, plab_v2_Reply,
                        plab_v2_Image, plab_v2_Journal, plab_v2_Hashes, plab_v2_Snapshot, plab_v2_Gone, plab_v2_ViewerSample,
-                       plab_v2_UserSample, plab_v2_Forces, plab_v2_Contacts>(topic);
+                       plab_v2_UserSample, plab_v2_Forces, plab_v2_ContactForces>(topic);
 }
 
 std::string key_of_gone(ByteView bytes)

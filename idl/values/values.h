@@ -243,7 +243,7 @@ struct ContactInfo
 };
 PLAB_MEMBERS(ContactInfo, detector, a, b, asleep, points)
 
-struct Contacts
+struct ContactForces
 {
     std::uint64_t run = 0, sequence_number = 0;
     std::int64_t step = 0;
@@ -252,7 +252,7 @@ struct Contacts
     double force_left_out = 0;
     std::vector<ContactInfo> entries;
 };
-PLAB_MEMBERS(Contacts, run, sequence_number, step, time, step_length, left_out, force_left_out, entries)
+PLAB_MEMBERS(ContactForces, run, sequence_number, step, time, step_length, left_out, force_left_out, entries)
 
 struct EventInfo
 {

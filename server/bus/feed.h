@@ -56,7 +56,7 @@ public:
             const auto kind = static_cast<std::uint32_t>(Down::Stream) + static_cast<std::uint32_t>(stream_);
             const bool fine = to.send(kind, *record);
             // The vectors of frames and contacts are refilled in place; the memory of a burst of events is released.
-            if constexpr (!std::is_same_v<Record, wire::Frame> && !std::is_same_v<Record, wire::Contacts>) *record = Record{};
+            if constexpr (!std::is_same_v<Record, wire::Frame> && !std::is_same_v<Record, wire::ContactForces>) *record = Record{};
             ring_.end_pop();
             if (!fine) return Sent::Broken;
         }

@@ -32,7 +32,7 @@ public:
     std::uint64_t joins(publish::Stream stream) const override;
     wire::Frame& begin_frame() override { return states_.begin_push(); }
     void end_frame() override;
-    wire::Contacts& begin_contacts() override { return contacts_.begin_push(); }
+    wire::ContactForces& begin_contacts() override { return contacts_.begin_push(); }
     void end_contacts() override;
     void collisions(wire::Collisions&& batch) override { push(collisions_, std::move(batch)); }
     void events(wire::Events&& batch) override { push(events_, std::move(batch)); }
@@ -118,7 +118,7 @@ private:
     Feed<wire::Hashes> hashes_{publish::Stream::Hashes, 1024};
     Feed<wire::Snapshot> snapshots_{publish::Stream::Snapshots, 2};
     Feed<wire::Forces> forces_{publish::Stream::Forces, 64};
-    Feed<wire::Contacts> contacts_{publish::Stream::Contacts, 4};
+    Feed<wire::ContactForces> contacts_{publish::Stream::Contacts, 4};
     publish::Ring<wire::Server> statuses_{4};
     publish::HashBatch hash_batch_;  ///< used by the step thread only
     RequestDesk desk_;

@@ -104,7 +104,7 @@ void Collector::report_contacts(const simulation::Simulation& s)
     for (Watcher& w : watchers_)
     {
         if (!std::exchange(w.contacts_due, false)) continue;
-        wire::Contacts& contacts = w.observer->begin_contacts();
+        wire::ContactForces& contacts = w.observer->begin_contacts();
         contacts_of_step_.fill(s, contacts);
         contacts.sequence_number = ++w.contact_samples;
         w.observer->end_contacts();

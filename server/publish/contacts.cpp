@@ -43,7 +43,7 @@ void ContactRecords::add_up_parts(const world::World& world)
 }
 
 /// Leaves order_ with the points that the record gets, in their order.
-void ContactRecords::limit(double h, wire::Contacts& out)
+void ContactRecords::limit(double h, wire::ContactForces& out)
 {
     order_.resize(points_.size());
     std::iota(order_.begin(), order_.end(), 0u);
@@ -60,7 +60,7 @@ void ContactRecords::limit(double h, wire::Contacts& out)
     std::sort(order_.begin(), order_.end());
 }
 
-void ContactRecords::fill(const simulation::Simulation& s, wire::Contacts& out)
+void ContactRecords::fill(const simulation::Simulation& s, wire::ContactForces& out)
 {
     const world::World& world = s.world();
     const double h = s.stepper().frame().step;

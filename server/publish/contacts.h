@@ -17,7 +17,7 @@ class ContactRecords
 public:
     /// After a step that was logged (Simulation::log_contacts). What acted on a point in several parts of the step is added up; impacts
     /// stay apart. Does not allocate if `out` and earlier records held as many before.
-    void fill(const simulation::Simulation& simulation, wire::Contacts& out);
+    void fill(const simulation::Simulation& simulation, wire::ContactForces& out);
 
 private:
     /// A logged contact; of a point with several parts the sum of their impulses.
@@ -29,7 +29,7 @@ private:
     };
     void list(const simulation::Simulation& simulation);
     void add_up_parts(const world::World& world);
-    void limit(double h, wire::Contacts& out);
+    void limit(double h, wire::ContactForces& out);
 
     std::vector<Point> points_;
     std::vector<double> normal_;  ///< N s: normal impulse of each point

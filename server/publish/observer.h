@@ -44,7 +44,7 @@ public:
     virtual wire::Frame& begin_frame() = 0;
     virtual void end_frame() = 0;
     /// The same for the contacts of a step.
-    virtual wire::Contacts& begin_contacts() = 0;
+    virtual wire::ContactForces& begin_contacts() = 0;
     virtual void end_contacts() = 0;
     virtual void collisions(wire::Collisions&& batch) = 0;
     virtual void events(wire::Events&& batch) = 0;

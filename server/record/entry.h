@@ -14,7 +14,7 @@ namespace plab::record
 struct Entry
 {
     using Body = std::variant<std::unique_ptr<wire::Frame>, wire::Collisions, wire::Events, wire::Metrics, wire::Image, wire::Journal,
-                              wire::Hashes, wire::Snapshot, publish::CatalogueChange, wire::Server, wire::Contacts>;
+                              wire::Hashes, wire::Snapshot, publish::CatalogueChange, wire::Server, wire::ContactForces>;
     std::uint64_t run = 0;
     double time = 0;            ///< s, simulated, in that run
     std::int64_t stamp_ns = 0;  ///< since 1970

@@ -137,7 +137,7 @@ bool Recorder::wants(publish::Stream stream) const
         case publish::Stream::Forces:
             return false;
         case publish::Stream::Contacts:
-            return topics_.has(wire::topic_of<plab_v2_Contacts>().name);
+            return topics_.has(wire::topic_of<plab_v2_ContactForces>().name);
     }
     return false;
 }

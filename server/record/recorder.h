@@ -23,7 +23,7 @@ public:
     void moment(std::uint64_t run, double time) override { run_ = run, time_ = time; }
     wire::Frame& begin_frame() override;
     void end_frame() override;
-    wire::Contacts& begin_contacts() override { return contacts_; }
+    wire::ContactForces& begin_contacts() override { return contacts_; }
     void end_contacts() override;
     void collisions(wire::Collisions&& batch) override;
     void events(wire::Events&& batch) override;
@@ -57,7 +57,7 @@ private:
     std::uint64_t run_ = 0;
     double time_ = 0;
     std::unique_ptr<wire::Frame> filling_;
-    wire::Contacts contacts_;  ///< being filled
+    wire::ContactForces contacts_;  ///< being filled
     publish::HashBatch hash_batch_;
 
     recording::AsyncWriter<Entry> writer_;  ///< last: its thread uses the above

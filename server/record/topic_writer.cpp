@@ -21,7 +21,7 @@ TopicWriter::TopicWriter(wire::Identity identity, std::vector<std::string> topic
 bool TopicWriter::has(const char* topic) const
 {
     const auto is = [&](const wire::Topic& t) { return std::strcmp(topic, t.name) == 0; };
-    if (topics_.empty()) return !is(wire::topic_of<plab_v2_Image>()) && !is(wire::topic_of<plab_v2_Contacts>());
+    if (topics_.empty()) return !is(wire::topic_of<plab_v2_Image>()) && !is(wire::topic_of<plab_v2_ContactForces>());
     return std::find(topics_.begin(), topics_.end(), topic) != topics_.end();
 }
 
@@ -52,7 +52,7 @@ void TopicWriter::put(recording::TopicFile& file, Entry& entry, const Stamp& sta
         void operator()(const wire::Journal& j) const { self->write(self->journal_.of(j), *stamp); }
         void operator()(const wire::Hashes& h) const { self->write(self->hashes_.of(h), *stamp); }
         void operator()(const wire::Snapshot& s) const { self->write(self->snapshot_.of(s), *stamp); }
-        void operator()(const wire::Contacts& c) const { self->write(self->contacts_.of(c), *stamp); }
+        void operator()(const wire::ContactForces& c) const { self->write(self->contacts_.of(c), *stamp); }
         void operator()(const publish::CatalogueChange& c) const { self->put_body(c, *stamp, entry->run); }
         void operator()(wire::Server& s) const
         {

@@ -61,7 +61,7 @@ private:
     wire::SampleView<plab_v2_Journal> journal_;
     wire::SampleView<plab_v2_Hashes> hashes_;
     wire::SampleView<plab_v2_Snapshot> snapshot_;
-    wire::SampleView<plab_v2_Contacts> contacts_;
+    wire::SampleView<plab_v2_ContactForces> contacts_;
 };
 
 }  // namespace plab::record

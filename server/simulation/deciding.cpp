@@ -92,11 +92,14 @@ const Result<FirstStep>& Simulation::step_with(std::uint32_t component, const Le
 TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval, bool with_cost)
 {
     const double h = run_.clock.time_at(tick() + 1) - time();
-    const int whole = std::max(1, static_cast<int>(std::lround(interval / h)));
+    const double whole = std::max(1.0, std::round(interval / h));
     // What a solver errs goes on as it begins, so a quarter of the interval is tried. An impact does not announce itself, and where a
     // coupling is exchanged the first step shows more of the exchange than of the level: so the whole interval is tried.
     const bool goes_on = run_.world().type_of(component)->info.family == "Solver";
-    const int steps = goes_on ? std::min(whole, std::max(2, (whole + 3) / 4)) : whole;
+    // A decision ends, however long the interval is.
+    constexpr double kMostSteps = 256;
+    const double wanted = goes_on ? std::min(whole, std::max(2.0, std::ceil(whole / 4))) : whole;
+    const int steps = static_cast<int>(std::min(wanted, kMostSteps));
     constexpr std::uint64_t kMeasure = 200'000;  // ns
     const FirstStepChoice choice{steps, measuring_ && with_cost ? kMeasure : 0};
     if (!step_with(component, level, choice) || !step_with(component, finer, choice)) return {};

@@ -59,7 +59,7 @@ void measure(int count, const std::string& manager, int steps)
     const int warm = manager.find("sleep") == std::string::npos ? 60 : 400;
     for (int i = 0; i < warm; ++i) s.step();
     publish::ContactRecords records;
-    wire::Contacts out;
+    wire::ContactForces out;
     std::vector<double> without, with, fill;
     for (int i = 0; i < 2 * steps; ++i)
     {

@@ -17,7 +17,7 @@ public:
         simulation().log_contacts(true);
     }
     /// One step, and its record.
-    const wire::Contacts& next()
+    const wire::ContactForces& next()
     {
         step();
         records_.fill(simulation(), contacts);
@@ -40,7 +40,7 @@ public:
         return sum;
     }
 
-    wire::Contacts contacts;  ///< of the last step
+    wire::ContactForces contacts;  ///< of the last step
 
 private:
     publish::ContactRecords records_;

@@ -53,7 +53,7 @@ TEST_CASE("a box at rest: the contact forces on it are its weight, by every algo
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = true;
         s.run(1);
-        const wire::Contacts& c = s.next();
+        const wire::ContactForces& c = s.next();
         REQUIRE(c.entries.size() == 1);
         CHECK(c.entries[0].detector == "contact");
         CHECK(c.entries[0].a == "box");
@@ -92,7 +92,7 @@ TEST_CASE("a box that sticks on a slope: friction m g sin(a), normal force m g c
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = true;
         s.run(1.5);
-        const wire::Contacts& c = s.next();
+        const wire::ContactForces& c = s.next();
         REQUIRE(c.entries.size() == 1);
         double normal = 0;
         Vec3 friction;  // on b, the slope

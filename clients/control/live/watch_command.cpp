@@ -239,7 +239,8 @@ Exit run_watch(Context& c, const WatchOptions& o)
     if (o.stream == "metrics")
         return watch_samples<plab_v2_Metrics, wire::Metrics>(w, [&](const wire::Metrics& m) { w.printer.metrics(m); });
     if (o.stream == "contacts")
-        return watch_samples<plab_v2_Contacts, wire::Contacts>(w, [&](wire::Contacts&& all) { w.printer.contacts(std::move(all)); });
+        return watch_samples<plab_v2_ContactForces, wire::ContactForces>(
+            w, [&](wire::ContactForces&& all) { w.printer.contacts(std::move(all)); });
     if (o.stream == "collisions")
         return watch_log<plab_v2_Collisions>(w, "collisions",
                                              [&](const auto& sample, std::uint32_t i) { return w.printer.collision(sample, i); });

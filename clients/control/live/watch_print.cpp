@@ -74,7 +74,7 @@ std::string remark(const wire::ContactInfo& pair, const wire::ContactPoint& poin
 }
 
 /// One line for each point.
-Table contact_table(const wire::Contacts& contacts)
+Table contact_table(const wire::ContactForces& contacts)
 {
     Table table({{"a", Align::Left, Shrink::Middle},
                  {"b", Align::Left, Shrink::Middle},
@@ -134,7 +134,7 @@ void WatchPrinter::metrics(const link::Metrics& metrics)
     has_title_ = true;
 }
 
-void WatchPrinter::contacts(wire::Contacts c)
+void WatchPrinter::contacts(wire::ContactForces c)
 {
     std::erase_if(c.entries, [&](const wire::ContactInfo& e)
                   { return !selection_.takes(e.a) && !selection_.takes(e.b) && !selection_.takes(e.detector); });

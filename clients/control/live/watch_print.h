@@ -24,7 +24,7 @@ public:
 
     void frame(const Frame& frame, const link::Catalogue& catalogue);
     void metrics(const link::Metrics& metrics);
-    void contacts(wire::Contacts contacts);
+    void contacts(wire::ContactForces contacts);
     /// Prints the entry if it is selected; returns whether it was.
     bool collision(const plab_v2_Collisions& sample, std::uint32_t entry);
     bool event(const plab_v2_Events& sample, std::uint32_t entry);

@@ -141,9 +141,9 @@ void add_texts(const T& sample, std::deque<std::string>& to)
 {
     for (std::uint32_t i = 0; i < sample.entries._length; ++i) to.push_back(link::line_of(link::json_of(sample, i)));
 }
-void add_texts(const plab_v2_Contacts& sample, std::deque<std::string>& to)
+void add_texts(const plab_v2_ContactForces& sample, std::deque<std::string>& to)
 {
-    to.assign(1, link::line_of(link::json_of(wire::value_of<wire::Contacts>(sample))));  // the newest
+    to.assign(1, link::line_of(link::json_of(wire::value_of<wire::ContactForces>(sample))));  // the newest
 }
 
 /// How many entries did not arrive before this sample. Of contacts the newest are delivered, and none is missing.
@@ -152,7 +152,7 @@ std::uint64_t missing_before(const T& sample, dds_instance_handle_t writer, link
 {
     return sequence.note(writer, sample.sequence_number, sample.entries._length).count;
 }
-std::uint64_t missing_before(const plab_v2_Contacts&, dds_instance_handle_t, link::Sequence&) { return 0; }
+std::uint64_t missing_before(const plab_v2_ContactForces&, dds_instance_handle_t, link::Sequence&) { return 0; }
 
 template <class T>
 struct EntriesOf final : PlabEntries
@@ -190,7 +190,7 @@ Result<PlabEntries*> open_entries(const PlabSession& session, const std::string&
 {
     if (topic == wire::topic_of<plab_v2_Events>().name) return open_entries<plab_v2_Events>(session);
     if (topic == wire::topic_of<plab_v2_Collisions>().name) return open_entries<plab_v2_Collisions>(session);
-    if (topic == wire::topic_of<plab_v2_Contacts>().name) return open_entries<plab_v2_Contacts>(session);
+    if (topic == wire::topic_of<plab_v2_ContactForces>().name) return open_entries<plab_v2_ContactForces>(session);
     return reason("'" + topic + "' has no entries");
 }
 

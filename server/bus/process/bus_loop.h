@@ -82,7 +82,7 @@ private:
     Stream<plab_v2_Hashes, wire::Hashes> hashes_;
     Stream<plab_v2_Snapshot, wire::Snapshot> snapshots_;
     Stream<plab_v2_Forces, wire::Forces> forces_;
-    Stream<plab_v2_Contacts, wire::Contacts> contacts_;
+    Stream<plab_v2_ContactForces, wire::ContactForces> contacts_;
     CatalogueWriter catalogue_;
     Presence presence_;
     wire::DataReader<plab_v2_Request> requests_;

@@ -91,12 +91,12 @@ TEST_CASE("contacts arrive as they were filled, and are wanted only while there 
     TestBus bus;
     const link::Session session = bus.session();
     CHECK_FALSE(bus->wants(publish::Stream::Contacts));
-    auto reader = reader_of<plab_v2_Contacts>(session);
+    auto reader = reader_of<plab_v2_ContactForces>(session);
     REQUIRE(eventually([&] { return bus->wants(publish::Stream::Contacts); }));
     const wire::ContactPoint point{{1, 2, 3}, {0, 0, 1}, 1e-6, 9.81, {0.5, -0.25, 0}, true};
     for (std::uint64_t i = 1; i <= 2; ++i)
     {
-        wire::Contacts& contacts = bus->begin_contacts();
+        wire::ContactForces& contacts = bus->begin_contacts();
         contacts.run = 3, contacts.sequence_number = i, contacts.step = 36, contacts.time = 2.25, contacts.step_length = 0.125;
         contacts.left_out = 7, contacts.force_left_out = 0.5;
         contacts.entries = {{"contact", "box", "ground", true, {point, point}}};
@@ -107,10 +107,10 @@ TEST_CASE("contacts arrive as they were filled, and are wanted only while there 
         [&]
         {
             (void)reader.take(
-                [&](const plab_v2_Contacts& c, const dds_sample_info_t&)
+                [&](const plab_v2_ContactForces& c, const dds_sample_info_t&)
                 {
                     last = c.sequence_number;
-                    const auto value = wire::value_of<wire::Contacts>(c);
+                    const auto value = wire::value_of<wire::ContactForces>(c);
                     CHECK(value.run == 3);
                     CHECK(value.step == 36);
                     CHECK(value.step_length == 0.125);

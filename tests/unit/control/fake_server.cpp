@@ -56,7 +56,7 @@ struct FakeServer::Ends
     wire::DataWriter<plab_v2_Type> types;
     wire::FrameWriter states;
     wire::DataWriter<plab_v2_Collisions> collisions;
-    wire::DataWriter<plab_v2_Contacts> contacts;
+    wire::DataWriter<plab_v2_ContactForces> contacts;
     wire::DataWriter<plab_v2_Events> events;
     wire::DataWriter<plab_v2_Metrics> metrics;
     wire::DataWriter<plab_v2_Reply> replies;
@@ -223,7 +223,7 @@ void FakeServer::publish_motion()
     plab_v2_ContactPoint points[2]{{{0, 0, 1}, {0, 0, 1}, 1e-6, 3.5, {0.25, 0, 0}, false}, {{1, 0, 1}, {0, 0, 1}, 0, 1.5, {0, 0, 0}, true}};
     plab_v2_ContactInfo pairs[2]{{text("contact"), text("red"), text("green"), false, {2, 2, points, false}},
                                  {text("contact"), text("floor"), text("green"), true, {1, 1, points, false}}};
-    (void)ends_->contacts.write(plab_v2_Contacts{1, frames_, step_, frame.time, kDt, 7, 2.5, {2, 2, pairs, false}});
+    (void)ends_->contacts.write(plab_v2_ContactForces{1, frames_, step_, frame.time, kDt, 7, 2.5, {2, 2, pairs, false}});
 }
 
 void FakeServer::publish_log()

@@ -106,7 +106,7 @@ TEST_CASE("contact forces are arrows on what moves, in a scale that fits its wei
     arrows.use(scene);
     // The weight of 2 kg is as long as the ball is thick.
     CHECK(arrows.scale() * 2 * 9.81 == doctest::Approx(1));
-    wire::Contacts contacts;
+    wire::ContactForces contacts;
     const wire::ContactPoint down{{1, 2, 0}, {0, 0, -1}, 0, 2 * 9.81, {0, 0, 0}, false}, weak{{1, 2, 0}, {0, 0, -1}, 0, 1e-9, {}, false};
     contacts.entries = {{"contact", "moves", "stands", false, {down, weak}}};
     const std::string cdr = arrows.update(contacts, scene, 1'500'000'000);

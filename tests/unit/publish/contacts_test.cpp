@@ -14,7 +14,7 @@ namespace
 {
 
 /// N: sum of the normal forces of a record.
-double load_of(const wire::Contacts& contacts)
+double load_of(const wire::ContactForces& contacts)
 {
     double sum = 0;
     for (const wire::ContactInfo& c : contacts.entries)
@@ -22,7 +22,7 @@ double load_of(const wire::Contacts& contacts)
     return sum;
 }
 
-std::size_t points_of(const wire::Contacts& contacts)
+std::size_t points_of(const wire::ContactForces& contacts)
 {
     std::size_t sum = 0;
     for (const wire::ContactInfo& c : contacts.entries) sum += c.points.size();
@@ -96,7 +96,7 @@ TEST_CASE("an island that sleeps has the forces of its last step; awake again, t
     REQUIRE_MESSAGE(s.loaded(), s.error());
     for (int i = 0; i < 600 && !is_asleep(s, "a0"); ++i) s.step();
     REQUIRE(is_asleep(s, "a0"));
-    const auto check = [&](const wire::Contacts& c, bool asleep)
+    const auto check = [&](const wire::ContactForces& c, bool asleep)
     {
         double on_ground = 0;
         std::size_t pairs = 0;
@@ -156,7 +156,7 @@ TEST_CASE("more points than a sample holds: those with the largest forces are se
     s.step(60);
     Watched w(s, kAlways, {Stream::Contacts});
     w.step();
-    const wire::Contacts& c = w.watcher.contacts;
+    const wire::ContactForces& c = w.watcher.contacts;
     CHECK(points_of(c) == publish::kMostContactPoints);
     CHECK(c.left_out == 4 * kBoxes - publish::kMostContactPoints);
     const double weight = kG * kBoxes * (kBoxes + 1) / 2;
@@ -176,7 +176,7 @@ TEST_CASE("warm steps that note contacts, and their records, allocate nothing")
         Scene s(resting_scene(bodies, manager));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         publish::ContactRecords records;
-        wire::Contacts out;
+        wire::ContactForces out;
         s.simulation().log_contacts(true);
         const auto steps = [&](int n)
         {

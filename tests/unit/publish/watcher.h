@@ -17,7 +17,7 @@ public:
     std::uint64_t joins(publish::Stream) const override { return joined; }
     wire::Frame& begin_frame() override { return frame; }
     void end_frame() override { ++frames; }
-    wire::Contacts& begin_contacts() override { return contacts; }
+    wire::ContactForces& begin_contacts() override { return contacts; }
     void end_contacts() override { ++contact_samples; }
     void collisions(wire::Collisions&& batch) override { collision_batches.push_back(std::move(batch)); }
     void events(wire::Events&& batch) override { event_batches.push_back(std::move(batch)); }
@@ -46,7 +46,7 @@ public:
 
     wire::Frame frame;  ///< the last one
     std::size_t frames = 0;
-    wire::Contacts contacts;  ///< the last ones
+    wire::ContactForces contacts;  ///< the last ones
     std::size_t contact_samples = 0;
     std::vector<wire::Collisions> collision_batches;
     std::vector<wire::Events> event_batches;

@@ -10,9 +10,9 @@ using namespace plab::web;
 namespace
 {
 
-wire::Contacts many(std::size_t pairs)
+wire::ContactForces many(std::size_t pairs)
 {
-    wire::Contacts out;
+    wire::ContactForces out;
     out.run = 2, out.time = 1.5, out.left_out = 3;
     for (std::size_t i = 0; i < pairs; ++i)
     {

@@ -146,7 +146,7 @@ Result<std::unique_ptr<Track>> make_track(const wire::Topic& topic, const wire::
 {
     return make_one_of<plab_v2_Scene, plab_v2_SceneObject, plab_v2_Shape, plab_v2_Interaction, plab_v2_Type, plab_v2_Frame,
                        plab_v2_Collisions, plab_v2_Events, plab_v2_Metrics, plab_v2_Image, plab_v2_Journal, plab_v2_Hashes,
-                       plab_v2_Snapshot, plab_v2_Contacts>(topic, {participant, publisher, moved_only});
+                       plab_v2_Snapshot, plab_v2_ContactForces>(topic, {participant, publisher, moved_only});
 }
 
 bool is_played(const wire::Topic& topic)

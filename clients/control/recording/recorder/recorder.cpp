@@ -87,7 +87,7 @@ Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::str
     const auto is_by_itself = [](const wire::Topic& t)
     {
         return !is_topic<plab_v2_Image>(t) && !is_topic<plab_v2_ViewerSample>(t) && !is_topic<plab_v2_UserSample>(t) &&
-               !is_topic<plab_v2_Forces>(t) && !is_topic<plab_v2_Contacts>(t);
+               !is_topic<plab_v2_Forces>(t) && !is_topic<plab_v2_ContactForces>(t);
     };
     std::vector<const wire::Topic*> out;
     for (const wire::Topic& t : wire::topics())

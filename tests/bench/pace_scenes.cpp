@@ -1,0 +1,139 @@
+#include "bench/pace_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/random_poses.h"
+#include "support/text.h"
+
+namespace plab::bench
+{
+
+using test::random_rotation;
+using test::text;
+
+std::string component(const std::string& id, const std::string& type, const std::string& more)
+{
+    return "<component id=\"" + id + "\" type=\"" + type + "\" " + more + "/>\n";
+}
+
+std::string scene(const std::string& dt, const std::string& parts)
+{
+    return "<plab version=\"1\"><scene dt=\"" + dt + "\"/>\n" + parts + "</plab>";
+}
+
+std::string numbered(const char* name, int i) { return name + std::to_string(i); }
+
+std::string body(int i, const Vec3& at, const std::string& more)
+{
+    return component(numbered("b", i), "State/RigidBody", more + " position=\"" + text(at) + "\"");
+}
+
+const std::string kGravity = component("gravity", "Field/Gravity", "between=\"*\"");
+const std::string kGround = component("plane", "Shape/Plane", "") + component("ground", "State/Static", "shape=\"plane\"");
+
+std::string heap_contact(double friction)
+{
+    return component("manager", "Manager/SoftStep", "substeps=\"4\"") +
+           component(
+               "contact", "CDetection/ODE",
+               "between=\"*\" resolution=\"Resolution/None\" response=\"Response/Rows\" response.manager=\"manager\" response.friction=\"" +
+                   text(friction) + "\"");
+}
+
+std::string free_bodies(int n)
+{
+    std::string out = kGravity + component("s", "Shape/Box", "half_extents=\"0.2 0.3 0.4\"");
+    for (int i = 0; i < n; ++i) out += body(i, {2.0 * (i % 100), 2.0 * (i / 100), 0}, "shape=\"s\" mass=\"1\" angular_velocity=\"1 2 3\"");
+    return scene("1/60", out);
+}
+
+std::string wall(int columns, int rows)
+{
+    std::string out = kGravity + kGround + component("s", "Shape/Box", "half_extents=\"0.5 0.25 0.25\"");
+    for (int k = 0; k < rows; ++k)
+        for (int i = 0; i < columns; ++i) out += body(k * columns + i, {i + (k % 2 == 1 ? 0.5 : 0.0), 0, 0.25 + 0.5 * k});
+    return scene("1/60", out + heap_contact(0.8));
+}
+
+std::string pile(int n)
+{
+    std::string out = kGravity + kGround + component("s", "Shape/Box", "half_extents=\"0.25 0.25 0.25\"");
+    std::uint64_t random = 2;
+    const auto jitter = [&] { return 0.02 * (2 * next_uniform(random) - 1); };
+    const int side = std::max(1, static_cast<int>(std::lround(std::sqrt(n / 10.0))));
+    for (int i = 0; i < n; ++i)
+    {
+        const int column = i / 10;
+        const double x = jitter(), y = jitter();
+        out += body(i, {0.55 * (column % side) + x, 0.55 * (column / side) + y, 0.27 + 0.52 * (i % 10)});
+    }
+    return scene("1/60", out + heap_contact(0.8));
+}
+
+std::string balls(int n)
+{
+    std::string out = kGravity + kGround + component("s", "Shape/Sphere", "radius=\"0.1\"");
+    std::uint64_t random = 3;
+    const int side = std::max(1, static_cast<int>(std::lround(std::sqrt(n / 16.0))));
+    const auto jitter = [&] { return 0.004 * (2 * next_uniform(random) - 1); };
+    const std::string w = text(0.108 * side);
+    const char* const sides[4][2] = {
+        {"-1 0 0", "axis 0 1 0 90 deg"}, {"1 0 0", "axis 0 1 0 -90 deg"}, {"0 -1 0", "axis 1 0 0 -90 deg"}, {"0 1 0", "axis 1 0 0 90 deg"}};
+    for (int i = 0; i < 4; ++i)
+    {
+        std::string at = sides[i][0];
+        at.replace(at.find('1'), 1, w);
+        out +=
+            component(numbered("side", i), "State/Static", "shape=\"plane\" position=\"" + at + "\" orientation=\"" + sides[i][1] + "\"");
+    }
+    for (int i = 0; i < n; ++i)
+    {
+        const int column = i / 16;
+        const double x = jitter(), y = jitter(), z = jitter();
+        out += body(i, {0.211 * (column % side - 0.5 * (side - 1)) + x, 0.211 * (column / side - 0.5 * (side - 1)) + y,
+                        0.12 + 0.211 * (i % 16) + z});
+    }
+    return scene("1/60", out + heap_contact(0.8));
+}
+
+std::string newcomers_heap(int n)
+{
+    std::string out =
+        kGravity + kGround + component("s", "Shape/Sphere", "radius=\"0.1\"") + component("q", "Shape/Box", "half_extents=\"0.1 0.1 0.1\"");
+    std::uint64_t random = 4;
+    const auto jitter = [&] { return 0.03 * (2 * next_uniform(random) - 1); };
+    for (int i = 0; i < n; ++i)
+    {
+        const double x = jitter(), y = jitter(), z = jitter();
+        out += body(i, {0.3 * (i % 5) + x, 0.3 * (i / 5 % 5) + y, 0.3 + 0.3 * (i / 25) + z},
+                    i % 2 == 0 ? "shape=\"s\" mass=\"1\"" : "shape=\"q\" mass=\"1\"");
+    }
+    return scene("1/240", out + component("contact", "CDetection/ODE", "between=\"*\" response.friction=\"0.5\""));
+}
+
+std::string tumbled(const char* type, const std::string& parameters, int n)
+{
+    std::string out = kGravity + kGround + component("s", type, parameters);
+    std::uint64_t random = 6;
+    const int side = std::max(3, static_cast<int>(std::lround(std::sqrt(n / 10.0))));
+    const auto jitter = [&] { return 0.02 * (2 * next_uniform(random) - 1); };
+    for (int i = 0; i < n; ++i)
+    {
+        const double x = jitter(), y = jitter();
+        const Quat q = random_rotation(random);
+        out += body(i, {0.32 * (i % side) + x, 0.32 * (i / side % side) + y, 0.3 + 0.32 * (i / (side * side))},
+                    "shape=\"s\" mass=\"1\" orientation=\"" + text(q) + "\"");
+    }
+    return scene("1/60", out + heap_contact(0.5));
+}
+
+std::string twenty_corners()
+{
+    std::string out;
+    std::uint64_t random = 7;
+    for (int i = 0; i < 20; ++i) out += (i > 0 ? " " : "") + text(rotate(random_rotation(random), {0.13, 0, 0}));
+    return out;
+}
+
+}  // namespace plab::bench

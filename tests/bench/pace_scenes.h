@@ -1,0 +1,35 @@
+/// Scenes of the benches as blueprint text: pieces, and heaps of many bodies.
+#pragma once
+
+#include <string>
+
+#include "plab/vector.h"
+
+namespace plab::bench
+{
+
+std::string component(const std::string& id, const std::string& type, const std::string& more);
+/// `dt`: s, as a blueprint has it.
+std::string scene(const std::string& dt, const std::string& parts);
+std::string numbered(const char* name, int i);
+/// A rigid body, `at` in m.
+std::string body(int i, const Vec3& at, const std::string& more = "shape=\"s\" mass=\"1\"");
+/// Gravity for all; a plane and a body for it, "ground".
+extern const std::string kGravity, kGround;
+/// SoftStep with 4 sub-steps and no location of impacts, as an engine for games has it.
+std::string heap_contact(double friction);
+
+std::string free_bodies(int n);
+std::string wall(int columns, int rows);
+/// Columns of ten cubes, nearly in touch.
+std::string pile(int n);
+/// Balls in a box.
+std::string balls(int n);
+/// Balls and boxes that fall; no algorithm is named.
+std::string newcomers_heap(int n);
+/// Solids of one shape that fall in random orientations into one heap, 0.2 m large. `type`, `parameters`: of the shape.
+std::string tumbled(const char* type, const std::string& parameters, int n);
+/// Points on a ball of 0.26 m, for a Shape/ConvexHull.
+std::string twenty_corners();
+
+}  // namespace plab::bench
