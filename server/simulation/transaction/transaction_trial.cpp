@@ -108,7 +108,7 @@ TrialStep Transaction::next_step() const
 {
     const double start = run_->clock.time_at(run_->clock.tick);
     const bool looked = looked_ && run_->world().revisions().keeps_bodies_since(revisions_before_);
-    return {run_->clock.tick, start, run_->clock.time_at(run_->clock.tick + 1) - start, 1, looked};
+    return {.tick = run_->clock.tick, .start = start, .h = run_->clock.time_at(run_->clock.tick + 1) - start, .looked = looked};
 }
 
 double Transaction::budget_ns() const
