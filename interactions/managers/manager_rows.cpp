@@ -295,9 +295,9 @@ void solve_all_softly(const StepContext& context, Row row, SoftStepRows& rows, B
 void AutomaticRows::describe(Schema& s)
 {
     s.param(max_points, "max_points", unit::one,
-            "an island of at most so many contact points and rows is solved exactly; one with joints up to 16 times as many points, not "
-            "counting "
-            "the rows of joints, as sweeps would let them stretch")
+            "an island of at most so many contact points and rows is solved exactly; up to 16 times as many if rows of joints are twice as "
+            "many "
+            "as contact points, as sweeps would let them stretch")
         .or_else(80)
         .not_negative()
         .at_most(20000);
@@ -357,8 +357,9 @@ AutomaticRows::Choice choose_method(const Island& island, const Bodies& bodies, 
     const auto joints = static_cast<std::size_t>(std::ranges::count(island.rows, RowKind::Equality, &ConstraintRow::kind));
     const std::size_t points = island.contacts.size() + island.rows.size() - joints;
     const double ratio = mass_ratio(island, bodies);
-    // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time.
-    const bool yields = ratio >= heavy || joints > 0;
+    // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time. Where
+    // contact points prevail, as in a heap of jointed bodies, each of them may change its state in each iteration, which costs far more.
+    const bool yields = ratio >= heavy || 2 * points <= joints;
     return {points + joints <= most || (yields && points <= kHeavyPoints * most), points, joints, ratio};
 }
 

@@ -52,7 +52,7 @@ std::vector<Apart> departures(const FirstStep& one, const FirstStep& other)
 double continued(double before, double now, double grown_in, double times)
 {
     if (!(now > 0) || times <= 1) return now;
-    const double power = before > 0 ? std::clamp(std::log(now / before) / std::log(grown_in), 1.0, 2.0) : 2.0;
+    const double power = before > 0 && grown_in > 1 ? std::clamp(std::log(now / before) / std::log(grown_in), 1.0, 2.0) : 2.0;
     return now * std::pow(times, power);
 }
 

@@ -25,15 +25,14 @@ void ContactForces::report(std::vector<FoundContact>& found)
 /// Notes what the springs that push at the end of the step have given in it: each knows its impulse since it began.
 void ContactForces::log_contacts(const std::vector<FoundContact>& found)
 {
-    const std::vector<ForcePair>& at_start = contacts_.cache().force_pairs();
-    auto near = at_start.begin();  // both lists are in the order of pairs
+    const std::vector<ForcePair>& at_start = contacts_.cache().force_pairs();  // in the order of pairs
+    const auto key = [&](std::uint32_t detector, Ref a, Ref b) { return PairKey(step_.world, detector, a, b); };
     const auto before = [&](const FoundContact& f, std::uint64_t id)
     {
-        const std::uint32_t detector = contacts_.detectors()[f.detector].component;
-        const auto is_it = [&](const ForcePair& p) { return p.detector == detector && p.a == f.contact.a && p.b == f.contact.b; };
-        const auto pair = std::find_if(near, at_start.end(), is_it);
-        if (pair == at_start.end()) return Vec3{};
-        near = pair;
+        const PairKey wanted = key(contacts_.detectors()[f.detector].component, f.contact.a, f.contact.b);
+        const auto pair = std::lower_bound(at_start.begin(), at_start.end(), wanted,
+                                           [&](const ForcePair& p, const PairKey& k) { return key(p.detector, p.a, p.b) < k; });
+        if (pair == at_start.end() || key(pair->detector, pair->a, pair->b) != wanted) return Vec3{};
         for (const ForceContact& k : pair->all())
             if (k.id == id) return k.impulse;
         return Vec3{};
