@@ -239,6 +239,7 @@ void scenes_table()
     row("1000 tumbled cylinders", "1/60", 1.0 / 60, tumbled("Shape/Cylinder", "radius=\"0.1\" height=\"0.2\"", 1000), 120);
     row("1000 tumbled hulls of 20 corners", "1/60", 1.0 / 60, tumbled("Shape/ConvexHull", "points=\"" + twenty_corners() + "\"", 1000),
         120);
+    row("40 chains of five boxes", "1/240", 1.0 / 240, chains_in_a_heap(40), 480);
     row("200 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(200), 480);
     row("1000 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(1000), 480);
 }

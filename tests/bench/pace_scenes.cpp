@@ -128,6 +128,28 @@ std::string tumbled(const char* type, const std::string& parameters, int n)
     return scene("1/60", out + heap_contact(0.5));
 }
 
+std::string chains_in_a_heap(int n)
+{
+    constexpr int kLinks = 5;
+    std::string out = kGravity + kGround + component("s", "Shape/Box", "half_extents=\"0.1 0.05 0.05\"");
+    std::uint64_t random = 8;
+    for (int c = 0; c < n; ++c)
+    {
+        const Vec3 first{0.5 * (c % 3), 0.5 * (c / 3 % 3), 0.3 + 0.25 * (c / 9)};
+        for (int k = 0; k < kLinks; ++k)
+        {
+            const int b = kLinks * c + k;
+            out += body(b, first + Vec3{0.21 * k, 0.02 * next_uniform(random), 0});
+            if (k > 0)
+                out += component(numbered("j", b), "Constraint/Ball",
+                                 "a=\"" + numbered("b", b - 1) + "\" b=\"" + numbered("b", b) + "\" anchor=\"" +
+                                     text(first + Vec3{0.21 * k - 0.105, 0, 0}) + "\"");
+        }
+    }
+    return scene("1/240",
+                 out + component("contact", "CDetection/ODE", "between=\"*\" resolution=\"Resolution/None\" response.friction=\"0.5\""));
+}
+
 std::string twenty_corners()
 {
     std::string out;

@@ -29,6 +29,8 @@ std::string balls(int n);
 std::string newcomers_heap(int n);
 /// Solids of one shape that fall in random orientations into one heap, 0.2 m large. `type`, `parameters`: of the shape.
 std::string tumbled(const char* type, const std::string& parameters, int n);
+/// Chains of five boxes on ball joints that fall into one heap; no algorithm is named but Resolution/None.
+std::string chains_in_a_heap(int n);
 /// Points on a ball of 0.26 m, for a Shape/ConvexHull.
 std::string twenty_corners();
 
