@@ -1,7 +1,6 @@
 #include "foxglove/contact_arrows.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "foxglove/cdr_writer.h"
 #include "foxglove/channels.h"
@@ -39,9 +38,7 @@ Quat rotation_of_x(const Vec3& to)
 {
     const Vec3 axis = cross(Vec3{1, 0, 0}, to);
     if (1 + to.x < 1e-12) return {0, 0, 1, 0};
-    const Quat q{1 + to.x, axis.x, axis.y, axis.z};
-    const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-    return {q.w / norm, q.x / norm, q.y / norm, q.z / norm};
+    return normalized(Quat{1 + to.x, axis.x, axis.y, axis.z});
 }
 
 void put_arrow(CdrWriter& out, const Vec3& at, const Vec3& direction, double size, double unit, const Vec3& color)

@@ -49,7 +49,7 @@ ImpactResult Collision::run()
     else
         state_.u.x = state_.u.y = 0;
     if (!done_) stick_or_restart();
-    return {state_.impulse, state_.u};
+    return {state_.impulse, state_.u, state_.series};
 }
 
 /// Normal impulse until u_n = 0, or until the rest of the work is returned, with du_n/dJ_n = rate.
@@ -148,7 +148,7 @@ ImpactResult solve_along_slip(const Mat3& K, const Vec3& u, double friction, dou
     const double c = slip > 0 ? u.x / slip : 1, s = slip > 0 ? u.y / slip : 0;
     const Mat3 R{{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
     ImpactResult r = Collision(R * K * transposed(R), {slip, 0, u.z}, friction, restitution).run();
-    return {transposed_times(R, r.impulse), transposed_times(R, r.velocity)};
+    return {transposed_times(R, r.impulse), transposed_times(R, r.velocity), r.series};
 }
 }  // namespace
 

@@ -24,8 +24,9 @@ namespace plab::response
 
 struct ImpactResult
 {
-    Vec3 impulse;   ///< on b, N s
-    Vec3 velocity;  ///< u afterwards, m/s
+    Vec3 impulse;    ///< on b, N s
+    Vec3 velocity;   ///< u afterwards, m/s
+    int series = 0;  ///< power series that the path of the slip has taken (slip_path.h)
 };
 
 /// Requires u_n < 0, friction >= 0 and restitution in [0, 1].

@@ -188,6 +188,7 @@ SlipEnd follow_slip(const SlipLaw& law, bool compressing, double goal, ImpactSta
     for (int i = 0; i < kMaxSteps; ++i)
     {
         const Expansion series(law, y);
+        ++state.series;
         const double h = series.step(unit);
         if (before_end(compressing, goal, series, h) >= 0)
         {

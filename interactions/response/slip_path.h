@@ -18,6 +18,7 @@ struct ImpactState
     Vec3 u;           ///< m/s, in contact coordinates
     Vec3 impulse;     ///< N s on b
     double work = 0;  ///< J, of the normal impulse in this phase
+    int series = 0;   ///< power series computed so far: nearly all of the work
 };
 
 /// Rates per unit of normal impulse while slipping in the direction (c, s).

@@ -68,6 +68,30 @@ TEST_CASE("a heap is not located: work, overlap and energy stay bounded in each 
     }
 }
 
+TEST_CASE("what joints hold together counts as an island as soon as a part of it touches")
+{
+    // A chain of links hangs above the ground and is dropped: the first link that touches decides for all of them.
+    for (const int links : {8, 9})
+    {
+        CAPTURE(links);
+        std::string chain;
+        const auto id = [](int i) { return "c" + std::to_string(i); };
+        for (int i = 0; i < links; ++i)
+        {
+            chain += box(id(i), {0.1, 0.05, 0.05}, at({0.21 * i, 0, 0.06}));
+            if (i > 0)
+                chain += "<component id=\"j" + std::to_string(i) + "\" type=\"Constraint/Ball\" a=\"" + id(i - 1) + "\" b=\"" + id(i) +
+                         "\" anchor=\"" + text(Vec3{0.21 * i - 0.105, 0, 0.06}) + "\"/>";
+        }
+        Scene s(chain + std::string(kGround) + gravity("*") + kContact);
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.step(2);
+        CHECK(resolved(s) == "LocalRoot");  // nothing touches yet
+        s.run(0.1);
+        CHECK(resolved(s) == (links > 8 ? "None" : "LocalRoot"));
+    }
+}
+
 TEST_CASE("a fast body among many does not pass through a thin wall")
 {
     std::string still;

@@ -38,12 +38,23 @@ ImpactSearch search_of(const Detector& d)
 
 }  // namespace
 
-/// Fills in the largest islands of persistent contacts, over all detections: a body may rest on what another detection holds.
+/// Fills in the largest islands of persistent contacts and of joints of bodies that touch something, over all detections: a body may rest on
+/// what another detection holds, and an impact on one link of a chain is an impact on all of them.
 void ContactBook::measure_islands(std::span<const PairState> pairs, ContactLoad& load)
 {
     const Bodies& bodies = step_.world.host().bodies;
     load_islands_.reset(bodies.size());
     load_counts_.assign(bodies.size(), {});
+    // Before contacts join anything, so that the first and the last member tell whether a group has been joined already.
+    const auto join_members = [&](Ref body)
+    {
+        const std::uint32_t g = bodies.dynamic(body.index) ? step_.groups.of(body) : kNoIndex;
+        if (g == kNoIndex || step_.groups.all[g].rows.empty()) return;
+        const std::vector<std::uint32_t>& members = step_.groups.all[g].bodies;
+        if (load_islands_.find(members.back()) == load_islands_.find(members.front())) return;
+        for (const std::uint32_t b : members) load_islands_.join(members.front(), b);
+    };
+    for (const PairState& p : pairs) join_members(p.a), join_members(p.b);
     // Points are counted at one body of each pair first, so that the pairs are gone through once.
     for (const PairState& p : pairs)
     {

@@ -18,6 +18,8 @@ constexpr int kMostRowSearches = 50;
 /// kOver: compression is over below this fraction of the first closing speed. kSlides: a contact slides if its tangential speed is above
 /// this fraction of the body's speed.
 constexpr double kOver = 1e-12, kSlides = 1e-9;
+/// Cost of a projection in units of the work budget, for each body of the group.
+constexpr double kProjection = 2;
 
 }  // namespace
 
@@ -82,7 +84,10 @@ void EventLocator::note_resting_contacts()
 void EventLocator::join(double time)
 {
     for (const std::uint32_t g : jointed_.groups)
+    {
         motion_.system_for(std::span(&g, 1), {}).begin(time, step_.frame.step, step_.book(), nullptr);
+        budget_.spend(kProjection * static_cast<double>(step_.groups.all[g].bodies.size()));
+    }
 }
 
 double EventLocator::closing() const
