@@ -35,7 +35,7 @@ void AutomaticRows::describe(Schema& s)
         .positive();
     describe_acceleration(s, acceleration);
     s.param(base_work, "base_work", unit::one, "distance queries that a step may always spend on locating impacts")
-        .or_else(4000)
+        .or_else(12000)
         .not_negative();
     s.param(max_bodies, "max_bodies", unit::one, "impacts are located while no island of touching bodies has more bodies than this")
         .or_else(8)

@@ -38,8 +38,8 @@ ImpactSearch search_of(const Detector& d)
 
 }  // namespace
 
-/// Fills in the largest islands of persistent contacts and of joints of bodies that touch something, over all detections: a body may rest on
-/// what another detection holds, and an impact on one link of a chain is an impact on all of them.
+/// Fills in the largest islands of persistent contacts and of joints of bodies that touch something, over all detections: a body may rest
+/// on what another detection holds, and an impact on one link of a chain is an impact on all of them.
 void ContactBook::measure_islands(std::span<const PairState> pairs, ContactLoad& load)
 {
     const Bodies& bodies = step_.world.host().bodies;
