@@ -14,7 +14,7 @@ constexpr double kSameSpeed = 1e-9;
 /// Fraction of the fastest approach that may remain where bodies are trapped between others.
 constexpr double kStill = 1e-6;
 /// What a power series of a slip path and a contact of a cone solver cost, in visits of a sweep, by counted instructions.
-constexpr std::int64_t kSeriesVisits = 20, kConeVisits = 6;
+constexpr std::int64_t kSeriesVisits = 40, kConeVisits = 5;
 
 /// Answers one pair of bodies after the other, the one that closes fastest first, until none closes (Mirtich's sequential collisions).
 class ImpactSequence
