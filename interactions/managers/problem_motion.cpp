@@ -54,6 +54,21 @@ void Problem::turn_with(const Bodies& bodies)
         if (!is_isotropic_at(p.a) || !is_isotropic_at(p.b)) set_mobility(p);
 }
 
+void Problem::turn_lines()
+{
+    for (Line& line : lines)
+        for (std::uint32_t i = 0; i < line.count; ++i)
+        {
+            const Anchor& anchor = anchors[line.mover[i]];
+            const Facet facet = anchor.shaft ? Facet::Shaft : Facet::Body;
+            const ConstraintRow& row = rows_[line.row];
+            for (std::uint32_t k = 0; k < row.count; ++k)
+                if (row.blocks[k].participant.facet == facet && row.blocks[k].participant.index == anchor.host)
+                    line.linear[i] = row.blocks[k].linear, line.angular[i] = row.blocks[k].angular;
+        }
+    for (Line& line : lines) set_mobility(line);
+}
+
 /// A mover has turned for h (s).
 void Problem::note_turn(std::size_t i, double h)
 {

@@ -184,7 +184,7 @@ void SoftIsland<W>::kick()
 {
     if (bounces_) note_kicks(true);
     island_.motion->kick(h_);
-    if (!island_.rows.empty()) island_.motion->refresh_rows();
+    if (!island_.rows.empty()) island_.motion->refresh_rows(), problem_.turn_lines();
     read_given();
     meet();
     set_line_targets(problem_, island_, h_);

@@ -232,6 +232,48 @@ bool turns_only(const ConstraintRow& row)
     return std::all_of(row.blocks.begin(), row.blocks.begin() + row.count, [](const RowBlock& b) { return b.linear == Vec3{}; });
 }
 
+namespace
+{
+
+/// Errors of joints are linear in the displacements only for small turns. What remains after a correction is corrected again while it is
+/// more than this fraction of the island's size (or rad), or a chain of light links under a heavy load would come apart.
+constexpr double kJointsApart = 0x1p-11;
+constexpr int kMostCorrections = 6;
+
+/// Sets the displacements that would close the joints and stops; returns the largest of them.
+double set_displacements_of_lines(Problem& problem, const Island& island, double length)
+{
+    double worst = 0;
+    for (Line& line : problem.lines)
+    {
+        const ConstraintRow& row = island.rows[line.row];
+        line.target = -row.error;
+        const bool held = row.kind == RowKind::Equality;
+        line.least = held ? -HUGE_VAL : 0.0, line.most = row.kind == RowKind::Rate || line.count == 0 ? 0.0 : HUGE_VAL;
+        if (line.most > 0) worst = std::max(worst, (held ? std::fabs(row.error) : -row.error) * (turns_only(row) ? length : 1));
+    }
+    return worst;
+}
+
+double displacement_of(const Contact& c, const StepChoices& choices)
+{
+    return (c.depth - choices.slop) * (c.depth > choices.slop ? choices.correction_share : 1.0);
+}
+
+Verdict displace_by(Problem& problem, double tolerance, Bodies& bodies, Shafts& shafts, Method& method)
+{
+    problem.turn_with(bodies);
+    problem.rest();
+    problem.clear_impulses();
+    for (Point& p : problem.points) p.friction = 0;
+    problem.apply_impulses();
+    const Verdict out = method.find_displacements(problem, tolerance);
+    displace(problem, bodies, shafts);
+    return out;
+}
+
+}  // namespace
+
 Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
 {
     Problem& problem = memory.problem;
@@ -247,25 +289,24 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
         // it would lift the body.
         const bool meets_next = i < memory.passing.size() && memory.passing[i] * island.h < -kSlow * island.size;
         const bool leaves = c.depth > 0 && (meets_next || problem.relative_velocity(p).z * kSoon * island.h > c.depth);
-        p.least = leaves ? kFar : (c.depth - choices.slop) * (c.depth > choices.slop ? choices.correction_share : 1.0);
+        p.least = leaves ? kFar : displacement_of(c, choices);
         worst = std::max(worst, leaves || p.K(2, 2) == 0 ? 0.0 : p.least);
     }
-    for (Line& line : problem.lines)
-    {
-        const ConstraintRow& row = island.rows[line.row];
-        line.target = -row.error;
-        const bool held = row.kind == RowKind::Equality;
-        line.least = held ? -HUGE_VAL : 0.0, line.most = row.kind == RowKind::Rate || line.count == 0 ? 0.0 : HUGE_VAL;
-        if (line.most > 0) worst = std::max(worst, (held ? std::fabs(row.error) : -row.error) * (turns_only(row) ? length : 1));
-    }
+    const double apart = set_displacements_of_lines(problem, island, length);
+    worst = std::max(worst, apart);
     if (worst <= kPositionTolerance * length) return {};
-    problem.turn_with(bodies);
-    problem.rest();
-    problem.clear_impulses();
-    for (Point& p : problem.points) p.friction = 0;
-    problem.apply_impulses();
-    const Verdict out = method.find_displacements(problem, kPositionTolerance * length);
-    displace(problem, bodies, shafts);
+    if (apart > kJointsApart * length) problem.turn_lines();
+    Verdict out = displace_by(problem, kPositionTolerance * length, bodies, shafts, method);
+    for (int n = 1; n < kMostCorrections && apart > kJointsApart * length; ++n)
+    {
+        island.motion->refresh_rows();
+        if (!(set_displacements_of_lines(problem, island, length) > kJointsApart * length)) break;
+        island.motion->refresh_depths();
+        for (std::size_t i = 0; i < problem.points.size(); ++i)
+            if (Point& p = problem.points[i]; p.least > kFar) p.least = displacement_of(island.contacts[i], choices);
+        problem.turn_lines();
+        out.join(displace_by(problem, kPositionTolerance * length, bodies, shafts, method));
+    }
     return out;
 }
 

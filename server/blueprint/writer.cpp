@@ -142,11 +142,14 @@ private:
 
     void reference(const std::string& id, std::size_t depth) { out_ += indent(depth) + "<compref>" + escape_text(id) + "</compref>\n"; }
 
+    static bool means_all(const RoleSpec& r) { return r.everyone && r.patterns.empty(); }
+    static const std::vector<std::string>& written_ids(const RoleSpec& r) { return r.everyone ? r.patterns : r.members; }
+
     static std::string joined(const RoleSpec& r)
     {
-        std::string ids = r.everyone ? "*" : "";
-        if (!r.everyone)
-            for (const std::string& id : r.members) ids += (ids.empty() ? "" : " ") + id;
+        if (means_all(r)) return "*";
+        std::string ids;
+        for (const std::string& id : written_ids(r)) ids += (ids.empty() ? "" : " ") + id;
         return ids;
     }
 
@@ -154,8 +157,9 @@ private:
     /// list.
     bool is_list(const RoleSpec& r) const
     {
-        if (r.everyone) return true;
-        return std::all_of(r.members.begin(), r.members.end(), fits_in_list) && (r.members.size() < 2 || !ids_.contains(joined(r)));
+        if (means_all(r)) return true;
+        const std::vector<std::string>& ids = written_ids(r);
+        return std::all_of(ids.begin(), ids.end(), fits_in_list) && (ids.size() < 2 || !ids_.contains(joined(r)));
     }
 
     void role_attribute(const RoleSpec& r)
@@ -167,7 +171,7 @@ private:
     {
         if (is_list(r)) return;
         out_ += indent(depth) + "<param" + attribute("name", r.name) + ">\n";
-        for (const std::string& id : r.members) reference(id, depth + 1);
+        for (const std::string& id : written_ids(r)) reference(id, depth + 1);
         out_ += indent(depth) + "</param>\n";
     }
 

@@ -62,6 +62,7 @@ ComponentSpec make_spec(Compilation& c, std::size_t i)
         RoleSpec& role = spec.roles.emplace_back();
         role.name = d.type->schema.roles()[k].name;
         role.everyone = d.roles[k].everyone;
+        role.patterns = d.roles[k].patterns;
         role.where = d.roles[k].where;
         for (const std::size_t member : d.roles[k].members) role.members.push_back(c.draft(member).id);
     }

@@ -98,12 +98,20 @@ void give_embedded(Compilation& c, std::size_t i, const ValueNode& node)
     c.draft(i).fields.push_back({k, std::move(value), node.where});
 }
 
+/// Takes a word as the id that it is; otherwise as a pattern of ids, if it looks like one. `*` stands for all only where it is alone.
+void add_reference(const Compilation& c, GivenRole& given, std::string id, const SourceLocation& where)
+{
+    if (!is_pattern(id) || id == "*" || c.directory.find(id) != kNone) return (void)given.references.push_back({std::move(id), where});
+    given.everyone = true;
+    given.patterns.push_back(std::move(id));
+}
+
 /// Ids given by <compref> and <cmdref>; false after an error was reported.
 bool read_references(Compilation& c, std::size_t i, const TextNode& text, const Cell* cell, GivenRole& given)
 {
     if (!trimmed(text.text).empty())
         return c.complain(i, text.where, "give either ids or references, not both: " + quoted(trimmed(text.text))), false;
-    for (const std::string& id : text.component_references) given.references.push_back({component_id(cell, id), text.where});
+    for (const std::string& id : text.component_references) add_reference(c, given, component_id(cell, id), text.where);
     for (const std::string& written : text.command_references)
     {
         const std::string id = command_id(cell, written);
@@ -127,8 +135,8 @@ void read_ids(Compilation& c, const TextNode& text, const Cell* cell, GivenRole&
         return;
     }
     const std::vector<std::string_view> words = split_words(whole);
-    given.may_be_type = words.size() == 1;
-    for (const std::string_view word : words) given.references.push_back({component_id(cell, std::string(word)), text.where});
+    given.may_be_type = words.size() == 1 && !is_pattern(whole);
+    for (const std::string_view word : words) add_reference(c, given, component_id(cell, std::string(word)), text.where);
 }
 
 void give_role(Compilation& c, std::size_t i, std::size_t role_index, const TextNode& text, const Cell* cell)
@@ -178,11 +186,25 @@ std::size_t only_fitting_role(Compilation& c, std::size_t i, const TextNode& tex
     return found;
 }
 
+/// What a user may have meant whose field is one of a part that is created where none is given: "response.friction" for "friction".
+std::string did_you_mean_of_part(Compilation& c, const Schema& schema, const std::string& name)
+{
+    for (const Role& role : schema.roles())
+    {
+        if (role.default_type.empty() || !role.one) continue;
+        const Result<const ComponentType*>& type = c.require(role.default_type);
+        if (type.ok() && index_of_field((*type)->schema, name) != kNone) return ", did you mean " + quoted(role.name + "." + name) + "?";
+    }
+    return {};
+}
+
 void unknown_name(Compilation& c, std::size_t i, const std::string& name, const SourceLocation& where)
 {
-    const std::vector<std::string> known = settable_names(c.draft(i).type->schema);
+    const Schema& schema = c.draft(i).type->schema;
+    const std::vector<std::string> known = settable_names(schema);
+    const std::string of_part = did_you_mean_of_part(c, schema, name);
     c.complain(i, where,
-               "unknown attribute " + quoted(name) + did_you_mean(name, known) +
+               "unknown attribute " + quoted(name) + (of_part.empty() ? did_you_mean(name, known) : of_part) +
                    (known.empty() ? " (the type has none)" : " (known are " + quoted_list(known) + ")"));
 }
 

@@ -87,9 +87,10 @@ struct GivenField
 struct GivenRole
 {
     bool given = false;
-    bool everyone = false;
-    bool may_be_type = false;  ///< a single word of a short form: an id, or the type of a part to generate
-    bool unresolved = false;   ///< an error was already reported
+    bool everyone = false;              ///< those that are added later take part as well
+    std::vector<std::string> patterns;  ///< as in RoleSpec
+    bool may_be_type = false;           ///< a single word of a short form: an id, or the type of a part to generate
+    bool unresolved = false;            ///< an error was already reported
     std::vector<Reference> references;
     std::vector<std::size_t> members;  ///< drafts, in id order
     SourceLocation where;

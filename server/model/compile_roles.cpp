@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/compile_internal.h"
+#include "model/names.h"
 #include "model/text.h"
 
 namespace plab::model::detail
@@ -20,12 +21,40 @@ void refuse(Compilation& c, std::size_t i, GivenRole& given, const SourceLocatio
     c.complain(i, where, std::move(why));
 }
 
-/// "*": all components that fit, except the component itself.
+/// Why a role for one participant takes no `*` and no pattern.
+std::string why_not_one(const Role& role, const GivenRole& given)
+{
+    const std::string written = given.patterns.empty() ? "'*' means all objects" : quoted(given.patterns.front()) + " is a pattern of ids";
+    return "role " + role.name + " takes one participant, but " + written;
+}
+
+/// A pattern that no component matches is a typing error: what it should have stood for would be missed much later.
+void check_patterns(Compilation& c, std::size_t i, const Role& role, GivenRole& given)
+{
+    const auto& drafts = c.directory.drafts;
+    for (const std::string& pattern : given.patterns)
+    {
+        // One with an error of its own would fit without it.
+        const auto fits = [&](const Draft& d) { return matches(pattern, d.id) && (d.broken || (d.type && accepts(role, *d.type))); };
+        if (std::none_of(drafts.begin(), drafts.end(), fits))
+            refuse(c, i, given, given.where,
+                   "role " + role.name + " needs " + describe_wanted(role) + ", and " + quoted(pattern) + " matches none");
+    }
+}
+
+/// All components that fit, except the component itself: those of `patterns`, or all of "*". Those that were named take part already.
 void add_everyone(Compilation& c, std::size_t i, const Role& role, GivenRole& given)
 {
-    if (role.one) return refuse(c, i, given, given.where, "role " + role.name + " takes one participant, but '*' means all objects");
+    if (role.one) return refuse(c, i, given, given.where, why_not_one(role, given));
+    const std::vector<std::size_t> named = given.members;
     for (std::size_t k = 0; k < c.directory.drafts.size(); ++k)
-        if (const Draft& d = c.draft(k); k != i && d.type && !d.broken && accepts(role, *d.type)) given.members.push_back(k);
+    {
+        const Draft& d = c.draft(k);
+        if (k == i || !d.type || d.broken || !accepts(role, *d.type) || !takes_part(given.patterns, d.id)) continue;
+        if (std::find(named.begin(), named.end(), k) == named.end()) given.members.push_back(k);
+    }
+    check_patterns(c, i, role, given);
+    for (const std::size_t k : named) given.patterns.push_back(c.draft(k).id);
 }
 
 void add_participants(Compilation& c, std::size_t i, const Role& role, GivenRole& given, const Reference& reference)
@@ -58,8 +87,8 @@ void check_count(Compilation& c, std::size_t i, const Role& role, GivenRole& giv
 
 void resolve_role(Compilation& c, std::size_t i, const Role& role, GivenRole& given)
 {
-    if (given.everyone) add_everyone(c, i, role, given);
     for (const Reference& reference : given.references) add_participants(c, i, role, given, reference);
+    if (given.everyone && !given.unresolved) add_everyone(c, i, role, given);
     std::sort(given.members.begin(), given.members.end(), [&](std::size_t a, std::size_t b) { return c.draft(a).id < c.draft(b).id; });
     const auto twice = std::adjacent_find(given.members.begin(), given.members.end());
     if (twice != given.members.end())
@@ -99,6 +128,23 @@ void check_exclusive(Compilation& c)
                                    " already: only one component can have it in this role");
             }
         }
+    }
+}
+
+/// A joint from a body to itself holds nothing: of two roles that act on one participant each, the second was meant to be another one.
+void check_different(Compilation& c, std::size_t i)
+{
+    const Draft& d = c.draft(i);
+    std::unordered_map<std::size_t, std::size_t> taken;  // by participant: the role
+    for (std::size_t k = 0; k < d.roles.size(); ++k)
+    {
+        const Role& role = d.type->schema.roles()[k];
+        if (!role.one || !role.writes || d.roles[k].unresolved || d.roles[k].members.size() != 1) continue;
+        const auto [other, fresh] = taken.emplace(d.roles[k].members.front(), k);
+        if (!fresh)
+            c.complain(i, d.roles[k].where,
+                       "roles " + d.type->schema.roles()[other->second].name + " and " + role.name + " are both " +
+                           quoted(c.draft(other->first).id) + ": they must be two");
     }
 }
 
@@ -143,6 +189,8 @@ void resolve_roles(Compilation& c)
 void check_roles(Compilation& c)
 {
     check_exclusive(c);
+    for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
+        if (c.draft(i).type && !c.draft(i).existing) check_different(c, i);
     check_circles(c);
 }
 

@@ -1,5 +1,7 @@
 #include "model/names.h"
 
+#include <algorithm>
+
 #include "model/text.h"
 
 namespace plab::model
@@ -56,6 +58,11 @@ bool matches(std::string_view pattern, std::string_view id)
     }
     while (p < pattern.size() && pattern[p] == '*') ++p;
     return p == pattern.size();
+}
+
+bool takes_part(const std::vector<std::string>& patterns, std::string_view id)
+{
+    return patterns.empty() || std::any_of(patterns.begin(), patterns.end(), [&](const std::string& p) { return matches(p, id); });
 }
 
 }  // namespace plab::model

@@ -58,8 +58,9 @@ struct RoleSpec
 {
     std::string name;
     std::vector<std::string> members;  ///< ids of typed components with a facet that the role accepts, in id order
-    bool everyone = false;             ///< "*": all that fit, including those added later
+    bool everyone = false;             ///< all that fit take part, including those added later: "*", or those of `patterns`
     SourceLocation where;
+    std::vector<std::string> patterns = {};  ///< with `everyone`: ids, and patterns of ids, of which one must match; none: "*"
 };
 
 struct ComponentSpec

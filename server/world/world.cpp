@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "model/alike.h"
+#include "model/names.h"
 
 namespace plab::world
 {
@@ -111,7 +112,7 @@ Result<std::uint32_t> World::create(const model::ComponentSpec& spec)
     return i;
 }
 
-std::vector<Ref> World::everyone_in(const Role& role) const
+std::vector<Ref> World::everyone_in(const Role& role, const std::vector<std::string>& patterns) const
 {
     std::vector<Ref> out;
     for (const std::uint32_t i : in_id_order_)
@@ -119,6 +120,7 @@ std::vector<Ref> World::everyone_in(const Role& role) const
         const Component& c = directory_->components[i];
         if (c.table == kNoIndex || std::find(role.facets.begin(), role.facets.end(), c.facet) == role.facets.end()) continue;
         if (c.facet == Facet::Component && tables_[c.table]->type().info.name.rfind(role.family, 0) != 0) continue;
+        if (!model::takes_part(patterns, c.id)) continue;
         out.push_back(c.ref(i));
     }
     return out;
@@ -128,7 +130,7 @@ void World::bind_role(const Role& role, Row row, const model::RoleSpec* spec)
 {
     std::vector<Ref> refs;
     if (spec && spec->everyone)
-        refs = everyone_in(role);
+        refs = everyone_in(role, spec->patterns);
     else if (spec)
         for (const std::string& id : spec->members)
             if (const std::uint32_t i = find(id); i != kNoIndex) refs.push_back(directory_->components[i].ref(i));

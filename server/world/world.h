@@ -177,7 +177,8 @@ private:
     void fill_fields(Table& table, Row row, const model::ComponentSpec& spec);
     void bind(std::uint32_t component, const model::ComponentSpec& spec);
     void bind_role(const Role& role, Row row, const model::RoleSpec* spec);
-    std::vector<Ref> everyone_in(const Role& role) const;
+    /// Those that fit and match one of the patterns, or all that fit if there are none.
+    std::vector<Ref> everyone_in(const Role& role, const std::vector<std::string>& patterns) const;
     void initialize_motion(std::uint32_t component);
     void restore_structure(const Backup& backup);
     std::uint32_t insert(Component component);

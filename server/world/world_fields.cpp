@@ -37,7 +37,7 @@ std::vector<Ref> World::participants(std::uint32_t component, const Role& role) 
     return ref.valid() ? std::vector<Ref>{ref} : std::vector<Ref>{};
 }
 
-/// The columns of roles say quickly who may refer to it; whether that is by name, and not by "*", is written in the scene.
+/// The columns of roles say quickly who may refer to it; whether that is by name, and not by "*" or a pattern, is written in the scene.
 std::vector<std::uint32_t> World::referrers(std::uint32_t component) const
 {
     const Component& c = directory_->components[component];
@@ -49,8 +49,10 @@ std::vector<std::uint32_t> World::referrers(std::uint32_t component) const
         const std::size_t place = scene_->position_of(id_of(referrer), referrer);
         if (place == scene_->components.size()) return;
         for (const model::RoleSpec& role : scene_->components[place].roles)
-            if (!role.everyone && std::find(role.members.begin(), role.members.end(), c.id) != role.members.end())
-                return (void)found.emplace_back(place, referrer);
+        {
+            const std::vector<std::string>& named = role.everyone ? role.patterns : role.members;
+            if (std::find(named.begin(), named.end(), c.id) != named.end()) return (void)found.emplace_back(place, referrer);
+        }
     };
     for (const auto& table : tables_)
         for (const Role& role : table->schema().roles())

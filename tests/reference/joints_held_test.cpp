@@ -200,12 +200,20 @@ TEST_CASE("a body that rests on the only limit of its slider, at 0, does not mov
     }
 }
 
-TEST_CASE("limits and weak motors without a manager are refused, and the message says what would be accepted")
+TEST_CASE("weak motors without a manager are refused, and the message says what would be accepted; limits get one")
 {
     const Scene weak(held_shaft("rotor", 2) + "<component id='motor' type='Constraint/Motor' b='rotor' max_effort='4'/>");
-    CHECK(weak.error().find("a finite max_effort needs a manager") != std::string::npos);
-    const Scene loose(held_shaft("rotor", 2) + "<component id='stop' type='Constraint/Limit' b='rotor' upper='4'/>");
-    CHECK(loose.error().find("manager") != std::string::npos);
+    CHECK(weak.error().find("a finite max_effort needs a manager: manager='Manager/Automatic'") != std::string::npos);
+    Scene loose(
+        "<component id='rotor' type='State/Shaft' inertia='2' angular_velocity='3'/>"
+        "<component id='low' type='Constraint/Limit' b='rotor' lower='-1'/>"
+        "<component id='stop' type='Constraint/Limit' b='rotor' upper='1'/>");
+    REQUIRE_MESSAGE(loose.loaded(), loose.error());
+    loose.run(1);
+    CHECK(loose.real("rotor", "angle") == doctest::Approx(1).epsilon(1e-9));
+    CHECK(std::fabs(loose.real("rotor", "angular_velocity")) < 1e-9);
+    const Scene wrong(held_shaft("rotor", 2) + "<component id='stop' type='Constraint/Limit' b='rotor' upper='4' manager='rotor'/>");
+    CHECK(wrong.error().find("role manager needs a component of type Manager/") != std::string::npos);
 }
 
 TEST_CASE("a pendulum hits a wall: it rebounds with e times its speed, and its joint holds")

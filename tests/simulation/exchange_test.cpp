@@ -180,6 +180,21 @@ TEST_CASE("push, add, remove")
     CHECK(near(s.vec("third", "linear_velocity").z, -9.81 * 0.5, 1e-12));
 }
 
+TEST_CASE("what is added later takes part where a pattern matches its id, and may be removed")
+{
+    const std::string body = " type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"/>";
+    Scene s("<component id=\"a\"" + body + "<component id=\"b1\"" + body + "<component id=\"g\" type=\"Field/Gravity\" between=\"b* a\"/>");
+    REQUIRE(s.ask(AddOperation{fragment(s, "<component id=\"b2\"" + body)}).done);
+    REQUIRE(s.ask(AddOperation{fragment(s, "<component id=\"c\"" + body)}).done);
+    s.run(0.5);
+    for (const char* falls : {"a", "b1", "b2"}) CHECK(near(s.vec(falls, "linear_velocity").z, -9.81 * 0.5, 1e-12));
+    CHECK(s.vec("c", "linear_velocity").z == 0);
+    CHECK(s.ask(RemoveOperation{"b2"}).done);
+    CHECK(!s.ask(RemoveOperation{"a"}).done);  // it is named
+    s.run(1);
+    CHECK(near(s.vec("b1", "linear_velocity").z, -9.81, 1e-12));
+}
+
 TEST_CASE("requests for a step: in time, late, and by revision")
 {
     Scene s = Scene::file(kPaper);

@@ -100,7 +100,7 @@ void MotorRows::describe(Schema& s)
 Result<void> prepare_motor(Row row, MotorRows& rows, const Bodies& bodies)
 {
     if (rows.max_effort[row] < kInfinity && !rows.manager[row].valid())
-        return reason("a finite max_effort needs a manager: manager='...', e.g. of a Manager/Direct");
+        return reason("a finite max_effort needs a manager: manager='Manager/Automatic', or the id of one");
     return rows.place_coordinate(row, bodies);
 }
 
@@ -176,7 +176,9 @@ void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows
 void LimitRows::describe(Schema& s)
 {
     describe_coordinate(s, {"turn", "slide", "distance"});
-    s.role(manager, "manager", {Facet::Component}, "advances the bodies while a bound is near");
+    s.role(manager, "manager", {Facet::Component}, "advances the bodies while a bound is near; by default a `Manager/Automatic`")
+        .family("Manager/")
+        .default_type("Manager/Automatic");
     s.param(lower, "lower", unit::one, "least position, rad or m; -inf: none").or_else(-kInfinity).may_be_infinite();
     s.param(upper, "upper", unit::one, "largest position, rad or m; inf: none").or_else(kInfinity).may_be_infinite();
     s.param(restitution, "restitution", unit::one, "coefficient of restitution: fraction of the speed returned at a bound")

@@ -107,7 +107,8 @@ int participant_index(lua_State* lua)
     }
     return luaL_error(lua,
                       "%s has no '%s'; a shaft has angle, speed, inertia, a body has position, velocity, "
-                      "angular_velocity, orientation, mass, quantities have count and value(i)",
+                      "angular_velocity, orientation, mass, quantities have count and value(i); "
+                      "in force: add_force, add_force_at, add_torque, add_rate",
                       RoleName(p.place).text, lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2));
 }
 

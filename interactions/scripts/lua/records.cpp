@@ -21,11 +21,12 @@ const char* name_of(const Object& window) { return window.tag == Tag::State ? "s
 
 int refuse_name(lua_State* lua, const Object& window, const Entries& entries)
 {
-    std::string known;
-    for (const Entry& e : entries) known += (known.empty() ? "" : ", ") + e.name;
+    std::string known = "declared are: ";
+    for (const Entry& e : entries) known += (&e == &entries.front() ? "" : ", ") + e.name;
+    if (entries.empty()) known = "declare it with its first value, " + std::string(name_of(window)) + "=\"NAME=0\"";
     lua_pushlstring(lua, known.data(), std::min<std::size_t>(known.size(), 500));
     const char* key = lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2);
-    return luaL_error(lua, "%s has no '%s'; declared are: %s", name_of(window), key, lua_tostring(lua, -1));
+    return luaL_error(lua, "%s has no '%s'; %s", name_of(window), key, lua_tostring(lua, -1));
 }
 
 const Entry* find_entry(lua_State* lua, const Entries& entries)

@@ -9,6 +9,7 @@
 #include "fixed_step.h"
 #include "plab/number_text.h"
 #include "rotation_splitting.h"
+#include "runge_kutta4_parts.h"
 #include "stiffness.h"
 
 namespace plab::solvers
@@ -18,6 +19,11 @@ namespace
 
 constexpr double kFast = 0.05;
 constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
+/// Of a larger group than `kManySize`, parts of |h lambda| = 0.4 cost less than implicit steps while they are at most so many: an implicit
+/// step takes about as many evaluations as there are numbers, and the cube of that in products.
+constexpr std::size_t kManySize = kExponentialSize;
+constexpr double kPart = 0.4;
+constexpr double kMostParts = 16;
 constexpr Tolerance kTolerance{1e-9, 1e-12};
 constexpr std::int64_t kMaxSubsteps = 20000;
 
@@ -30,8 +36,10 @@ enum class Method : std::size_t
     Exponential,
     Radau5,
     DormandPrince54,
+    RungeKutta4Parts,
 };
-constexpr std::array<std::string_view, 6> kNames{"Exact", "RungeKutta4", "RotationSplitting", "Exponential", "Radau5", "DormandPrince54"};
+constexpr std::array<std::string_view, 7> kNames{"Exact",  "RungeKutta4",     "RotationSplitting",   "Exponential",
+                                                 "Radau5", "DormandPrince54", "RungeKutta4 in parts"};
 
 std::int64_t bit_of(Method method) { return std::int64_t{1} << static_cast<int>(method); }
 
@@ -136,16 +144,27 @@ private:
     void advance_stiff()
     {
         if (advance_by_exponential(h_, true, kExponentialSize, m_.exponential, system_).fine) return say(Method::Exponential);
-        if (FlatSystem(system_).size() > kRadauSize)
-        {
-            say(Method::DormandPrince54);
-            const DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kMaxSubsteps, m_.dormand, system_);
-            if (!trial_ && counts.reached < h_) report_dormand_prince_gave_up(start_, row_, counts);
-            return;
-        }
+        const std::size_t size = FlatSystem(system_).size();
+        if (size > kManySize && stiffness_ <= kPart * kMostParts) return advance_in_parts();
+        if (size > kRadauSize) return advance_explicitly(0);
         say(Method::Radau5);
         const Radau5Counts counts = advance_by_radau(h_, kTolerance, kMaxSubsteps, m_.exponential.radau, system_);
         if (!trial_ && counts.reached < h_) report_radau_gave_up(start_, row_, counts);
+    }
+
+    void advance_in_parts()
+    {
+        say(Method::RungeKutta4Parts);
+        const auto parts = static_cast<std::int64_t>(std::ceil(stiffness_ / kPart));
+        const double reached = advance_by_runge_kutta4_parts(h_, parts, system_).reached;
+        if (reached < h_ && !system_.interrupted()) advance_explicitly(reached);
+    }
+
+    void advance_explicitly(double from)
+    {
+        say(Method::DormandPrince54);
+        const DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kMaxSubsteps, m_.dormand, system_, from);
+        if (!trial_ && counts.reached < h_) report_dormand_prince_gave_up(start_, row_, counts);
     }
 
     std::string why(Method method) const
@@ -159,6 +178,9 @@ private:
                 return stiff + " and the forces are linear";
             case Method::Radau5:
                 return stiff;
+            case Method::RungeKutta4Parts:
+                return stiff + "; a group of " + std::to_string(FlatSystem(system_).size()) +
+                       " numbers costs less in short steps than in an implicit one";
             case Method::DormandPrince54:
                 return stiff + "; " + std::to_string(FlatSystem(system_).size()) + " numbers in a group are too many for implicit steps (" +
                        std::to_string(kRadauSize) + "), so internal steps are short";
@@ -213,7 +235,8 @@ void AutomaticRows::describe(Schema& schema)
     schema.output(stiffness, "stiffness", unit::one, "|h lambda| of that group, lambda the largest eigenvalue that its motion excites");
     schema.output(
         methods, "methods", unit::one,
-        "used since the run began, a sum: 1 Exact, 2 RungeKutta4, 4 RotationSplitting, 8 Exponential, 16 Radau5, 32 DormandPrince54");
+        "used since the run began, a sum: 1 Exact, 2 RungeKutta4, 4 RotationSplitting, 8 Exponential, 16 Radau5, 32 DormandPrince54, "
+        "64 RungeKutta4 in parts");
     schema.output(last_methods, "last_methods", unit::one, "used in the last step, as the same sum");
     schema.output(step, "step", unit::one, "the step to which these outputs belong; -1: none yet").or_else(-1);
     schema.output(soft_turns, "soft_turns", unit::one,

@@ -2,6 +2,7 @@
 ///
 ///   uniform forces, no joints            Exact                (machine precision at any step)
 ///   stiff, linear, few numbers that move Exponential          (exact at any step)
+///   a little stiff, many numbers         RungeKutta4 in parts (as many as make each part soft; |h lambda| up to 6.4)
 ///   stiff otherwise                      Radau5               (rtol 1e-9)
 ///   stiff and large                      DormandPrince54      (explicit: many short internal steps)
 ///   fast spin, no joints                 RotationSplitting 4
@@ -13,7 +14,7 @@
 /// The choice depends only on the state at the start of the advance and on its length. Rewinds, trials and replays therefore choose the
 /// same method, groups that share the component do not influence one another, and nothing has to be saved. The output `resolved` names
 /// the methods of the last steps, and `reason` states why the last new one was chosen. The event solver.chosen reports each method once,
-/// except RungeKutta4 and Exact.
+/// except RungeKutta4 and Exact. What parts do not resolve is continued by DormandPrince54.
 /// Sources: Hairer, Wanner, Solving ordinary differential equations II, section IV.2 (stiffness detection); the bounds:
 /// tests/unit/solvers/automatic_test.cpp.
 #pragma once

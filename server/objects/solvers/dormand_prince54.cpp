@@ -32,8 +32,8 @@ double weight_of(std::size_t stage) { return stage < kDormandPrinceStages - 1 ? 
 class DormandPrinceStep
 {
 public:
-    DormandPrinceStep(double h, const Tolerance& tolerance, DormandPrinceMemory& memory, DynamicSystem& system)
-        : h_(h), tolerance_(tolerance), m_(memory), flat_(system)
+    DormandPrinceStep(double h, const Tolerance& tolerance, DormandPrinceMemory& memory, DynamicSystem& system, double from)
+        : h_(h), t_(from), tolerance_(tolerance), m_(memory), flat_(system)
     {
         m_.fit(flat_.size());
         flat_.read(m_.y);
@@ -80,18 +80,19 @@ private:
     /// section II.4) from the rates and their change along an Euler step.
     double first_size()
     {
-        flat_.evaluate(0, m_.y, m_.slope[0], booked_ = kDormandPrinceWeight[0]);
-        flat_.sizes(m_.y, m_.slope[0], h_, m_.sizes);
+        const double left = h_ - t_;
+        flat_.evaluate(t_, m_.y, m_.slope[0], booked_ = kDormandPrinceWeight[0] * (left / h_));
+        flat_.sizes(m_.y, m_.slope[0], left, m_.sizes);
         FlatSystem::scales(tolerance_, m_.units, m_.sizes, m_.scale);
         const double value = FlatSystem::norm(m_.y, m_.scale), rate = FlatSystem::norm(m_.slope[0], m_.scale);
-        if (!(rate > 0) || !std::isfinite(rate)) return h_;
-        const double probe = std::min(h_, 0.01 * std::max(value, 1e-5) / rate);
+        if (!(rate > 0) || !std::isfinite(rate)) return left;
+        const double probe = std::min(left, 0.01 * std::max(value, 1e-5) / rate);
         for (std::size_t i = 0; i < m_.y.size(); ++i) m_.next[i] = m_.y[i] + probe * m_.slope[0][i];
-        flat_.evaluate(probe, m_.next, m_.error);
+        flat_.evaluate(t_ + probe, m_.next, m_.error);
         for (std::size_t i = 0; i < m_.y.size(); ++i) m_.error[i] -= m_.slope[0][i];
         const double fastest = std::max(rate, FlatSystem::norm(m_.error, m_.scale) / probe);
         const double guess = std::pow(0.01 / fastest, 0.2);
-        return !(h_ > 5 * guess) ? h_ : 2 * guess;
+        return !(left > 5 * guess) ? left : 2 * guess;
     }
 
     /// The slope at the start of an internal step is known; its share in the ledger depends on the length of the step.
@@ -159,7 +160,7 @@ private:
         std::swap(m_.slope[0], m_.slope[6]);
     }
 
-    double h_, t_ = 0;
+    double h_, t_;
     double booked_ = 0;  ///< share of the first stage of the present internal step
     Tolerance tolerance_;
     DormandPrinceMemory& m_;
@@ -182,9 +183,9 @@ void DormandPrince54Rows::describe(Schema& schema)
 }
 
 DormandPrinceCounts advance_by_dormand_prince(double h, const Tolerance& tolerance, std::int64_t max_substeps, DormandPrinceMemory& memory,
-                                              DynamicSystem& system)
+                                              DynamicSystem& system, double from)
 {
-    return DormandPrinceStep(h, tolerance, memory, system).run(max_substeps);
+    return DormandPrinceStep(h, tolerance, memory, system, from).run(max_substeps);
 }
 
 void report_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts)

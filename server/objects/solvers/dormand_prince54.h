@@ -41,9 +41,9 @@ struct DormandPrince54Rows : ErrorControlRows
     void describe(Schema& schema);
 };
 
-/// The method itself, for solvers that choose it.
+/// The method itself, for solvers that choose it; of a step that is done until `from`, the rest.
 DormandPrinceCounts advance_by_dormand_prince(double h, const Tolerance& tolerance, std::int64_t max_substeps, DormandPrinceMemory& memory,
-                                              DynamicSystem& system);
+                                              DynamicSystem& system, double from = 0);
 /// The event solver.gave_up.
 void report_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts);
 

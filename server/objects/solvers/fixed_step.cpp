@@ -51,21 +51,6 @@ void advance_stoermer_verlet(const StepContext& context, Row, const StoermerVerl
 namespace
 {
 
-struct StageOfMethod
-{
-    double time;        ///< share of h at which this stage is evaluated
-    double next;        ///< share of h of this stage's slope in the next stage's point; 0: last stage
-    double weight;      ///< share in the result
-    double sum_weight;  ///< six times that: exact
-};
-
-constexpr std::array<StageOfMethod, 4> kRungeKutta4Stages{{
-    {0.0, 0.5, 1.0 / 6, 1},
-    {0.5, 0.5, 1.0 / 3, 2},
-    {0.5, 1.0, 1.0 / 3, 2},
-    {1.0, 0.0, 1.0 / 6, 1},
-}};
-
 void copy(std::span<const double> from, std::span<double> to)
 {
     for (std::size_t i = 0; i < from.size(); ++i) to[i] = from[i];
@@ -107,7 +92,7 @@ void advance_by_runge_kutta4(double h, DynamicSystem& system, StageSlopes* slope
     for (std::size_t i = 0; i < n; ++i) u0[i] = u[i], sum_dx[i] = 0, sum_du[i] = 0;
     for (std::size_t s = 0; s < kRungeKutta4Stages.size(); ++s)
     {
-        const StageOfMethod& stage = kRungeKutta4Stages[s];
+        const RungeKutta4Stage& stage = kRungeKutta4Stages[s];
         system.evaluate(stage.time * h, stage.weight);
         if (slopes) copy(dx, slopes->dx[s]), copy(du, slopes->du[s]);
         for (std::size_t i = 0; i < n; ++i)

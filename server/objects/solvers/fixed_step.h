@@ -51,6 +51,21 @@ struct RungeKutta4Rows
 /// One step over context.dt, from coordinates 0.
 void advance_runge_kutta4(const StepContext& context, Row row, const RungeKutta4Rows& rows, DynamicSystem& system);
 
+struct RungeKutta4Stage
+{
+    double time;        ///< share of h at which this stage is evaluated
+    double next;        ///< share of h of this stage's slope in the next stage's point; 0: last stage
+    double weight;      ///< share in the result
+    double sum_weight;  ///< six times that: exact
+};
+
+inline constexpr std::array<RungeKutta4Stage, 4> kRungeKutta4Stages{{
+    {0.0, 0.5, 1.0 / 6, 1},
+    {0.5, 0.5, 1.0 / 3, 2},
+    {0.5, 1.0, 1.0 / 3, 2},
+    {1.0, 0.0, 1.0 / 6, 1},
+}};
+
 /// The slopes k1 to k4 of a step, in the system's workspaces 3 to 10, for callers that judge the step and may undo it.
 struct StageSlopes
 {

@@ -14,7 +14,8 @@ namespace
 
 using namespace records;
 
-constexpr const char* kSceneSections[] = {"settings", "cameras", "components", "groups", "commands", "fields", "roles", "role_members"};
+constexpr const char* kSceneSections[] = {"settings", "cameras", "components",   "groups",       "commands",
+                                          "fields",   "roles",   "role_members", "role_patterns"};
 constexpr const char* kOtherSections[] = {"run",
                                           "clock",
                                           "watch",

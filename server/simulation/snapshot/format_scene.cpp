@@ -50,6 +50,10 @@ Result<void> read_roles(const std::string& prefix, const std::vector<Section>& s
             find_section(sections, prefix + "role_members"), specs.size(), [&](std::uint32_t i) -> auto& { return specs[i].members; });
         !done)
         return done;
+    if (auto done = distribute(
+            find_section(sections, prefix + "role_patterns"), specs.size(), [&](std::uint32_t i) -> auto& { return specs[i].patterns; });
+        !done)
+        return done;
     for (std::size_t i = 0; i < specs.size(); ++i)
     {
         GivenRole& role = (*roles)[i];
@@ -168,7 +172,7 @@ std::vector<Section> write_scene(const std::string& prefix, const model::SceneSp
     std::vector<Settings> settings{{scene.settings, scene.file}};
     std::vector<model::Camera> cameras = scene.settings.cameras;
     std::vector<model::ComponentSpec> components;
-    std::vector<Item> groups, commands, members;
+    std::vector<Item> groups, commands, members, patterns;
     std::vector<GivenField> fields;
     std::vector<GivenRole> roles;
     for (const model::ComponentSpec& c : scene.components)
@@ -181,6 +185,7 @@ std::vector<Section> write_scene(const std::string& prefix, const model::SceneSp
         for (const model::RoleSpec& r : c.roles)
         {
             for (const std::string& id : r.members) members.push_back({static_cast<std::uint32_t>(roles.size()), id});
+            for (const std::string& id : r.patterns) patterns.push_back({static_cast<std::uint32_t>(roles.size()), id});
             roles.push_back({row, r.name, r.everyone});
         }
     }
@@ -189,6 +194,8 @@ std::vector<Section> write_scene(const std::string& prefix, const model::SceneSp
     out.push_back(section_of(prefix + "components", components)), out.push_back(section_of(prefix + "groups", groups));
     out.push_back(section_of(prefix + "commands", commands)), out.push_back(section_of(prefix + "fields", fields));
     out.push_back(section_of(prefix + "roles", roles)), out.push_back(section_of(prefix + "role_members", members));
+    // Only where there are any: then older versions can read the others.
+    if (!patterns.empty()) out.push_back(section_of(prefix + "role_patterns", patterns));
     return out;
 }
 

@@ -208,6 +208,34 @@ void TunnelWatch::after_step(const RunView& s, std::vector<Event>& events)
     if (!colliding_.empty() && s.stepper.report().deepest > shallow_) find_overlaps(s, events);
 }
 
+namespace
+{
+
+/// The first joint between two bodies, by id; kNoIndex if there is none.
+std::uint32_t joint_between(const world::World& world, Ref a, Ref b)
+{
+    for (const std::uint32_t i : world.in_id_order())
+    {
+        const model::ComponentType* type = world.type_of(i);
+        if (!type || !type->info.name.starts_with("Constraint/")) continue;
+        bool has_a = false, has_b = false;
+        for (const Role& role : world.table_of(i).schema().roles())
+            world.for_each_participant(i, role, [&](Ref r) { has_a = has_a || r == a, has_b = has_b || r == b; });
+        if (has_a && has_b) return i;
+    }
+    return kNoIndex;
+}
+
+/// What may separate two bodies that remain inside one another.
+std::string advice(const world::World& world, Ref a, Ref b)
+{
+    const std::uint32_t joint = joint_between(world, a, b);
+    if (joint == kNoIndex) return "more iterations, shorter steps or Manager/Direct may separate them";
+    return world.id_of(joint) + " holds them there; if they are meant to overlap, a Collision/Exclude keeps them from colliding";
+}
+
+}  // namespace
+
 void TunnelWatch::find_overlaps(const RunView& s, std::vector<Event>& events)
 {
     const world::World& world = s.world;
@@ -228,8 +256,7 @@ void TunnelWatch::find_overlaps(const RunView& s, std::vector<Event>& events)
         Event e;
         e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.deep", e.severity = Severity::Warning;
         e.component = d.component, e.a = c.a, e.b = c.b;
-        e.message = world.id_of(c.a) + " and " + world.id_of(c.b) +
-                    " remain deep inside one another; more iterations, shorter steps or Manager/Direct may separate them";
+        e.message = world.id_of(c.a) + " and " + world.id_of(c.b) + " remain deep inside one another; " + advice(world, c.a, c.b);
         e.values = {c.depth};
         events.push_back(std::move(e));
     }

@@ -79,6 +79,7 @@ void check_same(const SceneSpec& a, const SceneSpec& b)
             CHECK(x.roles[k].name == y->roles[k].name);
             CHECK(x.roles[k].members == y->roles[k].members);
             CHECK(x.roles[k].everyone == y->roles[k].everyone);
+            CHECK(x.roles[k].patterns == y->roles[k].patterns);
         }
         CHECK(active_commands(x, types) == active_commands(*y, types));
     }
@@ -174,6 +175,15 @@ TEST_CASE("members whose list would read as another id are written one by one")
                            "<component id='a b' type='State/Static'/><component id='g' type='Field/Gravity'>"
                            "<param name='between'><compref>a</compref><compref>b</compref></param></component>"));
     CHECK(contains(text, "<compref>b</compref>"));
+}
+
+TEST_CASE("patterns of ids are written as patterns")
+{
+    const std::string bodies = "<component id='b 1' type='State/Static'/><component id='b2' type='State/Static'/>";
+    CHECK(contains(round_trip(in_plab(bodies + "<component id='g' type='Field/Gravity' between='b2 b*'/>")), "between=\"b* b2\""));
+    const std::string apart = round_trip(in_plab(bodies + "<component id='g' type='Field/Gravity'><param name='between'>"
+                                                          "<compref>b?</compref><compref>b 1</compref></param></component>"));
+    CHECK(contains(apart, "<compref>b?</compref>\n      <compref>b 1</compref>"));
 }
 
 TEST_CASE("texts and entries: literal code, quotes, line ends")

@@ -96,6 +96,10 @@ TEST_CASE("state keeps its types and names")
     CHECK(error("state.s = '\\xff'") == "code:1: state.s must be UTF-8 text");
     CHECK(error("state.m = 1") == "code:1: state has no 'm'; declared are: b, n, s");
     CHECK(error("state[1] = 1") == "code:1: state has no 'number'; declared are: b, n, s");
+    Lab lab("function drive() state.m = 1 end");
+    REQUIRE(lab.prepare() == "");
+    lab.drive();
+    CHECK(lab.only_event() == "script.error: code:1: state has no 'm'; declare it with its first value, state=\"NAME=0\"");
 }
 
 TEST_CASE("a memento consists of the columns: a restored script continues as before")

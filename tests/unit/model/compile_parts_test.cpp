@@ -68,6 +68,9 @@ TEST_CASE("sub-components that are refused")
     CHECK(errors_of(collision({{"response.restituton", "0.5"}})) ==
           "scene.xml:9:1: c.response (Response/Impulse): unknown attribute 'restituton', did you mean 'restitution'? "
           "(known are 'restitution' and 'limit')");
+    CHECK(
+        errors_of(collision({{"restitution", "0.5"}})).find(c + "unknown attribute 'restitution', did you mean 'response.restitution'?") !=
+        std::string::npos);
     CHECK(errors_of(collision({{"response.restitution", "2"}})) ==
           "scene.xml:9:1: c.response (Response/Impulse): restitution must be at most 1, not 2");
     CHECK(errors_of(collision({{"response", "Resolution/Bisection"}})) ==

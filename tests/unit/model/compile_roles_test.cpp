@@ -48,6 +48,30 @@ TEST_CASE("everyone: all suitable components except the component itself")
     CHECK(errors_of({collide("* a"), body("a")}) == kCollide + "role between: no component has the id '*'");
 }
 
+TEST_CASE("a pattern: all suitable components whose ids match, beside those that are named")
+{
+    const model::SceneSpec s = compiled(scene({collide("b?.* x"), body("b1.0"), body("b2.7"), body("x"), body("b10.0"), shaft("b3.0"),
+                                               component("m", "Manager/Any", {{"parts", "b*0"}})}));
+    CHECK(role_of(s, "c", "between") == "* b1.0 b2.7 x");
+    CHECK(s.find("c")->roles.front().patterns == std::vector<std::string>{"b?.*", "x"});
+    CHECK(role_of(s, "m", "parts") == "* b1.0 b10.0 b3.0");
+    // What a pattern matches besides is named once, and an id that looks like a pattern is that id.
+    CHECK(role_of(compiled(scene({collide("b1 b*"), body("b1"), body("b2")})), "c", "between") == "* b1 b2");
+    CHECK(role_of(compiled(scene({component("m", "Manager/Any", {{"parts", "b*"}}), body("b*"), body("b2")})), "m", "parts") == "b*");
+    CHECK(errors_of({collide("b1 bx*"), body("b1"), shaft("bx1")}) == kCollide + "role between needs a body, and 'bx*' matches none");
+    CHECK(errors_of({shaft("a"), shaft("b"), gear({{"driver", "a*"}, {"driven", "b"}})}) ==
+          kGear + "role driver takes one participant, but 'a*' is a pattern of ids");
+}
+
+TEST_CASE("two roles that act on one participant each need two")
+{
+    CHECK(errors_of({shaft("a"), gear({{"driver", "a"}, {"driven", "a"}})}) ==
+          kGear + "roles driver and driven are both 'a': they must be two");
+    // The same through another name.
+    CHECK(errors_of({shaft("a"), shares("same", {"a"}), gear({{"driver", "same"}, {"driven", "a"}})}) ==
+          kGear + "roles driver and driven are both 'a': they must be two");
+}
+
 TEST_CASE("a group stands for all suitable components inside it, an object for its only one")
 {
     const model::SceneSpec s =

@@ -90,7 +90,7 @@ struct CouplingRows
 
     void describe(Schema& s)
     {
-        s.role(driver, "driver", {Facet::Shaft}, "turns the other");
+        s.role(driver, "driver", {Facet::Shaft}, "turns the other").writes();
         s.role(driven, "driven", {Facet::Shaft}, "is turned").writes().exclusive();
         s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver").or_else(1).nonzero();
         s.param(mesh, "mesh", unit::one, "of teeth").or_else("external").one_of({"external", "internal", "belt"});

@@ -116,8 +116,8 @@ TEST_CASE("scenes are restored as they were described: a swap after restoring ha
             for (std::size_t k = 0; k < a.fields.size(); ++k) CHECK(a.fields[k].name == b.fields[k].name);
             REQUIRE(a.roles.size() == b.roles.size());
             for (std::size_t k = 0; k < a.roles.size(); ++k)
-                CHECK(std::tie(a.roles[k].name, a.roles[k].members, a.roles[k].everyone) ==
-                      std::tie(b.roles[k].name, b.roles[k].members, b.roles[k].everyone));
+                CHECK(std::tie(a.roles[k].name, a.roles[k].members, a.roles[k].everyone, a.roles[k].patterns) ==
+                      std::tie(b.roles[k].name, b.roles[k].members, b.roles[k].everyone, b.roles[k].patterns));
         }
     }
 }

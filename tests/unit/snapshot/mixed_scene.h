@@ -17,7 +17,7 @@ inline const std::string kMixed =
     "<component id='weight' type='Field/Gravity' between='*'/>"
     "<component id='contact' type='CDetection/ODE' between='odd &quot;name&quot; &amp; &#228;&#8364;' against='ground'"
     " resolution='Resolution/LocalBisection' response='Response/Impulse' response.restitution='0.5'/>"
-    "<component id='spring' type='CDetection/ODE' between='soft' against='ground' resolution='Resolution/None' "
+    "<component id='spring' type='CDetection/ODE' between='sof?' against='ground' resolution='Resolution/None' "
     "response='Response/Penalty' response.restitution='1'/>"
     "<component id='s1' type='State/Shaft' inertia='1' angular_velocity='3'/><component id='s2' type='State/Shaft' inertia='2'/>"
     "<component id='mesh' type='Constraint/AngularVelocity/Graph' driver='s1' driven='s2' velocity_factor='-1/3'/>"

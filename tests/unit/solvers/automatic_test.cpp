@@ -118,6 +118,34 @@ TEST_CASE("free flight uses Exact, fast spin RotationSplitting, stiff springs Ex
     CHECK(reaction[0] == doctest::Approx(0.1706167732170483e1).epsilon(1e-8));
 }
 
+TEST_CASE("many numbers that are a little stiff get parts of RungeKutta4, and DormandPrince54 where something faster begins")
+{
+    constexpr std::size_t kMany = 40;  // 80 numbers
+    for (const double jump : {0.0, 5e4})
+    {
+        CAPTURE(jump);
+        Automatic automatic;
+        Points many(std::vector<double>(kMany, 1), std::vector<double>(kMany, 0),
+                    [&](double t, const auto& q, const auto&, auto& a)
+                    {
+                        for (std::size_t i = 0; i < kMany; ++i) a[i] = -1e4 * q[i] + (t < 0.5035 ? 0 : jump);
+                    });
+        many.run(0.01, 100, std::ref(automatic));
+        double kinetic = 0;
+        for (std::size_t i = 0; i < kMany; ++i) kinetic += 0.5 * many.speed(i) * many.speed(i);
+        CHECK(many.booked == doctest::Approx(100).epsilon(1e-12));
+        CHECK(many.work == doctest::Approx(kinetic).epsilon(5e-3).scale(jump == 0 ? 2e5 : 7e6));  // J, what oscillates
+        if (jump == 0)
+        {
+            CHECK(automatic.resolved() == "RungeKutta4 in parts");
+            CHECK(std::fabs(many.place[0] - std::cos(100.0)) < 0.02);
+            CHECK(many.evaluations < 100 * 24);  // an implicit step takes more than 80
+        }
+        else
+            CHECK(automatic.rows.methods[0] == (32 | 64));
+    }
+}
+
 TEST_CASE("if the host could not divide its step as finely as its contacts need, there are no further internal steps")
 {
     Automatic automatic;
