@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "cost_model.h"
+#include "decision_costs.h"
 #include "error_table.h"
 #include "sight.h"
 #include "spending.h"
@@ -16,12 +17,12 @@ namespace plab::governors
 namespace
 {
 
-/// s: what is shorter was not measured, and its square would underflow.
-constexpr double kLeastCost = 1e-12;
 /// Pixels per metre: of what nobody sees, and of everything where there is no viewer.
 constexpr double kUnseen = 1;
 /// Exchanges that make a step too long are this many steps apart at least: fewer than one of 100.
 constexpr double kRare = 128;
+/// Steps after an exchange until the host tells what they cost: before that, what was exchanged may be too much already.
+constexpr double kUntilMeasured = 5;
 
 /// How much an error of the component counts, in pixels per metre.
 double importance_of(const GovernedComponent& g, std::span<const Viewpoint> eyes, double look_ahead)
@@ -32,6 +33,26 @@ double importance_of(const GovernedComponent& g, std::span<const Viewpoint> eyes
 
 /// Parts of the cost of a level: a component costs in proportion to the objects on which it acts.
 double weight_of(const GovernedComponent& g) { return std::max(1.0, static_cast<double>(g.objects)); }
+
+/// s, of a step, exchanges and trials before it included.
+double budget_of(const StepContext& context, Row row, const BudgetRows& governors)
+{
+    return governors.budget[row] > 0 ? governors.budget[row] : governors.share[row] * context.dt;
+}
+
+/// s, for the usual step: 99 of 100 shall take at most kMost times the budget.
+double usual_budget(const StepContext& context, Row row, const BudgetRows& governors)
+{
+    constexpr double kMost = 1.1;
+    return budget_of(context, row, governors) * std::min(1.0, kMost / std::max(1.0, governors.spread[row]));
+}
+
+/// Whether what takes so long (s) fits into the time that the usual step leaves; if not, whether a step may be too long again.
+bool has_time(const StepContext& context, Row row, const BudgetRows& governors, double seconds)
+{
+    return governors.cost[row] + seconds <= budget_of(context, row, governors) ||
+           context.time - governors.last_long[row] >= kRare * context.dt;
+}
 
 /// m. NaN: it cannot be told.
 double metres_of(const LevelError& error, double radius)
@@ -50,8 +71,9 @@ public:
           control_(control),
           look_(context, row, governors.watch, control),
           levels_(static_cast<std::size_t>(look_.finest() + 1)),
-          budget_(governors.budget[row] > 0 ? governors.budget[row] : governors.share[row] * context.dt),
-          cost_(governors.step_cost[row] > kLeastCost ? governors.step_cost[row] : 0),
+          budget_(budget_of(context, row, governors)),
+          usual_(usual_budget(context, row, governors)),
+          cost_(governors.cost[row] > kLeastCost ? governors.cost[row] : 0),
           model_(governors.costs[row], levels_),
           table_(governors.errors[row], levels_)
     {
@@ -62,7 +84,7 @@ public:
     bool watches_nothing() const { return look_.watched().empty(); }
     void begin_cheaply();
     void learn_costs();
-    void learn_errors(std::int64_t most);
+    void try_next_level();
     void learn_errors_of_new_kinds();
     void choose();
     void publish();
@@ -72,7 +94,8 @@ private:
     {
         std::size_t component;
         std::int32_t level;
-        double worth;  ///< pixels per second; of a cheaper level infinite: it has to come first
+        double worth;    ///< pixels per second; of a cheaper level infinite: it has to come first
+        double seconds;  ///< that a step costs more
     };
     void try_levels(std::size_t k);
     Reals parts_at_levels() const;
@@ -81,10 +104,11 @@ private:
     std::vector<Change> plan() const;
     std::size_t exchanges_now(const std::vector<Change>& changes) const;
     double exchange_cost(std::size_t n) const;
+    double long_step_after(const std::vector<Change>& changes, std::size_t n) const;
     double error_of(std::size_t k, std::int32_t level) const;
     std::string reason(const Change& change) const;
-    bool is_over() const { return cost_ > budget_; }
-    bool has_room() const { return cost_ < budget_ * (1 - g_.headroom[row_]); }
+    bool is_over() const { return cost_ > usual_; }
+    bool has_room() const { return cost_ < usual_ * (1 - g_.headroom[row_]); }
     double importance(std::size_t k) const { return importance_of(look_.watched()[k], control_.viewpoints(), g_.watch.every[row_]); }
 
     const StepContext& context_;
@@ -93,7 +117,7 @@ private:
     LevelControl& control_;
     Look look_;
     std::size_t levels_;
-    double budget_, cost_;
+    double budget_, usual_, cost_;
     CostModel model_;
     ErrorTable table_;
     double whole_ = 0;  ///< sum of weights
@@ -138,17 +162,26 @@ void BudgetLook::try_levels(std::size_t k)
     table_.add(c.objects, errors);
 }
 
-void BudgetLook::learn_errors(std::int64_t most)
+/// One level at a boundary, from the one below the most exact one to the cheapest one. The sum is over when all have been tried.
+void BudgetLook::try_next_level()
 {
     const auto size = static_cast<std::int64_t>(look_.watched().size());
-    for (std::int64_t n = 0; n < std::min(most, size); ++n)
+    Reals& sum = g_.partial[row_];
+    if (sum.empty() || sum.size() >= levels_)
     {
         // A stride that visits all, far from one another.
         std::int64_t stride = std::max<std::int64_t>(1, size * 5 / 13);
         while (std::gcd(stride, size) != 1) ++stride;
-        g_.next_trial[row_] = (g_.next_trial[row_] + stride) % size;
-        try_levels(static_cast<std::size_t>(g_.next_trial[row_]));
+        g_.next_trial[row_] += stride, sum.assign(1, 0.0);
     }
+    const auto k = static_cast<std::size_t>(g_.next_trial[row_] % size);
+    const GovernedComponent& c = look_.watched()[k];
+    const std::size_t level = levels_ - 1 - sum.size();
+    if (g_.cost[row_] + g_.trial[row_] > budget_) g_.last_long[row_] = context_.time;
+    sum.push_back(sum.back() + metres_of(control_.error(row_, k, static_cast<std::int32_t>(level), g_.interval[row_]), c.radius));
+    if (level > 0 && !std::isnan(sum.back())) return;
+    if (!std::isnan(sum.back())) table_.add(c.objects, Reals(sum.rbegin(), sum.rend()));
+    sum.clear(), --g_.trials_left[row_], g_.next_trial[row_] %= size;
 }
 
 /// So that nothing is chosen without knowing what it buys.
@@ -193,7 +226,7 @@ LevelPrices BudgetLook::prices() const
 /// not come and go with each measurement.
 double BudgetLook::seconds_to_spend(const LevelPrices& price) const
 {
-    const double goal = budget_ * (1 - 0.5 * g_.headroom[row_]);
+    const double goal = usual_ * (1 - 0.5 * g_.headroom[row_]);
     const Reals parts = parts_at_levels();
     double modelled = 0;
     for (std::size_t l = 0; l < levels_; ++l) modelled += parts[l] * price.expected[l];
@@ -224,9 +257,10 @@ std::vector<BudgetLook::Change> BudgetLook::plan() const
         const Candidate& c = candidates[n];
         if (levels[n] == c.present) continue;
         const auto from = static_cast<std::size_t>(c.present), to = static_cast<std::size_t>(levels[n]);
-        const double seconds = std::max(kLeastCost, c.weight * (price.expected[to] - price.expected[from]));
+        const double seconds = c.weight * (price.expected[to] - price.expected[from]);
         constexpr double kFirst = std::numeric_limits<double>::infinity();
-        out.push_back({component[n], levels[n], to < from ? kFirst : c.scale * (c.errors[from] - c.errors[to]) / seconds});
+        const double worth = c.scale * (c.errors[from] - c.errors[to]) / std::max(kLeastCost, seconds);
+        out.push_back({component[n], levels[n], to < from ? kFirst : worth, seconds});
     }
     std::stable_sort(out.begin(), out.end(), [](const Change& a, const Change& b) { return a.worth > b.worth; });
     return out;
@@ -239,17 +273,25 @@ double BudgetLook::exchange_cost(std::size_t n) const
     return n == 0 || learnt.size() < 2 ? 0 : learnt[0] + static_cast<double>(n) * learnt[1];
 }
 
+/// s, that the usual step costs with the first n changes, and these with it.
+double BudgetLook::long_step_after(const std::vector<Change>& changes, std::size_t n) const
+{
+    double out = cost_ + exchange_cost(n);
+    for (std::size_t k = 0; k < n; ++k) out += changes[k].seconds;
+    return out;
+}
+
 /// How many of the changes are made at this boundary.
 std::size_t BudgetLook::exchanges_now(const std::vector<Change>& changes) const
 {
     const std::size_t all = changes.size();
-    const double room = std::max(0.0, budget_ - cost_);
-    if (is_over() || exchange_cost(all) <= room) return all;
-    const double each = g_.exchange[row_][1];
-    const auto fit = static_cast<std::size_t>(std::max(0.0, (room - g_.exchange[row_][0]) / std::max(kLeastCost, each)));
+    if (cost_ > budget_ || exchange_cost(all) == 0) return all;
     // The worthiest come first, and each exchange tells better what the next ones cost.
-    if (fit > 0) return std::min(fit, all);
-    return context_.time - g_.last_long[row_] >= kRare * context_.dt ? all : 0;
+    double cost = long_step_after(changes, all);
+    std::size_t fit = all;
+    for (; fit > 0 && cost > budget_; --fit) cost -= exchange_cost(fit) - exchange_cost(fit - 1) + changes[fit - 1].seconds;
+    if (fit > 0) return fit;
+    return is_over() || context_.time - g_.last_long[row_] >= kRare * context_.dt ? all : 0;
 }
 
 double BudgetLook::error_of(std::size_t k, std::int32_t level) const
@@ -277,13 +319,14 @@ void BudgetLook::choose()
         control_.tell(row_, change.component, error_of(change.component, change.level), "m", std::numeric_limits<double>::quiet_NaN());
     }
     g_.waiting[row_] = static_cast<std::int64_t>(changes.size() - now);
-    if (now > 0 && cost_ + exchange_cost(now) > budget_) g_.last_long[row_] = context_.time;
-    g_.retry[row_] = now > 0 ? context_.time : g_.last_long[row_] + kRare * context_.dt;
+    if (now > 0 && long_step_after(changes, now) > budget_) g_.last_long[row_] = context_.time;
+    for (std::size_t n = 0; n < now; ++n) g_.cost[row_] += changes[n].seconds;
+    g_.retry[row_] = now > 0 ? context_.time + (kUntilMeasured - 0.5) * context_.dt : g_.last_long[row_] + kRare * context_.dt;
 }
 
 void BudgetLook::publish()
 {
-    g_.spent[row_] = cost_ / budget_;
+    g_.spent[row_] = cost_ / usual_;
     g_.given_up[row_] = static_cast<std::int64_t>(static_cast<double>(look_.watched().size()) - g_.watch.count[row_].back());
     double all = 0, lost = 0;
     for (std::size_t k = 0; k < look_.watched().size(); ++k)
@@ -293,25 +336,6 @@ void BudgetLook::publish()
         if (look_.watched()[k].level < look_.finest()) lost += scale;
     }
     g_.lost[row_] = all > 0 ? lost / all : 0;
-}
-
-/// Learns what exchanges cost, as a fixed cost f and one for each component, e. The first measurement is shared between the two, which are
-/// then known as little as can be, but their sum is known. (f + n e) / (1 + n) is a cost by fractions, as the cost model learns it: two
-/// exchanges of different numbers of components tell both.
-void learn_exchange(Reals& learnt, Reals& measured)
-{
-    if (measured.size() != 2 || !(measured[0] > 0)) return;
-    const double n = measured[0], seconds = measured[1];
-    constexpr std::size_t kCosts = 2, kSize = kCosts + kCosts * kCosts;
-    constexpr double kOpposed = -0.9;  // correlation of what is not known of f and e
-    if (learnt.size() != kSize)
-    {
-        const double f = 0.5 * seconds, e = 0.5 * seconds / n;
-        learnt = {f, e, f * f, kOpposed * f * e, kOpposed * f * e, e * e};
-    }
-    else
-        CostModel(learnt, kCosts).update(Reals{1 / (1 + n), n / (1 + n)}, seconds / (1 + n));
-    measured.clear();
 }
 
 }  // namespace
@@ -339,14 +363,19 @@ void BudgetRows::describe(Schema& schema)
     schema.param(trials, "trials", unit::one, "components whose levels are tried between two looks, one at a boundary where there is room")
         .or_else(2)
         .not_negative();
-    schema.state(step_cost, "step_cost", unit::second, "what a step costs, as measured; set by the host").input();
+    schema.state(step_cost, "step_cost", unit::second, "what a step costs usually, as measured; set by the host").input();
+    schema.state(spread, "spread", unit::one, "how many times that 99 of 100 steps cost at most; set by the host").initially(1).input();
+    schema
+        .state(trial_time, "trial_time", unit::one,
+               "number of levels that were tried last, what that cost (s), and the step after it (s); set by the host")
+        .input();
     schema
         .state(trial_costs, "trial_costs", unit::second,
                "what a trial step with each level cost for each object, as measured since the last look; 0: none was made; set by the host")
         .input();
     schema
         .state(exchange_cost, "exchange_cost", unit::one,
-               "the number of components that were exchanged last, and what that cost (s), as measured; set by the host")
+               "the number of components that were exchanged last, what that cost (s), and the step after it (s); set by the host")
         .input();
     schema.state(costs, "costs", unit::second,
                  "cost of a step with all components at each level, as learnt, and then the covariance (s^2) of these costs");
@@ -355,6 +384,11 @@ void BudgetRows::describe(Schema& schema)
                  "error (m^2) of each level");
     schema.state(exchange, "exchange", unit::second,
                  "what an exchange costs, as learnt: fixed, and for each component; and then the covariance (s^2) of the two");
+    schema.state(cost, "cost", unit::second, "what a step is taken to cost: as measured last, with what was chosen since");
+    schema.state(last_step_cost, "last_step_cost", unit::second, "`step_cost` as it was used last");
+    schema.state(trial, "trial", unit::second, "what it costs to try a level, as learnt; 0: it is not known");
+    schema.state(partial, "partial", unit::metre,
+                 "errors of the levels that have been tried of the component that is tried now, the most exact one first");
     schema.state(trials_left, "trials_left", unit::one, "components to be tried before the next look");
     schema.state(next_trial, "next_trial", unit::one, "position of the component that was tried last");
     schema.state(waiting, "waiting", unit::one, "changes that wait for a boundary where there is time for them");
@@ -367,22 +401,30 @@ void BudgetRows::describe(Schema& schema)
 
 void keep_budget(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control)
 {
-    learn_exchange(governors.exchange[row], governors.exchange_cost[row]);
-    const bool measured = governors.step_cost[row] > kLeastCost, knows_costs = !governors.costs[row].empty();
-    const bool looks = due(context, governors.watch.every[row]) || (measured && !knows_costs);
-    const bool tries = governors.trials_left[row] > 0 && governors.spent[row] < 1;
+    learn_exchange(governors.exchange[row], governors.exchange_cost[row], governors.cost[row]);
+    learn_trial(governors.trial[row], governors.trial_time[row], governors.cost[row]);
+    const double told = governors.step_cost[row];
+    const bool is_new = told != governors.last_step_cost[row], knows_costs = !governors.costs[row].empty();
+    if (is_new) governors.cost[row] = governors.last_step_cost[row] = told;
+    const bool measured = told > kLeastCost;
+    // What was chosen may turn out to cost too much before the next look is due.
+    const bool is_late = is_new && told > usual_budget(context, row, governors);
+    const bool looks = due(context, governors.watch.every[row]) || (measured && !knows_costs) || is_late;
+    const bool tries =
+        governors.trials_left[row] > 0 && governors.spent[row] < 1 && has_time(context, row, governors, governors.trial[row]);
     const bool goes_on = governors.waiting[row] > 0 && context.time >= governors.retry[row];
-    if (!looks && !tries && !goes_on) return;
+    if (!looks && !tries && !goes_on && !is_new) return;
     BudgetLook look(context, row, governors, control);
     if (look.watches_nothing()) return;
     if (!knows_costs || looks) look.learn_errors_of_new_kinds();
     if (!measured && !knows_costs) return look.begin_cheaply(), look.publish();
     if (!measured) return;
-    if (looks) look.learn_costs(), governors.trials_left[row] = governors.trials[row];
+    if (is_new || !knows_costs) look.learn_costs();
+    if (looks) governors.trials_left[row] = governors.trials[row];
     if (looks || goes_on)
         look.choose();
-    else
-        --governors.trials_left[row], look.learn_errors(1);
+    else if (tries)
+        look.try_next_level();
     if (looks) look.publish();
 }
 

@@ -13,6 +13,9 @@ namespace
 {
 
 constexpr double kHidden = 0;
+/// Times `every`: until a component that has the most exact level is measured again. It promises nothing, and measuring it at each look
+/// would cost more than a cheaper level saves.
+constexpr double kIdle = 4;
 
 Entries::iterator place_of(Entries& next, std::string_view id)
 {
@@ -90,16 +93,6 @@ private:
     Reals &seen_, &kept_;
 };
 
-void judge(bool held, Row row, ErrorRows& governors)
-{
-    constexpr double kGain = 0.25, kMost = 1e4;
-    constexpr double kSooner = 0.5, kLater = 1.02, kLongest = 16;
-    const double c = governors.target[row];
-    ++governors.judged[row], governors.held[row] += held ? 1 : 0;
-    governors.safety[row] = std::clamp(governors.safety[row] * std::exp(kGain * (held ? c - 1 : c)), 1.0, kMost);
-    governors.patience[row] = std::clamp(governors.patience[row] * (held ? kLater : kSooner), 1.0, kLongest);
-}
-
 /// Rule of succession (Laplace): nothing is certain after no or few trials.
 double confidence_of(std::int64_t held, std::int64_t judged) { return static_cast<double>(held + 1) / static_cast<double>(judged + 2); }
 
@@ -110,16 +103,45 @@ bool answers_contacts(const std::string& ladder)
     return std::any_of(std::begin(kKinds), std::end(kKinds), [&](std::string_view kind) { return ladder.starts_with(kind); });
 }
 
-/// Of a trial, as Simulation makes them: of a solver a quarter of the interval.
+/// Of a trial, as Simulation makes them (error_of_level): of a solver a quarter of the interval, but eight steps at least.
 double steps_of_trial(const StepContext& context, Row row, const ErrorRows& governors)
 {
-    const double whole = std::max(1.0, governors.interval[row] / context.dt);
-    return governors.watch.levels[row].starts_with("Solver") ? std::ceil(whole / 4) : whole;
+    constexpr double kMost = 256, kFewest = 8;
+    const double whole = std::max(1.0, std::round(governors.interval[row] / context.dt));
+    const bool goes_on = governors.watch.levels[row].starts_with("Solver");
+    return std::min(kMost, goes_on ? std::min(whole, std::max(kFewest, std::ceil(whole / 4))) : whole);
+}
+
+/// Promises that were judged in one look, and those of them that were broken.
+struct Judged
+{
+    std::size_t all = 0, broken = 0;
+
+    /// Three standard deviations more than may be, if each were broken by itself: something has come over all of them.
+    bool is_burst(double target) const
+    {
+        const double n = static_cast<double>(all), chance = n * (1 - target);
+        return broken > 1 && static_cast<double>(broken) > chance + 3 * std::sqrt(chance * target);
+    }
+};
+
+/// Learns from the promises of a look. A burst tells no more than one broken promise does.
+void learn(const Judged& judged, Row row, ErrorRows& governors)
+{
+    constexpr double kGain = 0.25, kMost = 1e4;
+    constexpr double kSooner = 0.5, kLater = 1.02, kLongest = 16;
+    const double c = governors.target[row];
+    const bool burst = judged.is_burst(c);
+    const double broken = burst ? 1 : static_cast<double>(judged.broken), held = static_cast<double>(judged.all - judged.broken);
+    governors.judged[row] += static_cast<std::int64_t>(judged.all);
+    governors.held[row] += static_cast<std::int64_t>(judged.all - judged.broken);
+    governors.safety[row] = std::clamp(governors.safety[row] * std::exp(kGain * (c * broken - (1 - c) * held)), 1.0, kMost);
+    governors.patience[row] = std::clamp(governors.patience[row] * std::pow(kLater, held) * std::pow(kSooner, broken), 1.0, kLongest);
 }
 
 /// Measures a component, chooses its level, and says when it is measured again. `sample`: null if each component is measured.
 void measure(const StepContext& context, Row row, std::size_t k, double scale, Look& look, ErrorRows& governors, LevelControl& control,
-             Sample* sample)
+             Sample* sample, Judged& judged)
 {
     const GovernedComponent& g = look.watched()[k];
     const std::string_view id = control.id_of(g.component);
@@ -130,7 +152,7 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
     Measurement of(row, k, scale, governors, control);
     std::int32_t level = known ? g.level : 0, tried = level;
     double error = of.at(level);
-    if (known && level < look.finest()) judge(error <= bound, row, governors);
+    if (known && level < look.finest()) ++judged.all, judged.broken += error <= bound ? 0u : 1u;
     bool finer = false;
     for (; level < look.finest() && !of.fits(error); finer = true) error = of.at(++level);
     if (known && !finer && level > 0 && (sample || look.rested(k)))
@@ -151,7 +173,8 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
     // Far below the bound it is measured less often.
     const double likely = error * governors.safety[row];
     const double longest = answers_contacts(governors.watch.levels[row]) ? 1.0 : governors.patience[row];
-    const double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, longest) : std::isnan(likely) ? 1 : longest;
+    double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, longest) : std::isnan(likely) ? 1 : longest;
+    if (level == look.finest()) longer = std::max(longer, kIdle);
     const double then = context.time + every * (waits ? 1 : longer);
     entry = place_of(next, id);
     if (entry != next.end() && entry->name == id)
@@ -170,10 +193,13 @@ void leave_unseen(Row row, std::size_t k, Look& look, ErrorRows& governors, Leve
     if (look.may_choose(k, 0)) (void)look.choose(k, 0, "out of every viewer's sight");
 }
 
+/// s, from one look to the next: what happens in a time for which nobody looks would break promises unseen.
+double period_of(Row row, const ErrorRows& governors) { return std::min(governors.watch.every[row], governors.interval[row]); }
+
 /// What is not spent until the next look but one is lost.
 void allow_trials(const StepContext& context, Row row, const Look& look, ErrorRows& governors)
 {
-    const double steps = std::max(1.0, governors.watch.every[row] / context.dt);
+    const double steps = std::max(1.0, period_of(row, governors) / context.dt);
     const double more = governors.share[row] * steps * static_cast<double>(look.watched().size());
     governors.allowance[row] = std::min(governors.allowance[row] + more, 2 * more);
 }
@@ -193,17 +219,124 @@ const char* why_unmeasured(bool known, bool by_sight)
     return by_sight ? "it comes into view, and its error has not been measured yet" : "its error has not been measured yet";
 }
 
-/// Those that are due: when (s), or -1 if they have not been measured yet; and their place in the look.
+/// Those that are measured next: when (s), or -1 if they have not been measured yet; and their place in the look.
 using Due = std::vector<std::pair<double, std::size_t>>;
 
-/// Those first that have waited longest; but half of the measurements are for promises that are due, if there are so many: until one is
-/// judged nothing is known of any of them.
-void put_in_order(Due& waiting, std::size_t measurements)
+/// Puts those first that are measured in this look, and returns how many that are. Those come first that have waited longest; but half of
+/// the measurements are for promises, if there are so many: until one is judged nothing is known of any of them. Some promises are judged
+/// before they are due if there are not enough: what happens to all at the same time must not happen between two looks.
+std::size_t put_in_order(Due& waiting, std::size_t most, double now)
 {
     std::sort(waiting.begin(), waiting.end());
     const auto promised = std::find_if(waiting.begin(), waiting.end(), [](const auto& w) { return w.first >= 0; });
-    const auto judged = std::min(static_cast<std::ptrdiff_t>(measurements / 2), waiting.end() - promised);
-    std::rotate(waiting.begin(), promised, promised + judged);
+    const auto later = std::find_if(promised, waiting.end(), [&](const auto& w) { return w.first > now; });
+    const auto probes = static_cast<std::ptrdiff_t>(most / 8);
+    const auto judged = std::min(static_cast<std::ptrdiff_t>(most / 2), later - promised);
+    const auto first = std::min(std::max(judged, probes), waiting.end() - promised);
+    const auto due = static_cast<std::size_t>(std::max(later - waiting.begin(), promised - waiting.begin() + first));
+    std::rotate(waiting.begin(), promised, promised + first);
+    return std::min(due, most);
+}
+
+/// One look of a governor by error.
+class ErrorLook
+{
+public:
+    ErrorLook(const StepContext& context, Row row, ErrorRows& governors, LevelControl& control)
+        : context_(context),
+          row_(row),
+          g_(governors),
+          control_(control),
+          look_(context, row, governors.watch, control),
+          now_(context.time + 1e-9 * std::max(1.0, context.time)),
+          by_sight_(governors.unit[row] == "pixels"),
+          samples_(governors.share[row] > 0 && !by_sight_),
+          sample_(row, governors, samples_ ? static_cast<std::size_t>(look_.finest() + 1) : 0)
+    {
+    }
+    void run();
+
+private:
+    Due those_in_sight();
+    void pass_over(const std::pair<double, std::size_t>& waits);
+    void doubt_all(const Due& waiting, std::size_t from);
+    double scale_of(std::size_t k) const
+    {
+        return by_sight_ ? pixels_per_metre(look_.watched()[k], control_.viewpoints(), g_.look_ahead[row_], g_.margin[row_]) : 1.0;
+    }
+
+    const StepContext& context_;
+    Row row_;
+    ErrorRows& g_;
+    LevelControl& control_;
+    Look look_;
+    double now_;
+    bool by_sight_, samples_;
+    Sample sample_;
+};
+
+Due ErrorLook::those_in_sight()
+{
+    Due out;
+    for (std::size_t k = 0; k < look_.watched().size(); ++k)
+    {
+        if (scale_of(k) == kHidden)
+        {
+            leave_unseen(row_, k, look_, g_, control_);
+            continue;
+        }
+        const std::string_view id = control_.id_of(look_.watched()[k].component);
+        const auto entry = place_of(g_.next[row_], id);
+        const bool known = entry != g_.next[row_].end() && entry->name == id;
+        out.emplace_back(known ? std::get<double>(entry->value) : -1, k);
+    }
+    return out;
+}
+
+/// What is not measured in this look.
+void ErrorLook::pass_over(const std::pair<double, std::size_t>& waits)
+{
+    const auto [at, k] = waits;
+    if (at > now_) return;
+    if (samples_) return follow_sample(row_, k, sample_, look_, g_);
+    const bool too_long = at < 0 || at < context_.time - 2 * g_.watch.every[row_];
+    if (too_long && look_.may_choose(k, look_.finest())) (void)look_.choose(k, look_.finest(), why_unmeasured(at >= 0, by_sight_));
+}
+
+/// Promises of many were broken at the same time, so none of the others is trusted until it is measured again.
+void ErrorLook::doubt_all(const Due& waiting, std::size_t from)
+{
+    for (std::size_t n = from; n < waiting.size(); ++n)
+    {
+        const std::size_t k = waiting[n].second;
+        // One after the other, so that not all are measured at the same look.
+        const double part = static_cast<double>(n - from + 1) / static_cast<double>(waiting.size() - from);
+        const double again = context_.time + kIdle * part * g_.watch.every[row_];
+        const std::string_view id = control_.id_of(look_.watched()[k].component);
+        if (const auto entry = place_of(g_.next[row_], id); entry != g_.next[row_].end() && entry->name == id) entry->value = again;
+        if (look_.may_choose(k, look_.finest())) (void)look_.choose(k, look_.finest(), "the promises of many others have just been broken");
+    }
+}
+
+void ErrorLook::run()
+{
+    g_.confidence[row_] = confidence_of(g_.held[row_], g_.judged[row_]);
+    Due waiting = those_in_sight();
+    if (waiting.empty()) return;
+    const std::size_t measured = put_in_order(waiting, static_cast<std::size_t>(g_.looks[row_]), now_);
+    if (measured > 0) g_.worst[row_] = 0;
+    if (samples_) allow_trials(context_, row_, look_, g_);
+    Judged judged;
+    for (std::size_t n = 0; n < waiting.size(); ++n)
+    {
+        const std::size_t k = waiting[n].second;
+        if (n < measured && (!samples_ || g_.allowance[row_] > 0))
+            measure(context_, row_, k, scale_of(k), look_, g_, control_, samples_ ? &sample_ : nullptr, judged);
+        else
+            pass_over(waiting[n]);
+    }
+    learn(judged, row_, g_);
+    if (!samples_ && judged.is_burst(g_.target[row_])) doubt_all(waiting, measured);
 }
 
 }  // namespace
@@ -256,45 +389,7 @@ void ErrorRows::describe(Schema& schema)
 
 void keep_error(const StepContext& context, Row row, ErrorRows& governors, LevelControl& control)
 {
-    if (!due(context, governors.watch.every[row])) return;
-    Look look(context, row, governors.watch, control);
-    governors.confidence[row] = confidence_of(governors.held[row], governors.judged[row]);
-    const bool by_sight = governors.unit[row] == "pixels";
-    Due waiting;
-    const auto scale_of = [&](std::size_t k) {
-        return by_sight ? pixels_per_metre(look.watched()[k], control.viewpoints(), governors.look_ahead[row], governors.margin[row]) : 1.0;
-    };
-    for (std::size_t k = 0; k < look.watched().size(); ++k)
-    {
-        const std::string_view id = control.id_of(look.watched()[k].component);
-        if (scale_of(k) == kHidden)
-        {
-            leave_unseen(row, k, look, governors, control);
-            continue;
-        }
-        const auto entry = place_of(governors.next[row], id);
-        const bool known = entry != governors.next[row].end() && entry->name == id;
-        const double at = known ? std::get<double>(entry->value) : 0;
-        if (at <= context.time + 1e-9 * std::max(1.0, context.time)) waiting.emplace_back(known ? at : -1, k);
-    }
-    if (waiting.empty()) return;
-    governors.worst[row] = 0;
-    const auto most = static_cast<std::size_t>(governors.looks[row]);
-    put_in_order(waiting, most);
-    const bool samples = governors.share[row] > 0 && !by_sight;
-    Sample sample(row, governors, samples ? static_cast<std::size_t>(look.finest() + 1) : 0);
-    if (samples) allow_trials(context, row, look, governors);
-    for (std::size_t n = 0; n < waiting.size(); ++n)
-    {
-        const std::size_t k = waiting[n].second;
-        if (n < most && (!samples || governors.allowance[row] > 0))
-            measure(context, row, k, scale_of(k), look, governors, control, samples ? &sample : nullptr);
-        else if (samples)
-            follow_sample(row, k, sample, look, governors);
-        else if ((waiting[n].first < 0 || waiting[n].first < context.time - 2 * governors.watch.every[row]) &&
-                 look.may_choose(k, look.finest()))
-            (void)look.choose(k, look.finest(), why_unmeasured(waiting[n].first >= 0, by_sight));
-    }
+    if (due(context, period_of(row, governors))) ErrorLook(context, row, governors, control).run();
 }
 
 }  // namespace plab::governors

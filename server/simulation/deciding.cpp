@@ -46,14 +46,20 @@ std::vector<Apart> departures(const FirstStep& one, const FirstStep& other)
     return out;
 }
 
-/// What a departure becomes over `times` as many steps, if it goes on to grow as it grew when time went on by the factor `grown_in`: as a
-/// power of time. An error that keeps its direction grows linearly, that of a speed which nothing brings back quadratically; what
-/// oscillates looks slower for a while, and is taken to grow linearly.
-double continued(double before, double now, double grown_in, double times)
+/// What a departure becomes within n steps, if it was d_k after k steps and d_m after m. Each step errs alike: what it errs in place adds
+/// up, and what it errs in speed counts once more in each step after it,
+///
+///   d_n = a n + b n (n - 1) / 2,   a, b >= 0.
+///
+/// What oscillates looks slower for a while, and is taken to grow linearly (b = 0).
+double continued(double d_k, double d_m, double k, double m, double n)
 {
-    if (!(now > 0) || times <= 1) return now;
-    const double power = before > 0 && grown_in > 1 ? std::clamp(std::log(now / before) / std::log(grown_in), 1.0, 2.0) : 2.0;
-    return now * std::pow(times, power);
+    if (!(d_m > 0) || n <= m) return d_m;
+    const double pairs_k = k * (k - 1) / 2, pairs_m = m * (m - 1) / 2, pairs_n = n * (n - 1) / 2;
+    if (!(pairs_m > 0)) return d_m * n / m;
+    const double most = d_m / pairs_m;  // all of it an error in speed
+    const double b = k < m ? std::clamp((d_m / m - d_k / k) / (pairs_m / m - pairs_k / k), 0.0, most) : most;
+    return (d_m - b * pairs_m) / m * n + b * pairs_n;
 }
 
 std::string file_of(const world::World& world, std::uint32_t component)
@@ -98,7 +104,9 @@ TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& l
     const bool goes_on = run_.world().type_of(component)->info.family == "Solver";
     // A decision ends, however long the interval is.
     constexpr double kMostSteps = 256;
-    const double wanted = goes_on ? std::min(whole, std::max(2.0, std::ceil(whole / 4))) : whole;
+    // A few steps tell neither what adds up from what grows, nor what a mechanism does in the rest of the interval.
+    constexpr double kFewest = 8;
+    const double wanted = goes_on ? std::min(whole, std::max(kFewest, std::ceil(whole / 4))) : whole;
     const int steps = static_cast<int>(std::min(wanted, kMostSteps));
     constexpr std::uint64_t kMeasure = 200'000;  // ns
     const FirstStepChoice choice{steps, measuring_ && with_cost ? kMeasure : 0};
@@ -108,10 +116,10 @@ TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& l
     if (apart.empty()) return {};
     const std::size_t half = (apart.size() + 1) / 2;
     const Apart &halfway = apart[half - 1], &end = apart.back();
-    const auto made = static_cast<double>(apart.size()), times = whole / made, grown_in = made / static_cast<double>(half);
+    const auto k = static_cast<double>(half), m = static_cast<double>(apart.size());
     TrialFindings out;
-    out.error.distance = continued(halfway.distance, end.distance, grown_in, times);
-    out.error.angle = continued(halfway.angle, end.angle, grown_in, times);
+    out.error.distance = continued(halfway.distance, end.distance, k, m, whole);
+    out.error.angle = continued(halfway.angle, end.angle, k, m, whole);
     out.seconds = one.seconds, out.finer_seconds = other.seconds;
     if (one.course.back().size() == other.course.back().size()) out.error.power = std::fabs(one.energy - other.energy) / (steps * h);
     return out;
@@ -127,29 +135,13 @@ LevelError Simulation::try_level(std::uint32_t component, const Level& level, co
 
 void Simulation::measure_for_governors()
 {
-    if (!deciding_ || !measuring_ || !run_.levels().watches_anything() || recent_steps_.empty()) return;
-    // Most steps shall keep within a budget, so what counts is the cost that 19 of 20 steps do not exceed.
-    const auto nearly_all = [this](double StepCost::*clock)
-    {
-        std::vector<double> values;
-        for (const StepCost& step : recent_steps_) values.push_back(step.*clock);
-        const auto at = values.begin() + static_cast<std::ptrdiff_t>(19 * (values.size() - 1) / 20);
-        std::nth_element(values.begin(), at, values.end());
-        return *at;
-    };
-    bool taken = false;
-    const auto cost = [&]
-    {
-        taken = true;
-        return StepCost{nearly_all(&StepCost::wall), nearly_all(&StepCost::processor)};
-    };
-    for (Request& request : run_.levels().measurements(time(), dt(), cost))
+    if (!deciding_ || !measuring_ || !run_.levels().watches_anything()) return;
+    for (Request& request : run_.levels().measurements(time(), dt(), step_times_))
     {
         Reply reply = carry_out(request);
         reply.made = std::make_shared<const Request>(std::move(request));
         own_requests_.push_back(std::move(reply));
     }
-    if (taken) recent_steps_.clear();
 }
 
 void Simulation::decide()
@@ -255,7 +247,7 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
             refuse_decision(decision.by, decision.verb + " " + decision.target, last_refusal_);
         return false;
     }
-    if (decision.verb.empty()) run_.levels().note_exchange(decision.by, decision.operations.size(), cost);
+    if (decision.verb.empty()) run_.levels().note_exchange(decision.by, decision.operations.size(), cost), step_times_.begin_anew();
     run_.watch->begin_anew();
     note_levels();
     for (std::size_t k = 0; k < reply.swaps.size() && decision.verb.empty(); ++k)

@@ -198,6 +198,7 @@ void Simulation::set_interruption(const Interruption* interruption)
 bool Simulation::run_step()
 {
     run_.changed_by_scripts.clear(), script_changes_.clear();
+    const std::uint64_t whole_begin = now_ns(), thread_begin = thread_ns();
     decide();
     gave_up_ = false;
     const bool may_be_given_up = context_.interruption != nullptr;
@@ -206,7 +207,7 @@ bool Simulation::run_step()
     run_.stepper().draw_for(images_);
     run_.stepper().log_contacts(logs_contacts_);
     run_.watch->before_step(run_.view());
-    const std::uint64_t begin = now_ns(), thread_begin = run_.levels().watches_anything() ? thread_ns() : 0;
+    const std::uint64_t begin = now_ns();
     context_.progress.begin(Activity::Step, run_.clock.tick, begin);
     run_.stepper().step(run_.clock.tick, start, run_.clock.time_at(run_.clock.tick + 1) - start);
     if (may_be_given_up && run_.stepper().gave_up()) take_back_step();
@@ -214,9 +215,7 @@ bool Simulation::run_step()
     if (gave_up_) return false;
     const auto took = static_cast<double>(now_ns() - begin);
     context_.note_cost(took);
-    constexpr std::size_t kMostRecent = 1024;
-    if (run_.levels().watches_anything() && recent_steps_.size() < kMostRecent)
-        recent_steps_.push_back({took * 1e-9, static_cast<double>(thread_ns() - thread_begin) * 1e-9});
+    note_step_time(whole_begin, thread_begin);
     run_.events = std::move(decided_.events);
     run_.events.insert(run_.events.end(), run_.stepper().events().begin(), run_.stepper().events().end());
     decided_.events.clear();
@@ -225,6 +224,16 @@ bool Simulation::run_step()
     quarantine_failed();
     read_changed_governors();
     return true;
+}
+
+/// What governors spread over steps themselves is no part of what these cost; what others decide is.
+void Simulation::note_step_time(std::uint64_t begin, std::uint64_t thread_begin)
+{
+    if (!run_.levels().watches_anything()) return;
+    const StepCost& told = run_.levels().decision_cost().told;
+    const StepCost cost{1e-9 * static_cast<double>(now_ns() - begin) - told.wall,
+                        1e-9 * static_cast<double>(thread_ns() - thread_begin) - told.processor};
+    if (run_.levels().note_step(cost)) step_times_.add(cost);
 }
 
 void Simulation::take_back_step()

@@ -139,6 +139,7 @@ private:
     TrialFindings error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval, bool with_cost);
 
     bool run_step();
+    void note_step_time(std::uint64_t begin, std::uint64_t thread_begin);
     void take_back_step();
     void freeze_lost_objects();
     void release_lost_objects();
@@ -177,7 +178,7 @@ private:
     };
     std::vector<Tried> tried_;
     std::string last_refusal_;
-    std::vector<StepCost> recent_steps_;  ///< since the last measurement for governors
+    StepTimes step_times_;  ///< for governors
 };
 
 }  // namespace plab::simulation

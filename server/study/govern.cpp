@@ -193,7 +193,10 @@ private:
         const double begin = thread_cpu_seconds();
         (void)c.run->step();
         // The first step after a snapshot copies what it shares with that. This is not what the scene costs.
-        if (!std::exchange(c.shares_snapshot, false)) c.point.steps.push_back(thread_cpu_seconds() - begin);
+        if (std::exchange(c.shares_snapshot, false)) return {};
+        const simulation::DecisionCost& decided = c.run->levels().decision_cost();
+        c.point.steps.push_back(
+            {thread_cpu_seconds() - begin, decided.trying.processor + decided.exchanging.processor, decided.trials, decided.exchanged});
         return {};
     }
 
@@ -204,11 +207,11 @@ private:
             if (auto made = step(c); !made) return made;
         if (auto ready = begin_reference(*c.run); !ready) return ready;
         c.shares_snapshot = true;
-        while (c.run->time() < end - half)
-        {
+        // One after the other, so that the run finds its data where it left them.
+        int steps = 0;
+        for (; c.run->time() < end - half; ++steps)
             if (auto made = step(c); !made) return made;
-            for (int k = 0; k < plan_.refine; ++k) (void)reference_->step_once();
-        }
+        for (int k = 0; k < steps * plan_.refine; ++k) (void)reference_->step_once();
         add_errors(*c.run, *reference_, pairs(*c.run), c.point.error);
         count_levels(c);
         return {};
@@ -254,7 +257,8 @@ private:
 
     void finish(Contender& c)
     {
-        const std::vector<double>& steps = c.point.steps;
+        std::vector<double> steps;
+        for (const GovernStep& s : c.point.steps) steps.push_back(s.seconds);
         double cpu = 0;
         for (const double s : steps) cpu += s;
         c.point.cpu = cpu / (std::max<double>(1, static_cast<double>(steps.size())) * c.run->dt());

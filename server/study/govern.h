@@ -39,6 +39,13 @@ struct GovernError
     std::size_t seen = 0, bodies = 0;     ///< samples
 };
 
+/// s of CPU time, with what was decided before the step; how many levels were tried and components exchanged.
+struct GovernStep
+{
+    double seconds = 0, deciding = 0;
+    std::size_t trials = 0, exchanged = 0;
+};
+
 struct GovernPoint
 {
     std::string name;  ///< "governed", or the level that all have
@@ -46,8 +53,8 @@ struct GovernPoint
     double cpu = 0;  ///< s of CPU time for each simulated second: the whole scene, with all decisions
     double step_median = 0, step_99 = 0, step_longest = 0;  ///< s of CPU time
     GovernError error;
-    std::vector<double> shares;  ///< mean fraction of the components at each level
-    std::vector<double> steps;   ///< s of CPU time of each step, apart from those that copy what they share with a snapshot
+    std::vector<double> shares;     ///< mean fraction of the components at each level
+    std::vector<GovernStep> steps;  ///< apart from those that copy what they share with a snapshot
 };
 
 struct GovernResult

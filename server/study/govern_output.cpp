@@ -44,6 +44,9 @@ std::string hint_of(const GovernPoint& p, const std::vector<std::string>& levels
     return out;
 }
 
+/// The type of a level without its parameters; "most exact levels" as it is.
+std::string label_of(const std::string& name) { return name.find('/') < name.find(' ') ? name.substr(0, name.find(' ')) : name; }
+
 /// Exact zeros have no place on a logarithmic axis.
 double shown(double pixels, double least) { return std::max(pixels, least); }
 
@@ -93,7 +96,7 @@ Drawing govern_picture(const GovernResult& r)
         const Spot at = p.at(costs[k], errors[k]);
         const bool governed = r.points[k].governed;
         d.marker(at, governed ? 3 : 0, governed ? 8 : 5.5, Ink::series(governed ? 1 : 0), true, hint_of(r.points[k], r.levels));
-        labels.add(d, at, governed ? r.type : r.points[k].name.substr(0, r.points[k].name.find(' ')), 12, {}, governed);
+        labels.add(d, at, governed ? r.type : label_of(r.points[k].name), 12, {}, governed);
     }
     return d;
 }
@@ -117,19 +120,21 @@ std::string csv_of(const GovernResult& r)
     return rows.take();
 }
 
-/// A line for each step: what it took with each choice, s of CPU time.
+/// A line for each step: what it took with each choice, s of CPU time; and of the governed run what was decided before it.
 std::string steps_of(const GovernResult& r)
 {
     CsvRow rows;
     rows.put("step");
     std::size_t longest = 0;
     for (const GovernPoint& p : r.points) rows.text(p.name), longest = std::max(longest, p.steps.size());
-    rows.end();
+    rows.text("deciding").text("trials").text("exchanged").end();
     for (std::size_t n = 0; n < longest; ++n)
     {
         rows.exact(static_cast<double>(n + 1));
-        for (const GovernPoint& p : r.points) (void)(n < p.steps.size() ? rows.exact(p.steps[n]) : rows.none());
-        rows.end();
+        for (const GovernPoint& p : r.points) (void)(n < p.steps.size() ? rows.exact(p.steps[n].seconds) : rows.none());
+        const std::vector<GovernStep>& governed = r.points.front().steps;
+        const GovernStep now = n < governed.size() ? governed[n] : GovernStep{};
+        rows.exact(now.deciding).exact(static_cast<double>(now.trials)).exact(static_cast<double>(now.exchanged)).end();
     }
     return rows.take();
 }

@@ -216,6 +216,13 @@ TEST_CASE("the levels of a scene and of its recording are checked with the same 
     const std::string table = read(live + "/levels.csv");
     CHECK(has(table, "lod,Governor/Error,m,0.001,0,0.25,1,1,"));
     CHECK(table == read(recorded + "/levels.csv"));
+    const std::string estimates = read(live + "/estimates.csv");
+    CHECK(has(estimates, "governor,level,component,interval_begin,unit,estimate,true_error\n"));
+    // The first and the fifth interval, both levels below the most exact one.
+    for (const char* level : {"Solver/SemiImplicitEuler", "Solver/RungeKutta4"})
+        for (const char* begin : {"0", "1"}) CHECK(has(estimates, "lod," + std::string(level) + ",bob.solver," + begin + ",m,"));
+    CHECK(std::count(estimates.begin(), estimates.end(), '\n') == 5);
+    CHECK(estimates == read(recorded + "/estimates.csv"));
     CHECK(study({scene, "--verify-levels", "-o", live}).code == 2);  // how long?
     CHECK(study({scene, "--verify-levels", "--govern", "--until", "1", "-o", live}).code == 2);
     CHECK(has(study({scene, "--verify-levels", "--list"}).output, "lod (Governor/Error): 1 components, at most 0.001 m within 0.25 s"));

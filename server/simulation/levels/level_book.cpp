@@ -231,40 +231,74 @@ bool is_input(const Schema& schema, const char* name)
 
 }  // namespace
 
-void LevelBook::note_exchange(std::uint32_t governor, std::size_t n, const StepCost& cost)
+bool LevelBook::is_told(const Governor& governor, const char* input) const
 {
-    for (Governor& g : governors_)
-        if (g.component == governor) g.exchanged = n, g.exchange_cost = cost;
+    return is_input(world_.table_of(governor.component).schema(), input);
 }
 
-std::vector<Request> LevelBook::measurements(double time, double dt, const std::function<StepCost()>& cost)
+void LevelBook::note_exchange(std::uint32_t governor, std::size_t n, const StepCost& cost)
+{
+    decided_.exchanged += n, decided_.exchanging += cost;
+    for (Governor& g : governors_)
+        if (g.component == governor)
+        {
+            g.exchanged = n, g.exchange_cost = cost, g.waits = true;
+            if (is_told(g, "exchange_cost")) decided_.told += cost;
+        }
+}
+
+void LevelBook::note_tried(Governor& g, const StepCost& cost)
+{
+    ++g.tried, ++decided_.trials;
+    g.trial_time += cost, decided_.trying += cost;
+    if (is_told(g, "trial_time")) decided_.told += cost;
+}
+
+bool LevelBook::note_step(const StepCost& cost)
+{
+    decided_.step = cost;
+    return decided_.told.wall == 0;
+}
+
+/// Whether a governor is told at this boundary what steps cost.
+bool LevelBook::is_due(const Governor& g, double time, double dt, const StepTimes& steps) const
+{
+    constexpr std::size_t kFew = 4;  // steps after an exchange: their median is not that of the first one, which is longer
+    if (!is_told(g, "step_cost") || steps.count() == 0) return false;
+    if (g.waits) return steps.count() >= kFew || real_of(world_, g.component, "step_cost") == 0;
+    const double every = std::max(dt, real_of(world_, g.component, "every"));
+    return std::floor(time / every + 1e-9) != std::floor((time - dt) / every + 1e-9);
+}
+
+std::vector<Request> LevelBook::measurements(double time, double dt, StepTimes& steps)
 {
     std::vector<Request> out;
+    bool used = false;
     for (Governor& g : governors_)
     {
-        const Schema& schema = world_.table_of(g.component).schema();
         const bool by_wall = text_of(world_, g.component, "clock") == "wall";
         const auto counted = [&](const StepCost& c) { return by_wall ? c.wall : c.processor; };
         Request request;
         request.trial.budget = TrialChoice::Budget::None;
-        const auto set = [&](const char* name, Value value) {
-            request.operations.push_back(SetOperation{world_.id_of(g.component), name, std::move(value)});
-        };
-        const double every = std::max(dt, real_of(world_, g.component, "every"));
-        const bool due = std::floor(time / every + 1e-9) != std::floor((time - dt) / every + 1e-9);
-        if (is_input(schema, "step_cost") && (due || real_of(world_, g.component, "step_cost") == 0))
+        const auto set = [&](const char* name, Value value)
         {
-            set("step_cost", Value(counted(cost())));
+            if (is_told(g, name)) request.operations.push_back(SetOperation{world_.id_of(g.component), name, std::move(value)});
+        };
+        if (is_due(g, time, dt, steps))
+        {
+            used = true, g.waits = false;
+            set("step_cost", Value(counted(steps.usual()))), set("spread", Value(counted(steps.spread())));
             Reals trials;
             for (std::vector<double>& seconds : g.trial_seconds) trials.push_back(median_of(seconds)), seconds.clear();
-            const bool any = std::any_of(trials.begin(), trials.end(), [](double s) { return s > 0; });
-            if (any && is_input(schema, "trial_costs")) set("trial_costs", Value(std::move(trials)));
+            if (std::any_of(trials.begin(), trials.end(), [](double s) { return s > 0; })) set("trial_costs", Value(std::move(trials)));
         }
-        if (g.exchanged > 0 && is_input(schema, "exchange_cost"))
-            set("exchange_cost", Value(Reals{static_cast<double>(g.exchanged), counted(g.exchange_cost)}));
-        g.exchanged = 0;
+        if (g.exchanged > 0)
+            set("exchange_cost", Value(Reals{static_cast<double>(g.exchanged), counted(g.exchange_cost), counted(decided_.step)}));
+        if (g.tried > 0) set("trial_time", Value(Reals{static_cast<double>(g.tried), counted(g.trial_time), counted(decided_.step)}));
+        g.exchanged = g.tried = 0, g.trial_time = {};
         if (!request.operations.empty()) out.push_back(std::move(request));
     }
+    if (used) steps.begin_anew();
     return out;
 }
 

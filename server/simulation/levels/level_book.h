@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "simulation/levels/ladder.h"
+#include "simulation/levels/step_times.h"
 #include "simulation/step/stepper.h"
 
 namespace plab::simulation
@@ -46,10 +47,13 @@ struct LevelTrial
     double seconds = 0;   ///< of the step; 0: not measured
 };
 
-/// s, what a step costs: time that passes, and time of the processor that the stepping thread used.
-struct StepCost
+/// What was decided before a step: how many trials of levels (each beside the next finer one) and exchanges, and what both cost.
+struct DecisionCost
 {
-    double wall = 0, processor = 0;
+    std::size_t trials = 0, exchanged = 0;
+    StepCost trying, exchanging;
+    StepCost told;  ///< that part of both of which the governors are told, so that they can spread it over steps
+    StepCost step;  ///< the step after that, with all that is not told
 };
 
 /// A watched component as an observer sees it.
@@ -92,12 +96,18 @@ public:
     /// What was carried out, for observers.
     void note_change(std::uint32_t component, std::string reason, double time);
 
+    /// Of the last boundary.
+    const DecisionCost& decision_cost() const { return decided_; }
     /// What a transaction of a governor cost that exchanged n components.
     void note_exchange(std::uint32_t governor, std::size_t n, const StepCost& cost);
-    /// Inputs for governors that have these fields: `step_cost` (s), what steps have cost, as often as their field `every` (s) states and
-    /// once as soon as it is known, and with it `trial_costs` (s for each object, by level); `exchange_cost` after each exchange. By the
-    /// wall clock if their field `clock` says "wall"; trial steps always.
-    std::vector<Request> measurements(double time, double dt, const std::function<StepCost()>& cost);
+    /// What the step after the last boundary cost, without what governors are told. Returns whether it was a usual one: after an exchange
+    /// or a trial the processor finds other data in its caches.
+    bool note_step(const StepCost& cost);
+    /// Inputs for governors that have these fields: `step_cost` (s), what a step costs usually, as often as their field `every` (s) states,
+    /// once as soon as it is known, and soon after they have exchanged something; with it `spread`, and `trial_costs` (s for each object,
+    /// by level); `exchange_cost` after each exchange, and `trial_time` after trials: how many, and what they cost. By the wall clock if
+    /// their field `clock` says "wall"; steps of trials always. `steps`: how it was, which is used up then.
+    std::vector<Request> measurements(double time, double dt, StepTimes& steps);
 
     /// All watched components, by governor and then by id.
     std::vector<LevelInfo> levels() const;
@@ -127,6 +137,9 @@ private:
         std::size_t trials = 0;                          ///< whose cost was measured: after some of them, steps tell it better
         std::size_t exchanged = 0;                       ///< components
         StepCost exchange_cost;
+        std::size_t tried = 0;  ///< levels, each beside the next finer one
+        StepCost trial_time;
+        bool waits = true;  ///< for what a step costs with the levels that it has chosen
     };
     struct Change
     {
@@ -142,6 +155,9 @@ private:
     };
     class Desk;
 
+    bool is_told(const Governor& governor, const char* input) const;
+    bool is_due(const Governor& governor, double time, double dt, const StepTimes& steps) const;
+    void note_tried(Governor& governor, const StepCost& cost);
     static void note_trial(Governor& governor, std::size_t index, std::int32_t level, double interval, const TrialFindings& found,
                            std::vector<LevelTrial>& known);
     const Watched* find_watched(const Governor& governor, std::uint32_t component) const;
@@ -164,9 +180,10 @@ private:
     /// By directory index: what the world returns is not valid any more after a trial, which may copy the directory that a snapshot shares.
     std::vector<std::string> ids_;
     std::vector<std::uint32_t> watcher_, changed_;  ///< governor of each component, by directory index; components
-    bool deciding_ = false;                         ///< trials exchange components and put them back meanwhile
-    std::uint64_t structure_ = 0;                   ///< counts the calls of rebuild()
-    std::optional<world::Revisions> built_from_;    ///< of the world at the last rebuild; empty: it failed
+    DecisionCost decided_;
+    bool deciding_ = false;                       ///< trials exchange components and put them back meanwhile
+    std::uint64_t structure_ = 0;                 ///< counts the calls of rebuild()
+    std::optional<world::Revisions> built_from_;  ///< of the world at the last rebuild; empty: it failed
     std::vector<double> radius_of_shaft_;
     // Of a Desk, kept from step to step, so that a look at a scene in which nothing changes needs no memory.
     std::vector<Viewpoint> viewpoints_;

@@ -72,3 +72,57 @@ TEST_CASE("a governed scene and its single levels: the cheapest level has the la
     REQUIRE_FALSE(refused.ok());
     CHECK(test::has(refused.error().text(), "no governor 'other'"));
 }
+
+TEST_CASE("a pattern compares several governors at once: of each ladder the ends, and what lies between them")
+{
+    std::string text = "<scene dt='1/60'/><component id='ball' type='Shape/Sphere' radius='0.3'/><component id='eye' type='Viewer/Free'/>";
+    const char* kLadders[] = {"Solver/SemiImplicitEuler; Solver/DormandPrince54",
+                              "Solver/SemiImplicitEuler; Solver/RungeKutta4; Solver/DormandPrince54"};
+    for (int i = 0; i < 4; ++i)
+    {
+        const std::string id = std::to_string(i);
+        text += "<component id='post." + id + "' type='State/Static' position='8 " + id + " 1'/><component id='bob." + id +
+                "' type='State/RigidBody' mass='1' shape='ball' position='8 " + id +
+                " 0.2' solver='Solver/RungeKutta4'/><component id='spring." + id + "' type='Constraint/SpringDamper' a='post." + id +
+                "' b='bob." + id + "' length='1' stiffness='60'/>";
+        if (i < 3)
+            text += "<component id='lod." + id + "' type='Governor/Visibility' watches='bob." + id + ".solver' pixels='" +
+                    (i == 0 ? "1" : "1 2") + "' every='0.1' dwell='0' levels='" + kLadders[i == 0 ? 0 : 1] + "'/>";
+    }
+    auto scene = test::compile_text("<plab version='1'>" + text + "</plab>");
+    REQUIRE_MESSAGE(scene.ok(), test::reasons(scene));
+    GovernPlan plan;
+    plan.scene = scene.take(), plan.until = 1;
+    const auto names = [&](const char* pattern)
+    {
+        plan.governor = pattern;
+        const auto result = governed_levels(test::library(), plan);
+        REQUIRE_MESSAGE(result.ok(), test::reasons(result));
+        CHECK(result->type == "Governor/Visibility");
+        return std::pair(result->governor, result->levels);
+    };
+    const std::vector<std::string> three{"cheapest levels", "levels 2 of 3", "most exact levels"};
+    CHECK(names("lod.?") == std::pair(std::string("lod.0, lod.1, lod.2"), three));
+    CHECK(names("*.1 *.2") == std::pair(std::string("lod.1, lod.2"), three));
+    CHECK(names("lod.0").second == std::vector<std::string>{"Solver/SemiImplicitEuler", "Solver/DormandPrince54"});
+    plan.governor = "*";
+    const auto result = compare_governor(test::library(), plan);
+    REQUIRE_MESSAGE(result.ok(), test::reasons(result));
+    CHECK(result->components == 3);
+    CHECK(result->objects == 3);  // the fourth body is not watched
+    REQUIRE(result->points.size() == 4);
+    // The governed run gives the most exact levels to all, because all are near, at its first boundary.
+    const std::vector<GovernPoint>& points = result->points;
+    CHECK(points[0].error.pixels == doctest::Approx(points[3].error.pixels).epsilon(1e-9));
+    CHECK(points[1].error.pixels > 2 * points[2].error.pixels);
+    CHECK(points[2].error.pixels > 2 * points[3].error.pixels);
+    CHECK(points[0].steps.size() == 59);  // without the step after the snapshot
+    CHECK(points[0].steps[0].exchanged == 3);
+    CHECK(points[0].steps[0].deciding > 0);
+    CHECK(points[0].steps[1].exchanged == 0);
+    CHECK(points[3].steps[0].exchanged == 0);
+    const std::string folder = "unit_study_govern";  // in the build folder of the test
+    REQUIRE(write_govern(*result, folder).ok());
+    const std::string table = test::content_of(folder + "/steps.csv");
+    CHECK(test::has(table, "step,governed,cheapest levels,levels 2 of 3,most exact levels,deciding,trials,exchanged\n"));
+}

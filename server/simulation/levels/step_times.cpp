@@ -1,0 +1,58 @@
+#include "simulation/levels/step_times.h"
+
+#include <algorithm>
+
+namespace plab::simulation
+{
+namespace
+{
+
+constexpr std::size_t kMostSteps = 1024;  ///< of which the median is taken
+constexpr std::size_t kMemory = 512;      ///< ratios
+constexpr std::size_t kFew = 4;           ///< a median of fewer steps is chance
+
+double at_share(const std::vector<StepCost>& of, double StepCost::*clock, double share)
+{
+    std::vector<double> values;
+    for (const StepCost& c : of) values.push_back(c.*clock);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+}  // namespace
+
+void StepTimes::add(const StepCost& step)
+{
+    if (steps_.size() < kMostSteps) steps_.push_back(step);
+}
+
+void StepTimes::begin_anew()
+{
+    const StepCost by = usual();
+    if (steps_.size() >= kFew && by.wall > 0 && by.processor > 0)
+        for (const StepCost& step : steps_)
+        {
+            const StepCost ratio{step.wall / by.wall, step.processor / by.processor};
+            if (ratios_.size() < kMemory)
+                ratios_.push_back(ratio);
+            else
+                ratios_[oldest_] = ratio, oldest_ = (oldest_ + 1) % kMemory;
+        }
+    steps_.clear();
+}
+
+StepCost StepTimes::usual() const
+{
+    if (steps_.empty()) return {};
+    return {at_share(steps_, &StepCost::wall, 0.5), at_share(steps_, &StepCost::processor, 0.5)};
+}
+
+StepCost StepTimes::spread() const
+{
+    if (ratios_.empty()) return {1, 1};
+    const auto of = [this](double StepCost::*clock) { return std::max(1.0, at_share(ratios_, clock, 0.99)); };
+    return {of(&StepCost::wall), of(&StepCost::processor)};
+}
+
+}  // namespace plab::simulation
