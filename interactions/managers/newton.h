@@ -18,7 +18,9 @@
 /// Newton's method converges only near a solution. solve() therefore takes the cheapest method that works: (1) nothing, if the
 /// last impulses still satisfy the law; (2) some sweeps, for a large island that has only drifted by rounding; (3) Newton's
 /// method from the last impulses; (4) rounds of the augmented Lagrangian (lagrangian.h), each followed by Newton's method; (5)
-/// Gauss-Seidel sweeps alternating with Newton's method, reported as `fell_back`.
+/// Gauss-Seidel sweeps alternating with Newton's method, reported as `fell_back`. Sweeps would let a chain of light links under a heavy
+/// load stretch, so the joints are then solved exactly, with the impulses of all others as they are: contacts may be left violated, joints
+/// never.
 /// Sources: Alart, Curnier, CMAME 92 (1991), eq. 3.6; Rockafellar (1976) for the proximal term; Acary, Bourrich, Siconos (2018),
 /// section 5, for the Newton method applied to it.
 #pragma once
@@ -68,6 +70,8 @@ private:
     void polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out);
     void approach(Problem& problem, const Solving& how, Solved& out);
     bool settles_by_sweeps(Problem& problem, double guess, const Solving& how, Solved& out);
+    void hold_joints(Problem& problem, double tolerance);
+    void hold_joints_without_gain(Problem& problem, double tolerance);
     void finish_by_sweeps(Problem& problem, const Solving& how, Solved& out);
     void remember(const Problem& problem);
     void recall(Problem& problem) const;

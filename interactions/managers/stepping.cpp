@@ -236,9 +236,10 @@ namespace
 {
 
 /// Errors of joints are linear in the displacements only for small turns. What remains after a correction is corrected again while it is
-/// more than this fraction of the island's size (or rad), or a chain of light links under a heavy load would come apart.
+/// more than this fraction of the island's size (or rad), or a chain of light links under a heavy load would come apart. Without a limit on
+/// turns, a taut chain would be thrown from one side to the other.
 constexpr double kJointsApart = 0x1p-11;
-constexpr int kMostCorrections = 6;
+constexpr int kMostCorrections = 10;
 
 /// Sets the displacements that would close the joints and stops; returns the largest of them.
 double set_displacements_of_lines(Problem& problem, const Island& island, double length)
@@ -260,7 +261,18 @@ double displacement_of(const Contact& c, const StepChoices& choices)
     return (c.depth - choices.slop) * (c.depth > choices.slop ? choices.correction_share : 1.0);
 }
 
-Verdict displace_by(Problem& problem, double tolerance, Bodies& bodies, Shafts& shafts, Method& method)
+/// Shortens the displacements where a body would turn too far for the errors of joints to be linear.
+void limit_turns(Problem& problem)
+{
+    constexpr double kMostTurn = 0.25;  // rad
+    double most = 0;
+    for (std::size_t i = 0; i < problem.movers.size(); ++i)
+        if (!problem.anchors[i].shaft) most = std::max(most, length(problem.movers[i].w));
+    if (most <= kMostTurn) return;
+    for (Mover& m : problem.movers) m.v = m.v * (kMostTurn / most), m.w = m.w * (kMostTurn / most);
+}
+
+Verdict displace_by(Problem& problem, double tolerance, Bodies& bodies, Shafts& shafts, Method& method, bool limits)
 {
     problem.turn_with(bodies);
     problem.rest();
@@ -268,6 +280,7 @@ Verdict displace_by(Problem& problem, double tolerance, Bodies& bodies, Shafts& 
     for (Point& p : problem.points) p.friction = 0;
     problem.apply_impulses();
     const Verdict out = method.find_displacements(problem, tolerance);
+    if (limits) limit_turns(problem);
     displace(problem, bodies, shafts);
     return out;
 }
@@ -296,7 +309,7 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
     worst = std::max(worst, apart);
     if (worst <= kPositionTolerance * length) return {};
     if (apart > kJointsApart * length) problem.turn_lines();
-    Verdict out = displace_by(problem, kPositionTolerance * length, bodies, shafts, method);
+    Verdict out = displace_by(problem, kPositionTolerance * length, bodies, shafts, method, apart > kJointsApart * length);
     for (int n = 1; n < kMostCorrections && apart > kJointsApart * length; ++n)
     {
         island.motion->refresh_rows();
@@ -305,7 +318,7 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
         for (std::size_t i = 0; i < problem.points.size(); ++i)
             if (Point& p = problem.points[i]; p.least > kFar) p.least = displacement_of(island.contacts[i], choices);
         problem.turn_lines();
-        out.join(displace_by(problem, kPositionTolerance * length, bodies, shafts, method));
+        out.join(displace_by(problem, kPositionTolerance * length, bodies, shafts, method, true));
     }
     return out;
 }

@@ -5,6 +5,7 @@
 
 #include "plab/random.h"
 #include "statics_scene.h"
+#include "support/mechanical_energy.h"
 
 namespace plab::test
 {
@@ -41,16 +42,6 @@ inline std::string scene_of(const Drop& d, const Method& method)
                           std::string(method.resolution) + "\" response=\"Response/Impulse\" response.friction=\"" + text(d.friction) +
                           "\" response.restitution=\"0\"/>"
                     : contact("f ground", method.manager, d.friction, 0, method.resolution));
-}
-
-/// J, including gravitational energy.
-inline double mechanical_energy(const Scene& s)
-{
-    const Bodies& bodies = s.simulation().world().host().bodies;
-    double sum = 0;
-    for (std::uint32_t b = 0; b < bodies.size(); ++b)
-        if (bodies.dynamic(b)) sum += bodies.kinetic_energy(b) + 9.81 * bodies.mass[b] * bodies.position[b].z;
-    return sum;
 }
 
 struct Fall
