@@ -198,7 +198,8 @@ void Simulation::set_interruption(const Interruption* interruption)
 bool Simulation::run_step()
 {
     run_.changed_by_scripts.clear(), script_changes_.clear();
-    const std::uint64_t whole_begin = now_ns(), thread_begin = thread_ns();
+    const bool watched = run_.levels().watches_anything();
+    const std::uint64_t whole_begin = watched ? now_ns() : 0, thread_begin = watched ? thread_ns() : 0;
     decide();
     gave_up_ = false;
     const bool may_be_given_up = context_.interruption != nullptr;
@@ -215,7 +216,7 @@ bool Simulation::run_step()
     if (gave_up_) return false;
     const auto took = static_cast<double>(now_ns() - begin);
     context_.note_cost(took);
-    note_step_time(whole_begin, thread_begin);
+    if (watched) note_step_time(whole_begin, thread_begin);
     run_.events = std::move(decided_.events);
     run_.events.insert(run_.events.end(), run_.stepper().events().begin(), run_.stepper().events().end());
     decided_.events.clear();
@@ -229,7 +230,6 @@ bool Simulation::run_step()
 /// What governors spread over steps themselves is no part of what these cost; what others decide is.
 void Simulation::note_step_time(std::uint64_t begin, std::uint64_t thread_begin)
 {
-    if (!run_.levels().watches_anything()) return;
     const StepCost& told = run_.levels().decision_cost().told;
     const StepCost cost{1e-9 * static_cast<double>(now_ns() - begin) - told.wall,
                         1e-9 * static_cast<double>(thread_ns() - thread_begin) - told.processor};

@@ -240,8 +240,8 @@ class ContactTest(lab.LabTest):
         session = self.session(self.SCENE)
         with session.contacts(timeout=10) as stream:
             session.step(240)
-            contacts = next(stream)
-        self.assertEqual(contacts.step, 240)
+            # Those of the first step may still be on their way when the last one is over.
+            contacts = next(entry for entry in stream if entry.step == 240)
         self.assertAlmostEqual(contacts.step_length, 1 / 240)
         self.assertEqual(contacts.left_out, 0)
         weight = 5 * 9.81

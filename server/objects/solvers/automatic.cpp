@@ -23,9 +23,15 @@ constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 /// step takes about as many evaluations as there are numbers, and the cube of that in products.
 constexpr std::size_t kManySize = kExponentialSize;
 constexpr double kPart = 0.4;
+/// RungeKutta4 is stable up to |h lambda| = 2.8.
+constexpr double kLimit = 2;
+constexpr std::int64_t kFewestParts = 4;
 constexpr double kMostParts = 16;
 constexpr Tolerance kTolerance{1e-9, 1e-12};
 constexpr std::int64_t kMaxSubsteps = 20000;
+/// Of large groups: after so many internal steps the rest of the step is made without control of its error. A bridge whose planks are as
+/// long as its span has no smooth motion at all.
+constexpr std::int64_t kMostOfLarge = 1000;
 
 /// In order of increasing cost.
 enum class Method : std::size_t
@@ -163,8 +169,20 @@ private:
     void advance_explicitly(double from)
     {
         say(Method::DormandPrince54);
-        const DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kMaxSubsteps, m_.dormand, system_, from);
-        if (!trial_ && counts.reached < h_) report_dormand_prince_gave_up(start_, row_, counts);
+        const DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kMostOfLarge, m_.dormand, system_, from);
+        if (!(counts.reached < h_) || system_.interrupted()) return;
+        if (!trial_)
+            report_gave_up(start_, row_, counts,
+                           "name a solver, take shorter steps, or look for joints that leave a mechanism just no room to move",
+                           "the rest is made by RungeKutta4 without control of its error");
+        const double left = h_ - counts.reached;
+        finish_by_runge_kutta4(h_, counts.reached, std::max<std::int64_t>(kFewestParts, parts_of(left / h_, kLimit)), system_);
+    }
+
+    /// Parts of a share of the step in each of which |h lambda| is `most`.
+    std::int64_t parts_of(double share, double most) const
+    {
+        return static_cast<std::int64_t>(std::min(std::ceil(stiffness_ * share / most), static_cast<double>(kMostOfLarge)));
     }
 
     std::string why(Method method) const

@@ -33,12 +33,12 @@ void ErrorControlRows::report(Row row, const SubstepCounts& counts)
     substeps[row] = counts.accepted, refused[row] = counts.refused, evaluations[row] = counts.evaluations;
 }
 
-void report_gave_up(const StepContext& start, Row row, const SubstepCounts& counts, std::string_view advice)
+void report_gave_up(const StepContext& start, Row row, const SubstepCounts& counts, std::string_view advice, std::string_view done)
 {
     start.emit(row, "solver.gave_up", Severity::Warning,
                std::to_string(counts.accepted) + " internal steps (" + std::to_string(counts.refused) + " more refused) reached " +
-                   rounded_text(counts.reached) + " s of " + rounded_text(start.dt) +
-                   " s; the group stays as it was there: " + std::string(advice),
+                   rounded_text(counts.reached) + " s of " + rounded_text(start.dt) + " s; " + std::string(done) + ": " +
+                   std::string(advice),
                {counts.reached, start.dt});
 }
 

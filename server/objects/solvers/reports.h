@@ -70,7 +70,8 @@ struct ErrorControlRows
     void report(Row row, const SubstepCounts& counts);
 };
 
-/// Emits the event solver.gave_up; `advice` is the end of its message.
-void report_gave_up(const StepContext& start, Row row, const SubstepCounts& counts, std::string_view advice);
+/// Emits the event solver.gave_up; `advice` is the end of its message, after what is done about it.
+void report_gave_up(const StepContext& start, Row row, const SubstepCounts& counts, std::string_view advice,
+                    std::string_view done = "the group stays as it was there");
 
 }  // namespace plab::solvers

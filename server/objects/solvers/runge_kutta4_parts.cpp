@@ -98,4 +98,15 @@ SubstepCounts advance_by_runge_kutta4_parts(double h, std::int64_t parts, Dynami
     return counts;
 }
 
+void finish_by_runge_kutta4(double h, double from, std::int64_t parts, DynamicSystem& system)
+{
+    const double length = (h - from) / static_cast<double>(parts);
+    for (std::int64_t k = 0; k < parts && !system.interrupted(); ++k)
+    {
+        PartOfStep part(from + static_cast<double>(k) * length, length, length / h, system);
+        part.find_slopes();
+        part.finish();
+    }
+}
+
 }  // namespace plab::solvers

@@ -12,5 +12,7 @@ namespace plab::solvers
 /// a quarter of a part would be too long, because something faster begins or a force jumps, it ends there: `reached` is before h. Uses
 /// workspaces 0 to 11.
 SubstepCounts advance_by_runge_kutta4_parts(double h, std::int64_t parts, DynamicSystem& system);
+/// The rest of a step h that is done until `from`, in `parts` whose error nothing controls.
+void finish_by_runge_kutta4(double h, double from, std::int64_t parts, DynamicSystem& system);
 
 }  // namespace plab::solvers

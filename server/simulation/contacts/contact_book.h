@@ -161,8 +161,6 @@ private:
     void list_participants();
     std::span<const Shortlist> shortlists_of(std::size_t detector, const IndexSet& active);
     double curves_of(Ref a, Ref b) const { return std::fabs(curve_radius_of_body_[a.index] + curve_radius_of_body_[b.index]); }
-    struct IslandCount;
-    static std::uint32_t size_of(const IslandCount& island);
     void measure_islands(std::span<const PairState> pairs, ContactLoad& load);
     void ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out);
     bool detect_with_gaps(std::uint32_t index);
@@ -207,8 +205,6 @@ private:
     struct IslandCount
     {
         std::uint32_t bodies = 0, points = 0;
-        std::uint32_t held = 0;  ///< bodies that joints hold to another one which has been counted
-        bool is_held = false;    ///< this body is one
     };
     DisjointSets load_islands_;             ///< of bodies
     std::vector<IslandCount> load_counts_;  ///< by representative body

@@ -38,14 +38,6 @@ ImpactSearch search_of(const Detector& d)
 
 }  // namespace
 
-/// What a resolution compares with the largest number of bodies. Links of a robot that touches nothing but what stands still count as a
-/// quarter each, after the first: an impact moves them at a cost that is linear in their number. Among others they count in full.
-std::uint32_t ContactBook::size_of(const IslandCount& island)
-{
-    constexpr std::uint32_t kLinks = 4;
-    return island.bodies == island.held + 1 ? 1 + (island.held + kLinks - 1) / kLinks : island.bodies;
-}
-
 /// Fills in the largest islands of persistent contacts and of joints of bodies that touch something, over all detections: a body may rest
 /// on what another detection holds, and an impact on one link of a chain is an impact on all of them.
 void ContactBook::measure_islands(std::span<const PairState> pairs, ContactLoad& load)
@@ -60,7 +52,7 @@ void ContactBook::measure_islands(std::span<const PairState> pairs, ContactLoad&
         if (g == kNoIndex || step_.groups.all[g].rows.empty()) return;
         const std::vector<std::uint32_t>& members = step_.groups.all[g].bodies;
         if (load_islands_.find(members.back()) == load_islands_.find(members.front())) return;
-        for (const std::uint32_t b : members) load_islands_.join(members.front(), b), load_counts_[b].is_held = b != members.front();
+        for (const std::uint32_t b : members) load_islands_.join(members.front(), b);
     };
     for (const PairState& p : pairs) join_members(p.a), join_members(p.b);
     // Points are counted at one body of each pair first, so that the pairs are gone through once.
@@ -76,10 +68,8 @@ void ContactBook::measure_islands(std::span<const PairState> pairs, ContactLoad&
         IslandCount& island = load_counts_[root];
         if (root != b) island.points += load_counts_[b].points;
         load.island_points = std::max(load.island_points, island.points);
-        if (!bodies.dynamic(b)) continue;
-        ++load.bodies, ++island.bodies, island.held += load_counts_[b].is_held ? 1 : 0;
+        if (bodies.dynamic(b)) ++load.bodies, load.island_bodies = std::max(load.island_bodies, ++island.bodies);
     }
-    for (const IslandCount& island : load_counts_) load.island_bodies = std::max(load.island_bodies, size_of(island));
 }
 
 /// Asks the resolutions that adapt, for the state of all bodies and `pairs`. Others keep what they have.

@@ -11,19 +11,21 @@ constexpr std::size_t kMostSteps = 1024;  ///< of which the median is taken
 constexpr std::size_t kMemory = 512;      ///< ratios
 constexpr std::size_t kFew = 4;           ///< a median of fewer steps is chance
 
-double at_share(const std::vector<StepCost>& of, double StepCost::*clock, double share)
+}  // namespace
+
+double StepTimes::at_share(const std::vector<StepCost>& of, double StepCost::*clock, double share) const
 {
-    std::vector<double> values;
-    for (const StepCost& c : of) values.push_back(c.*clock);
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
+    sorted_.clear();
+    for (const StepCost& c : of) sorted_.push_back(c.*clock);
+    const auto at = sorted_.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted_.size() - 1));
+    std::nth_element(sorted_.begin(), at, sorted_.end());
     return *at;
 }
 
-}  // namespace
-
 void StepTimes::add(const StepCost& step)
 {
+    // At once, as a warm step asks for no memory.
+    if (steps_.capacity() == 0) steps_.reserve(kMostSteps), ratios_.reserve(kMemory), sorted_.reserve(kMostSteps);
     if (steps_.size() < kMostSteps) steps_.push_back(step);
 }
 

@@ -31,9 +31,12 @@ public:
     StepCost spread() const;
 
 private:
+    double at_share(const std::vector<StepCost>& of, double StepCost::*clock, double share) const;
+
     std::vector<StepCost> steps_;   ///< since the last change
     std::vector<StepCost> ratios_;  ///< of former steps to what was usual then
     std::size_t oldest_ = 0;        ///< position in these
+    mutable std::vector<double> sorted_;
 };
 
 }  // namespace plab::simulation
