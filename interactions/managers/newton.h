@@ -20,7 +20,7 @@
 /// method from the last impulses; (4) rounds of the augmented Lagrangian (lagrangian.h), each followed by Newton's method; (5)
 /// Gauss-Seidel sweeps alternating with Newton's method, reported as `fell_back`. Sweeps would let a chain of light links under a heavy
 /// load stretch, so the joints are then solved exactly, with the impulses of all others as they are: contacts may be left violated, joints
-/// never.
+/// that do not contradict one another are not.
 /// Sources: Alart, Curnier, CMAME 92 (1991), eq. 3.6; Rockafellar (1976) for the proximal term; Acary, Bourrich, Siconos (2018),
 /// section 5, for the Newton method applied to it.
 #pragma once
