@@ -22,24 +22,32 @@ void add_impacts_of_stops(const Problem& problem, Island& island, std::span<cons
         if (ConstraintRow& row = island.rows[problem.lines[i].row]; row.kind == RowKind::OneSided) row.impulse += impacts[i];
 }
 
+Verdict put_back(const StepMemory& memory, Bodies& bodies, Shafts& shafts)
+{
+    take_back_speeds(memory, bodies, shafts);
+    return {.converged = false, .put_back = true};
+}
+
 }  // namespace
 
 Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
 {
     Problem& problem = memory.problem;
     problem.load(island, bodies, shafts);
+    if (choices.or_nothing) keep_speeds(bodies, shafts, memory);
     auto& guess = memory.impulses;
     guess.clear(), memory.line_impulses.clear();
     for (const Point& p : problem.points) guess.push_back(p.impulse);
     for (const Line& line : problem.lines) memory.line_impulses.push_back(line.impulse);
     Verdict out = answer_impacts(island, bodies, shafts, method, memory);
+    if (choices.or_nothing && !memory.impacts.empty()) return put_back(memory, bodies, shafts);
     add_impacts(memory, island);
     memory.velocities.clear();
     for (const Point& p : problem.points) memory.velocities.push_back(problem.relative_velocity(p));
     for (std::size_t i = 0; i < guess.size(); ++i) problem.points[i].impulse = guess[i];
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
 
-    const bool locates_slip_ends = !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to;
+    const bool locates_slip_ends = !choices.or_nothing && !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to;
     if (locates_slip_ends)
         out.join(SlipEnds(island, bodies, shafts, method, choices.slop, memory).advance());
     else
@@ -49,6 +57,7 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
         set_targets(problem, island, island.h, choices.slop, memory.passing);
         problem.apply_impulses();
         const Verdict found = method.find_impulses(problem);
+        if (choices.or_nothing && !found.converged) return put_back(memory, bodies, shafts);
         out.join(found);
         problem.write_speeds(bodies, shafts);
         move(island, found, island.h);

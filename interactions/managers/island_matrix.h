@@ -32,6 +32,8 @@ public:
     void add(const Problem& problem, std::size_t line, double g);
     /// x = (M + J^T G J)^-1 x. Returns false if the matrix is singular, the result is not finite, or the step has been
     /// interrupted.
+    /// Block products in one factorisation, which measure its cost.
+    std::size_t products() const { return matrix_.products(); }
     bool solve(std::span<Column6> x);
 
 private:

@@ -121,12 +121,14 @@ void Account::describe(Schema& s)
         .or_else(-1);
 }
 
-void Sleep::describe(Schema& s)
+void Sleep::describe(Schema& s, double usual_after, double usual_speed)
 {
     s.param(after, "sleep_after", unit::second, "islands at rest for so long sleep: they cost nothing until something wakes them; 0: never")
-        .or_else(0)
+        .or_else(usual_after)
         .not_negative();
-    s.param(speed, "sleep_speed", unit::metre_per_second, "a body of which a point may move faster does not rest").or_else(0.01).positive();
+    s.param(speed, "sleep_speed", unit::metre_per_second, "a body of which a point may move faster does not rest")
+        .or_else(usual_speed)
+        .positive();
     s.output(asleep, "asleep", unit::one, "bodies of sleeping islands");
     s.output(reason, "sleep_reason", unit::one, "with sleep_after: what keeps islands awake whether they rest or not");
 }
@@ -294,11 +296,20 @@ void solve_all_softly(const StepContext& context, Row row, SoftStepRows& rows, B
 
 void AutomaticRows::describe(Schema& s)
 {
+    // What Direct holds still moves by rounding alone, some 1e-13 m/s: it may sleep without a loss of digits. What SoftStep holds sways.
+    constexpr double kRestsAfter = 0.5, kRestSpeed = 1e-9;  // s, m/s
+
     s.param(max_points, "max_points", unit::one,
             "an island of at most so many contact points and rows is solved exactly; up to 16 times as many if rows of joints are twice as "
             "many "
             "as contact points, as sweeps would let them stretch")
         .or_else(80)
+        .not_negative()
+        .at_most(20000);
+    s.param(max_resting, "max_resting", unit::one,
+            "an island of at most so many contact points and rows that hardly moves is solved exactly too, if Newton's method soon finds "
+            "that it rests")
+        .or_else(12000)
         .not_negative()
         .at_most(20000);
     s.param(
@@ -315,7 +326,7 @@ void AutomaticRows::describe(Schema& s)
     s.output(reason, "reason", unit::one, "why the larger of its islands were advanced so");
     s.output(direct_islands, "direct_islands", unit::one, "islands that were solved exactly in the last step");
     s.output(soft_islands, "soft_islands", unit::one, "islands that were advanced by SoftStep in the last step");
-    account.describe(s), sleep.describe(s);
+    account.describe(s), sleep.describe(s, kRestsAfter, kRestSpeed);
     s.scratch(memory, "memory", "working memory");
     s.scratch(choices, "choices", "working memory");
 }
@@ -328,6 +339,8 @@ constexpr std::size_t kHeavyPoints = 16;  // times max_points
 constexpr Solving kAffordable{1e-12, 12, 20, 1e-12};
 /// Ends of sliding are located for a body that slides alone.
 constexpr std::size_t kSlipEnds = 4;
+/// Heaps overlap a quarter as much as with SoftStep's own default, and sway less; a row of bodies that moves comes to rest more slowly.
+constexpr double kSoftDamping = 3;
 
 /// The ratio of the heaviest to the lightest body of an island.
 double mass_ratio(const Island& island, const Bodies& bodies)
@@ -352,23 +365,73 @@ void note_method(const StepContext& context, Row row, AutomaticRows& rows, const
                        ", and masses up to " + rounded_text(chosen.ratio, 2) + " to 1";
 }
 
-AutomaticRows::Choice choose_method(const Island& island, const Bodies& bodies, std::size_t most, double heavy)
+/// How far a body of the island moves in a step at its present speed, in units of the island's size.
+double travel_of(const Island& island, const Bodies& bodies)
 {
+    double most = 0;
+    for (const std::uint32_t b : island.bodies)
+        most = std::max(most, length(bodies.velocity[b]) + island.size * length(bodies.angular_velocity[b]));
+    return most * island.h / island.size;
+}
+
+/// What to spend on the question whether an island stays where it is, in products of blocks. One that does not move has been solved exactly
+/// in the last step, which takes few Newton steps again, or has been put there. One that SoftStep holds sways; it may be in equilibrium all
+/// the same, which is worth a small try now and then. The state alone tells when, so that a run that is rewound or restored tries in the
+/// same steps.
+std::size_t worth_of_rest(const Island& island, const Bodies& bodies, Tick tick)
+{
+    constexpr double kStill = 1e-9, kSlow = 0x1p-8;
+    constexpr std::size_t kEvery = 64, kOfStill = 12'000'000, kOfSlow = 400'000;  // about 1 s and 30 ms at most
+    if (island.bodies.empty()) return 0;
+    const double travel = travel_of(island, bodies);
+    if (travel <= kStill) return kOfStill;
+    const bool due = (static_cast<std::size_t>(tick) + island.contacts.size() + island.bodies.size()) % kEvery == 0;
+    return travel <= kSlow && due ? kOfSlow : 0;
+}
+
+AutomaticRows::Choice choose_method(const StepContext& context, const Island& island, const Bodies& bodies, const AutomaticRows& rows,
+                                    Row row)
+{
+    const auto most = static_cast<std::size_t>(rows.max_points[row]), resting = static_cast<std::size_t>(rows.max_resting[row]);
     const auto joints = static_cast<std::size_t>(std::ranges::count(island.rows, RowKind::Equality, &ConstraintRow::kind));
     const std::size_t points = island.contacts.size() + island.rows.size() - joints;
     const double ratio = mass_ratio(island, bodies);
     // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time. Where
     // contact points prevail, as in a heap of jointed bodies, each of them may change its state in each iteration, which costs far more.
-    const bool yields = ratio >= heavy || 2 * points <= joints;
-    return {points + joints <= most || (yields && points <= kHeavyPoints * most), points, joints, ratio};
+    const bool yields = ratio >= rows.heavy[row] || 2 * points <= joints;
+    const bool direct = points + joints <= most || (yields && points <= kHeavyPoints * most);
+    const bool asks = !direct && points + joints <= resting;
+    return {direct, asks ? worth_of_rest(island, bodies, context.tick) : 0, points, joints, ratio};
 }
 
-void advance_by_choice(bool direct, Island& island, Bodies& bodies, Shafts& shafts, AutomaticRows::Memory& memory, Workers* workers)
+/// Solves an island exactly if that shows within `products` that it rests; otherwise nothing has been done, and the result is false.
+bool holds_at_rest(std::size_t products, Island& island, Bodies& bodies, Shafts& shafts, AutomaticRows::Memory& memory)
+{
+    const Solving how{.tolerance = 1e-12, .most_steps = 30, .most_sweeps = 0, .rounds = 0, .most_products = products};
+    StepChoices choices;
+    choices.or_nothing = true;
+    choices.correction_share = 0.2;  // what SoftStep has let sink is lifted slowly
+    Exactly method(memory.direct.newton, how);
+    const Verdict verdict = advance_island(island, bodies, shafts, method, choices, memory.direct.step);
+    if (verdict.put_back) return false;
+    report(island, verdict);
+    return true;
+}
+
+/// Advances an island; `choice` becomes what has been done.
+void advance_by_choice(AutomaticRows::Choice& choice, Island& island, Bodies& bodies, Shafts& shafts, AutomaticRows::Memory& memory,
+                       Workers* workers)
 {
     memory.direct.step.problem.workers = memory.soft.step.problem.workers = workers;
-    if (!direct)
+    if (choice.tries > 0 && holds_at_rest(choice.tries, island, bodies, shafts, memory))
     {
-        const SoftChoices choices;
+        choice.direct = true;
+        return;
+    }
+    if (!choice.direct)
+    {
+        SoftChoices choices;
+        choices.damping_ratio = kSoftDamping;
         return report(island, advance_softly(island, bodies, shafts, choices, memory.soft));
     }
     Exactly method(memory.direct.newton, kAffordable);
@@ -384,12 +447,11 @@ void solve_all_automatically(const StepContext& context, Row row, AutomaticRows&
 {
     std::vector<AutomaticRows::Choice>& choices = rows.choices[row];
     choices.clear();
-    for (const Island& island : islands)
-        choices.push_back(choose_method(island, bodies, static_cast<std::size_t>(rows.max_points[row]), rows.heavy[row]));
+    for (const Island& island : islands) choices.push_back(choose_method(context, island, bodies, rows, row));
     solve_all(
         context, bodies, shafts, islands, rows.memory[row], [&](std::size_t i) { return !choices[i].direct; },
         [&](std::size_t i, Island& island, AutomaticRows::Memory& memory)
-        { advance_by_choice(choices[i].direct, island, bodies, shafts, memory, context.workers); });
+        { advance_by_choice(choices[i], island, bodies, shafts, memory, context.workers); });
     for (std::size_t i = 0; i < islands.size(); ++i)
     {
         note_method(context, row, rows, choices[i]);

@@ -36,7 +36,8 @@ struct Sleep
     Column<std::int64_t> asleep;
     Column<std::string> reason;
 
-    void describe(Schema& schema);
+    /// By default nothing sleeps; but a manager may say otherwise (s, m/s).
+    void describe(Schema& schema, double usual_after = 0, double usual_speed = 0.01);
 };
 
 struct SequentialRows
@@ -86,12 +87,13 @@ void solve_all_softly(const StepContext& context, Row row, SoftStepRows& rows, B
 ///
 ///   an island of at most `max_points` contact points and rows                     Direct
 ///   with bodies that are `heavy` times heavier than others, at most 16 x as many  Direct      (sweeps would let them sink)
+///   that rests, of at most `max_resting`, as Newton's method soon finds           Direct
 ///   otherwise                                                                     SoftStep    (8 sub-steps)
 ///
 /// The choice follows from the island alone, so rewinds, trials and replays make the same one.
 struct AutomaticRows
 {
-    Column<std::int64_t> max_points;
+    Column<std::int64_t> max_points, max_resting;
     Column<double> heavy, tolerance;
     Column<std::string> resolved, reason;
     Column<std::int64_t> direct_islands, soft_islands;  ///< in the last step
@@ -107,6 +109,7 @@ struct AutomaticRows
     struct Choice
     {
         bool direct = false;
+        std::size_t tries = 0;               ///< products of blocks that finding out whether it rests may take; 0: nobody asks
         std::size_t points = 0, joints = 0;  ///< contact points and rows that may yield; rows of joints
         double ratio = 1;
     };

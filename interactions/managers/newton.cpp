@@ -283,15 +283,15 @@ void NewtonSolver::hold_joints_without_gain(Problem& problem, double tolerance)
 /// Alternates Gauss-Seidel sweeps with Newton's method: each can leave a point at which the other stagnates.
 void NewtonSolver::finish_by_sweeps(Problem& problem, const Solving& how, Solved& out)
 {
-    constexpr int kRounds = 4, kNewtonSteps = 12;
-    for (int round = 0; round < kRounds && !out.converged; ++round)
+    constexpr int kNewtonSteps = 12;
+    for (int round = 0; round < how.rounds && !out.converged; ++round)
     {
         out.sweeps += sweep_without_gain(problem, {how.most_sweeps, how.tolerance, 1}).sweeps;
         problem.apply_impulses();
         hold_joints_without_gain(problem, how.tolerance);
         out.residual = violation(problem);
         out.converged = out.residual <= how.tolerance;
-        if (out.converged || round + 1 == kRounds) return;
+        if (out.converged || round + 1 == how.rounds) return;
         Solving again = how;
         again.most_steps = out.steps + kNewtonSteps;
         if (newton(problem, again, out)) out.residual = violation(problem), out.converged = out.residual <= how.tolerance;
@@ -333,6 +333,8 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
     {
         if (is_warm(problem)) out.converged = settles_by_sweeps(problem, guess, exact, out);
         if (!out.converged) matrix_.shape(problem);
+        const std::size_t affordable = how.most_products / std::max<std::size_t>(1, matrix_.products());
+        exact.most_steps = static_cast<int>(std::min(affordable, static_cast<std::size_t>(how.most_steps)));
         if (!out.converged && is_warm(problem)) out.converged = newton(problem, exact, out);
         if (!out.converged) approach(problem, exact, out);
         set_tolerance();
@@ -341,6 +343,7 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
     out.converged = out.residual <= exact.tolerance;
     if (out.converged) return out;
     out.fell_back = true;
+    if (how.rounds == 0) return out;
     finish_by_sweeps(problem, exact, out);
     return out;
 }

@@ -25,6 +25,8 @@
 /// section 5, for the Newton method applied to it.
 #pragma once
 
+#include <cstdint>
+
 #include "lagrangian.h"
 #include "sequential.h"
 
@@ -37,6 +39,8 @@ struct Solving
     int most_steps = 80;       ///< Newton steps, those of the augmented Lagrangian included
     int most_sweeps = 100;     ///< Gauss-Seidel sweeps where Newton's method does not converge
     double finest = 1e-12;     ///< m/s: the tolerance that was asked for; rounding may raise `tolerance`
+    int rounds = 4;            ///< of sweeps, each followed by Newton's method; 0: the impulses are left where Newton's method ends
+    std::size_t most_products = SIZE_MAX;  ///< of blocks, in all factorisations: about 0.1 us each
 };
 struct Solved
 {

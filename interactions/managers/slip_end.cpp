@@ -16,29 +16,6 @@ constexpr double kOfTurning = 0x1p-6;
 constexpr double kSliver = 1e-9;
 }  // namespace
 
-void SlipEnds::keep_speeds()
-{
-    memory_.speeds.clear();
-    for (const Anchor& m : memory_.problem.anchors)
-        if (m.shaft)
-            memory_.speeds.push_back({{}, {}, {}, shafts_.speed[m.host]});
-        else
-            memory_.speeds.push_back({bodies_.velocity[m.host], bodies_.angular_velocity[m.host], bodies_.angular_momentum[m.host], 0});
-}
-
-void SlipEnds::take_back()
-{
-    for (std::size_t i = 0; i < memory_.speeds.size(); ++i)
-    {
-        const Anchor& m = memory_.problem.anchors[i];
-        const StepMemory::Speeds& s = memory_.speeds[i];
-        if (m.shaft)
-            shafts_.speed[m.host] = s.shaft;
-        else
-            bodies_.velocity[m.host] = s.velocity, bodies_.angular_velocity[m.host] = s.spin, bodies_.angular_momentum[m.host] = s.momentum;
-    }
-}
-
 Verdict SlipEnds::try_part(double h)
 {
     Problem& problem = memory_.problem;
@@ -80,7 +57,7 @@ double SlipEnds::first_end(double h)
     double share = 0.5;
     for (double part = 0.5 * h; part > kSliver * island_.h && !island_.interrupted(); part *= 0.25, share = 0.25)
     {
-        take_back();
+        take_back_speeds(memory_, bodies_, shafts_);
         memory_.problem.scale_impulses(share);
         tried_ = part;
         (void)try_part(part);
@@ -122,7 +99,7 @@ Verdict SlipEnds::advance()
     for (int cuts = 0;; ++cuts)
     {
         const double rest = island_.h - done_;
-        keep_speeds();
+        keep_speeds(bodies_, shafts_, memory_);
         Verdict verdict = try_part(rest);
         tried_ = rest, retried_ = false;
         // Slip smaller than the error that the sweeps have left is not slip.
@@ -132,7 +109,7 @@ Verdict SlipEnds::advance()
         const double part = cut ? end : rest;
         if (retried_)
         {
-            take_back();
+            take_back_speeds(memory_, bodies_, shafts_);
             problem.scale_impulses(part / tried_);
             verdict = try_part(part);
         }

@@ -25,8 +25,6 @@ public:
 
 private:
     Verdict try_part(double h);
-    void take_back();
-    void keep_speeds();
     /// The first instant, in a part of length h that has just been tried, at which a contact stops sliding; h if there is none.
     double first_end(double h);
     bool slides(std::size_t i) const;

@@ -125,6 +125,29 @@ void Verdict::join(const Verdict& other)
     fell_back = fell_back || other.fell_back;
 }
 
+void keep_speeds(const Bodies& bodies, const Shafts& shafts, StepMemory& memory)
+{
+    memory.speeds.clear();
+    for (const Anchor& m : memory.problem.anchors)
+        if (m.shaft)
+            memory.speeds.push_back({{}, {}, {}, shafts.speed[m.host]});
+        else
+            memory.speeds.push_back({bodies.velocity[m.host], bodies.angular_velocity[m.host], bodies.angular_momentum[m.host], 0});
+}
+
+void take_back_speeds(const StepMemory& memory, Bodies& bodies, Shafts& shafts)
+{
+    for (std::size_t i = 0; i < memory.speeds.size(); ++i)
+    {
+        const Anchor& m = memory.problem.anchors[i];
+        const StepMemory::Speeds& s = memory.speeds[i];
+        if (m.shaft)
+            shafts.speed[m.host] = s.shaft;
+        else
+            bodies.velocity[m.host] = s.velocity, bodies.angular_velocity[m.host] = s.spin, bodies.angular_momentum[m.host] = s.momentum;
+    }
+}
+
 Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& method, StepMemory& memory)
 {
     constexpr int kTrials = 6;

@@ -12,6 +12,7 @@ struct Verdict
     double residual = 0;  ///< m/s
     bool converged = true;
     bool fell_back = false;
+    bool put_back = false;  ///< nothing was done (StepChoices::or_nothing)
 
     void join(const Verdict& other);
 };
@@ -62,7 +63,14 @@ struct StepChoices
     double slop = 0;
     /// The fraction of the overlap beyond `slop` that is corrected in one step.
     double correction_share = 1;
+    /// Where something collides, or the impulses do not converge, the step is not made, and all is as before. Ends of sliding are not
+    /// located then.
+    bool or_nothing = false;
 };
+
+/// Keeps the speeds of all movers in `memory`, and gives them back.
+void keep_speeds(const Bodies& bodies, const Shafts& shafts, StepMemory& memory);
+void take_back_speeds(const StepMemory& memory, Bodies& bodies, Shafts& shafts);
 
 Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& method, StepMemory& memory);
 /// Sets what the contact velocities and row rates must be at the end of h; `passing` as in StepMemory, or empty.

@@ -1,5 +1,6 @@
 // Scenes in which no algorithm is named: a few bodies are exact, many run at a bounded cost, and nothing is gained or lost between the two.
 #include <algorithm>
+#include <vector>
 
 #include "plab/random.h"
 #include "reference/impacts.h"
@@ -125,4 +126,82 @@ TEST_CASE("a body that meets a row of others in the step in which another one ha
         CHECK(met == doctest::Approx(0.001 + 0.01 / 15).epsilon(1e-9));
         CHECK(std::fabs(s.vec("B", "linear_velocity").x - (8 * 5 - 4 * 10) / 12.0) < 1e-9);
     }
+}
+
+namespace
+{
+
+/// Places of cubes of 0.5 m: a tower of 30, a pyramid of 20 rows and a wall of 10 rows, all of more than 80 contact points.
+std::vector<std::vector<Vec3>> structures()
+{
+    std::vector<std::vector<Vec3>> out(3);
+    for (int k = 0; k < 30; ++k) out[0].push_back({0, 0, 0.25 + 0.5 * k});
+    for (int k = 0; k < 20; ++k)
+        for (int i = 0; i < 20 - k; ++i) out[1].push_back({0.52 * i + 0.26 * k, 0, 0.25 + 0.5 * k});
+    for (int k = 0; k < 10; ++k)
+        for (int i = 0; i < 20 - k % 2; ++i) out[2].push_back({0.52 * i + 0.26 * (k % 2), 0, 0.25 + 0.5 * k});
+    return out;
+}
+
+std::string cubes(const std::vector<Vec3>& places)
+{
+    std::string out;
+    for (std::size_t k = 0; k < places.size(); ++k) out += box("b" + std::to_string(k), {0.25, 0.25, 0.25}, at(places[k]));
+    return out;
+}
+
+std::string contact_with(const std::string& more)
+{
+    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" response.friction=\"0.5\" " + more + "/>";
+}
+
+}  // namespace
+
+TEST_CASE("what stands stays where it was put, however many contact points it has")
+{
+    for (const std::vector<Vec3>& places : structures())
+    {
+        CAPTURE(places.size());
+        Scene s(cubes(places) + std::string(kGround) + gravity("*") + contact_with(""), "dt=\"1/60\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(3);
+        double moved = 0;
+        for (std::size_t k = 0; k < places.size(); ++k)
+            moved = std::max(moved, length(s.vec("b" + std::to_string(k), "position") - places[k]));
+        CHECK(moved < 1e-9);
+        CHECK(std::get<std::int64_t>(s.get("contact.response.manager", "asleep")) == static_cast<std::int64_t>(places.size()));
+    }
+}
+
+TEST_CASE("what a ball has shaken comes to rest exactly, and sleeps")
+{
+    Scene s(
+        cubes(structures()[1]) + sphere("ball", 0.3, at({-3, 0, 2}, {4, 0, 2}, 2)) + std::string(kGround) + gravity("*") + contact_with(""),
+        "dt=\"1/60\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(0.6);
+    CHECK(std::get<std::string>(s.get("contact.response.manager", "resolved")).find("SoftStep") != std::string::npos);
+    s.run(12);
+    CHECK(std::get<std::int64_t>(s.get("contact.response.manager", "asleep")) >= 200);
+}
+
+TEST_CASE("where it cannot be found out whether an island rests, the try leaves no trace")
+{
+    // Cubes that touch on all sides: how they share loads is undetermined in many ways, and Newton's method does not end.
+    std::vector<Vec3> block;
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j)
+            for (int k = 0; k < 6; ++k) block.push_back({0.5 * i, 0.5 * j, 0.25 + 0.5 * k});
+    std::uint64_t hash[2];
+    for (const int most : {0, 4000})
+    {
+        Scene s(cubes(block) + std::string(kGround) + gravity("*") +
+                    contact_with("response.manager.max_resting=\"" + std::to_string(most) + "\""),
+                "dt=\"1/60\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(1);
+        CHECK(std::get<std::string>(s.get("contact.response.manager", "resolved")) == "SoftStep");
+        hash[most == 0 ? 0 : 1] = s.hash();
+    }
+    CHECK(hash[0] == hash[1]);
 }

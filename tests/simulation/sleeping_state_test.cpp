@@ -257,21 +257,59 @@ TEST_CASE("it is told what keeps islands awake")
     CHECK(asleep(s) == 2);
 }
 
-TEST_CASE("the defaults may sleep as well: a large heap does, a few exact bodies do not")
+namespace
 {
-    const auto scene = [](int high)
-    {
-        return "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>"
-               "<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.25 0.25 0.25\"/>" +
-               std::string(kGround) + stack("a", 0, high) +
-               "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" response.manager.sleep_after=\"0.5\"/>";
-    };
+
+std::string defaults(const std::string& bodies, const std::string& more = "")
+{
+    return "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>"
+           "<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.25 0.25 0.25\"/>" +
+           std::string(kGround) + bodies + "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" " + more + "/>";
+}
+
+std::int64_t asleep_by_default(const Scene& s) { return std::get<std::int64_t>(s.get("contact.response.manager", "asleep")); }
+
+}  // namespace
+
+TEST_CASE("the defaults let a large group sleep, not a few exact bodies")
+{
     for (const int high : {3, 12})
     {
         CAPTURE(high);
-        Scene s(scene(high), "dt=\"1/120\"");
+        Scene s(defaults(stack("a", 0, high)), "dt=\"1/120\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(4);
-        CHECK(std::get<std::int64_t>(s.get("contact.response.manager", "asleep")) == (high > 8 ? high : 0));
+        CHECK(asleep_by_default(s) == (high > 8 ? high : 0));
     }
+}
+
+TEST_CASE("by default only what is at rest but for rounding sleeps, so a wake shows nothing of it")
+{
+    Scene s(defaults(stack("a", 0, 12)), "dt=\"1/120\""),
+        never(defaults(stack("a", 0, 12), "response.manager.sleep_after=\"0\""), "dt=\"1/120\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    REQUIRE_MESSAGE(never.loaded(), never.error());
+    s.run(20), never.run(20);
+    REQUIRE(asleep_by_default(s) == 12);
+    REQUIRE(asleep_by_default(never) == 0);
+    for (Scene* one : {&s, &never}) REQUIRE(one->ask(PushOperation{"a11", {0.01, 0, 0}, {}}).done);
+    s.step(), never.step();
+    CHECK(asleep_by_default(s) == 0);
+    s.run(20.5), never.run(20.5);
+    double apart = 0;
+    for (int k = 0; k < 12; ++k)
+        apart = std::max(apart, length(s.vec("a" + std::to_string(k), "position") - never.vec("a" + std::to_string(k), "position")));
+    CHECK(apart < 2e-8);  // sleep_speed for 20 s
+}
+
+TEST_CASE("by default nothing that still moves sleeps, however slowly")
+{
+    // Nine cubes in a row glide over smooth ground by a micrometre each second.
+    std::string row;
+    for (int k = 0; k < 9; ++k) row += cube("a" + std::to_string(k), {0.5 * k, 0, 0.25}, "linear_velocity=\"1e-6 0 0\"");
+    Scene s(defaults(row, "response.friction=\"0\""), "dt=\"1/120\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(3);
+    CHECK(asleep_by_default(s) == 0);
+    CHECK(std::fabs(s.vec("a4", "position").x - (2 + 3e-6)) < 1e-12);
 }

@@ -161,7 +161,16 @@ private:
     void list_participants();
     std::span<const Shortlist> shortlists_of(std::size_t detector, const IndexSet& active);
     double curves_of(Ref a, Ref b) const { return std::fabs(curve_radius_of_body_[a.index] + curve_radius_of_body_[b.index]); }
-    void measure_islands(std::span<const PairState> pairs, ContactLoad& load);
+    /// Two bodies that touch where a run begins.
+    struct FirstTouch
+    {
+        Ref a, b;
+        std::uint32_t count = 0;  ///< points
+        static constexpr bool resting = true;
+    };
+    std::vector<FirstTouch> first_touches();
+    template <class Pair>
+    void measure_islands(std::span<const Pair> pairs, ContactLoad& load);
     void ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out);
     bool detect_with_gaps(std::uint32_t index);
     void list_runs(std::size_t from);

@@ -40,7 +40,8 @@ ImpactSearch search_of(const Detector& d)
 
 /// Fills in the largest islands of persistent contacts and of joints of bodies that touch something, over all detections: a body may rest
 /// on what another detection holds, and an impact on one link of a chain is an impact on all of them.
-void ContactBook::measure_islands(std::span<const PairState> pairs, ContactLoad& load)
+template <class Pair>
+void ContactBook::measure_islands(std::span<const Pair> pairs, ContactLoad& load)
 {
     const Bodies& bodies = step_.world.host().bodies;
     load_islands_.reset(bodies.size());
@@ -54,9 +55,9 @@ void ContactBook::measure_islands(std::span<const PairState> pairs, ContactLoad&
         if (load_islands_.find(members.back()) == load_islands_.find(members.front())) return;
         for (const std::uint32_t b : members) load_islands_.join(members.front(), b);
     };
-    for (const PairState& p : pairs) join_members(p.a), join_members(p.b);
+    for (const Pair& p : pairs) join_members(p.a), join_members(p.b);
     // Points are counted at one body of each pair first, so that the pairs are gone through once.
-    for (const PairState& p : pairs)
+    for (const Pair& p : pairs)
     {
         if (!p.resting) continue;
         if (bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) load_islands_.join(p.a.index, p.b.index);
@@ -72,11 +73,35 @@ void ContactBook::measure_islands(std::span<const PairState> pairs, ContactLoad&
     }
 }
 
+/// What touches before the first step, when no pair is known yet: what was built on the ground stands there, and is no impact.
+std::vector<ContactBook::FirstTouch> ContactBook::first_touches()
+{
+    double margin = 0;
+    for (const double radius : radius_of_body_)
+        if (std::isfinite(radius)) margin = std::max(margin, kPersistenceShare * radius);
+    std::vector<FirstTouch> out;
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        std::vector<FoundContact> found;
+        if (!detect(detectors_[d], d, {}, false, found, margin)) sort_contacts(found, step_.world);
+        std::erase_if(found, [&](const FoundContact& f) { return f.contact.depth <= -persistence_margin(f.contact.a, f.contact.b); });
+        for (std::size_t i = 0; i < found.size(); ++i)
+        {
+            if (i == 0 || !same_pair(found[i], found[i - 1])) out.push_back({found[i].contact.a, found[i].contact.b});
+            ++out.back().count;
+        }
+    }
+    return out;
+}
+
 /// Asks the resolutions that adapt, for the state of all bodies and `pairs`. Others keep what they have.
 void ContactBook::ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out)
 {
     ContactLoad load;
-    measure_islands(pairs, load);
+    if (pairs.empty() && step_.frame.tick == 0)
+        measure_islands(std::span<const FirstTouch>(first_touches()), load);
+    else
+        measure_islands(pairs, load);
     for (const auto& island : std::as_const(cache_).rest().islands)
     {
         load.island_bodies = std::max(load.island_bodies, static_cast<std::uint32_t>(island->bodies.size()));

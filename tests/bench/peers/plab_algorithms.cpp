@@ -144,8 +144,10 @@ Entries large_algorithms()
     Entries out;
     for (const Entry& e : stack_algorithms())
         if (e.algorithm.name != "SequentialImpulse 200+None") out.push_back({e.algorithm, steps({60}), ""});
+    out.push_back({by_rows("SoftStep", "None", "substeps=\"8\"", "8"), steps({60}), ""});
+    out.push_back({by_rows("Automatic", "None"), steps({60}), ""});
     // As server/docs/pace.md advises for many bodies.
-    for (const std::string substeps : {"2", "3", "4"})
+    for (const std::string substeps : {"2", "3", "4", "8"})
         out.push_back(
             {by_rows("SoftStep", "None", "substeps=\"" + substeps + "\" damping_ratio=\"3\"", substeps + " damping 3"), steps({60}), ""});
     return out;
