@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "cost_model.h"
@@ -50,8 +51,18 @@ double usual_budget(const StepContext& context, Row row, const BudgetRows& gover
 /// Whether what takes so long (s) fits into the time that the usual step leaves; if not, whether a step may be too long again.
 bool has_time(const StepContext& context, Row row, const BudgetRows& governors, double seconds)
 {
-    return governors.cost[row] + seconds <= budget_of(context, row, governors) ||
+    constexpr double kMost = 1.05;  // times the budget: 99 of 100 steps may take 1.1 times
+    return governors.cost[row] + seconds <= kMost * budget_of(context, row, governors) ||
            context.time - governors.last_long[row] >= kRare * context.dt;
+}
+
+/// A boundary after the other governors look, if they look as often: what they exchange costs time too, so both together would make one
+/// step too long.
+bool is_due(const StepContext& context, double every)
+{
+    StepContext before = context;
+    before.time -= context.dt;
+    return context.tick == 0 || (context.tick > 1 && due(before, every));
 }
 
 /// m. NaN: it cannot be told.
@@ -98,6 +109,7 @@ private:
         double seconds;  ///< that a step costs more
     };
     void try_levels(std::size_t k);
+    void prefer_new_kind(std::int64_t stride);
     Reals parts_at_levels() const;
     LevelPrices prices() const;
     double seconds_to_spend(const LevelPrices& price) const;
@@ -159,7 +171,20 @@ void BudgetLook::try_levels(std::size_t k)
         if (std::isnan(e)) return;
         errors[l] = errors[l + 1] + e;
     }
-    table_.add(c.objects, errors);
+    table_.add(c.objects, c.level, errors);
+}
+
+/// The next one in the list whose kind has not been tried with its present level comes first.
+void BudgetLook::prefer_new_kind(std::int64_t stride)
+{
+    const auto size = static_cast<std::int64_t>(look_.watched().size());
+    for (std::int64_t n = 0, k = g_.next_trial[row_]; n < size; ++n, k += stride)
+        if (const GovernedComponent& c = look_.watched()[static_cast<std::size_t>(k % size)];
+            c.level >= 0 && c.objects > 0 && table_.trials(c.objects, c.level) == 0)
+        {
+            g_.next_trial[row_] = k % size;
+            return;
+        }
 }
 
 /// One level at a boundary, from the one below the most exact one to the cheapest one. The sum is over when all have been tried.
@@ -173,6 +198,7 @@ void BudgetLook::try_next_level()
         std::int64_t stride = std::max<std::int64_t>(1, size * 5 / 13);
         while (std::gcd(stride, size) != 1) ++stride;
         g_.next_trial[row_] += stride, sum.assign(1, 0.0);
+        prefer_new_kind(stride);
     }
     const auto k = static_cast<std::size_t>(g_.next_trial[row_] % size);
     const GovernedComponent& c = look_.watched()[k];
@@ -180,7 +206,7 @@ void BudgetLook::try_next_level()
     if (g_.cost[row_] + g_.trial[row_] > budget_) g_.last_long[row_] = context_.time;
     sum.push_back(sum.back() + metres_of(control_.error(row_, k, static_cast<std::int32_t>(level), g_.interval[row_]), c.radius));
     if (level > 0 && !std::isnan(sum.back())) return;
-    if (!std::isnan(sum.back())) table_.add(c.objects, Reals(sum.rbegin(), sum.rend()));
+    if (!std::isnan(sum.back())) table_.add(c.objects, c.level, Reals(sum.rbegin(), sum.rend()));
     sum.clear(), --g_.trials_left[row_], g_.next_trial[row_] %= size;
 }
 
@@ -239,13 +265,13 @@ std::vector<BudgetLook::Change> BudgetLook::plan() const
 {
     std::vector<Candidate> candidates;
     std::vector<std::size_t> component;
-    std::vector<std::pair<std::uint32_t, Reals>> known;  // errors by kind
+    std::map<std::pair<std::uint32_t, std::int32_t>, Reals> known;  // errors by kind: objects, present level
     for (std::size_t k = 0; k < look_.watched().size(); ++k)
     {
         const GovernedComponent& c = look_.watched()[k];
         if (c.level < 0) continue;
-        auto kind = std::find_if(known.begin(), known.end(), [&](const auto& m) { return m.first == c.objects; });
-        if (kind == known.end()) kind = known.insert(known.end(), {c.objects, table_.errors(c.objects)});
+        const auto [kind, is_new] = known.try_emplace({c.objects, c.level});
+        if (is_new) kind->second = table_.errors(c.objects, c.level);
         candidates.push_back({is_over() || look_.rested(k) ? 0 : c.level, c.level, weight_of(c) / whole_, importance(k), kind->second});
         component.push_back(k);
     }
@@ -281,11 +307,13 @@ double BudgetLook::long_step_after(const std::vector<Change>& changes, std::size
     return out;
 }
 
-/// How many of the changes are made at this boundary.
+/// How many of the changes are made at this boundary. Until it is known what an exchange costs, a few tell it.
 std::size_t BudgetLook::exchanges_now(const std::vector<Change>& changes) const
 {
     const std::size_t all = changes.size();
-    if (cost_ > budget_ || exchange_cost(all) == 0) return all;
+    constexpr std::size_t kFirst = 16;
+    if (cost_ > budget_) return all;
+    if (g_.exchange[row_].size() < 2) return std::min(all, kFirst);
     // The worthiest come first, and each exchange tells better what the next ones cost.
     double cost = long_step_after(changes, all);
     std::size_t fit = all;
@@ -296,7 +324,8 @@ std::size_t BudgetLook::exchanges_now(const std::vector<Change>& changes) const
 
 double BudgetLook::error_of(std::size_t k, std::int32_t level) const
 {
-    return table_.errors(look_.watched()[k].objects)[static_cast<std::size_t>(level)];
+    const GovernedComponent& c = look_.watched()[k];
+    return table_.errors(c.objects, c.level)[static_cast<std::size_t>(level)];
 }
 
 std::string BudgetLook::reason(const Change& change) const
@@ -340,65 +369,6 @@ void BudgetLook::publish()
 
 }  // namespace
 
-void BudgetRows::describe(Schema& schema)
-{
-    watch.describe(schema);
-    schema.param(budget, "budget", unit::second, "processor time of a step; 0: `share` of the step's length, so that real time is held")
-        .or_else(0)
-        .not_negative();
-    schema.param(share, "share", unit::one, "of the step's length, if no budget is given").or_else(0.8).positive();
-    schema
-        .param(clock, "clock", unit::one, "what counts: time of the `processor` that the stepping thread uses, or time by the `wall` clock")
-        .or_else("processor")
-        .one_of({"processor", "wall"});
-    schema.param(headroom, "headroom", unit::one, "fraction of the budget that is left free before levels become finer")
-        .or_else(0.15)
-        .not_negative();
-    schema
-        .param(tolerance, "tolerance", unit::one,
-               "error in pixels that is not worth removing; for what nobody sees a metre counts as a pixel; 0: all time is spent")
-        .or_else(0)
-        .not_negative();
-    schema.param(interval, "interval", unit::second, "time within which the error of a level is counted").or_else(0.25).positive();
-    schema.param(trials, "trials", unit::one, "components whose levels are tried between two looks, one at a boundary where there is room")
-        .or_else(2)
-        .not_negative();
-    schema.state(step_cost, "step_cost", unit::second, "what a step costs usually, as measured; set by the host").input();
-    schema.state(spread, "spread", unit::one, "how many times that 99 of 100 steps cost at most; set by the host").initially(1).input();
-    schema
-        .state(trial_time, "trial_time", unit::one,
-               "number of levels that were tried last, what that cost (s), and the step after it (s); set by the host")
-        .input();
-    schema
-        .state(trial_costs, "trial_costs", unit::second,
-               "what a trial step with each level cost for each object, as measured since the last look; 0: none was made; set by the host")
-        .input();
-    schema
-        .state(exchange_cost, "exchange_cost", unit::one,
-               "the number of components that were exchanged last, what that cost (s), and the step after it (s); set by the host")
-        .input();
-    schema.state(costs, "costs", unit::second,
-                 "cost of a step with all components at each level, as learnt, and then the covariance (s^2) of these costs");
-    schema.state(errors, "errors", unit::one,
-                 "for each number of objects on which a component acts: that number, the number of trials, and the mean square of the "
-                 "error (m^2) of each level");
-    schema.state(exchange, "exchange", unit::second,
-                 "what an exchange costs, as learnt: fixed, and for each component; and then the covariance (s^2) of the two");
-    schema.state(cost, "cost", unit::second, "what a step is taken to cost: as measured last, with what was chosen since");
-    schema.state(last_step_cost, "last_step_cost", unit::second, "`step_cost` as it was used last");
-    schema.state(trial, "trial", unit::second, "what it costs to try a level, as learnt; 0: it is not known");
-    schema.state(partial, "partial", unit::metre,
-                 "errors of the levels that have been tried of the component that is tried now, the most exact one first");
-    schema.state(trials_left, "trials_left", unit::one, "components to be tried before the next look");
-    schema.state(next_trial, "next_trial", unit::one, "position of the component that was tried last");
-    schema.state(waiting, "waiting", unit::one, "changes that wait for a boundary where there is time for them");
-    schema.state(last_long, "last_long", unit::second, "when exchanges made a step longer than the budget").initially(-1e9);
-    schema.state(retry, "retry", unit::second, "when the changes that wait are planned again");
-    schema.output(spent, "spent", unit::one, "cost of a step relative to the budget");
-    schema.output(given_up, "given_up", unit::one, "number of components that are not at the most exact level");
-    schema.output(lost, "lost", unit::one, "their share of the importance of all components, when it looked last");
-}
-
 void keep_budget(const StepContext& context, Row row, BudgetRows& governors, LevelControl& control)
 {
     learn_exchange(governors.exchange[row], governors.exchange_cost[row], governors.cost[row]);
@@ -409,7 +379,7 @@ void keep_budget(const StepContext& context, Row row, BudgetRows& governors, Lev
     const bool measured = told > kLeastCost;
     // What was chosen may turn out to cost too much before the next look is due.
     const bool is_late = is_new && told > usual_budget(context, row, governors);
-    const bool looks = due(context, governors.watch.every[row]) || (measured && !knows_costs) || is_late;
+    const bool looks = is_due(context, governors.watch.every[row]) || (measured && !knows_costs) || is_late;
     const bool tries =
         governors.trials_left[row] > 0 && governors.spent[row] < 1 && has_time(context, row, governors, governors.trial[row]);
     const bool goes_on = governors.waiting[row] > 0 && context.time >= governors.retry[row];

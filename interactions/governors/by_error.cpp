@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string_view>
 
 #include "sight.h"
@@ -16,6 +17,8 @@ constexpr double kHidden = 0;
 /// Times `every`: until a component that has the most exact level is measured again. It promises nothing, and measuring it at each look
 /// would cost more than a cheaper level saves.
 constexpr double kIdle = 4;
+/// Times that, where the next cheaper level is far from keeping the bound.
+constexpr double kSeldom = 4;
 
 Entries::iterator place_of(Entries& next, std::string_view id)
 {
@@ -37,10 +40,13 @@ public:
         : row_(row), index_(index), scale_(scale), governors_(governors), control_(control)
     {
     }
-    /// In the governor's unit. NaN: it cannot be told.
-    double at(std::int32_t level)
+    /// In the governor's unit. NaN: it cannot be told. Beyond `enough` the trial may end, and what it has shown so far is returned.
+    double at(std::int32_t level, double enough = std::numeric_limits<double>::infinity())
     {
-        const double e = pick(control_.error(row_, index_, level, governors_.interval[row_]), governors_.unit[row_], scale_);
+        const std::string& unit = governors_.unit[row_];
+        const bool told = unit != "W" && std::isfinite(enough);
+        governors_.enough[row_] = told ? enough / (unit == "pixels" ? scale_ : 1.0) : 0.0;
+        const double e = pick(control_.error(row_, index_, level, governors_.interval[row_]), unit, scale_);
         ++governors_.measured[row_], ++tried_;
         governors_.unknown[row_] += std::isnan(e) ? 1 : 0;
         return e;
@@ -49,6 +55,8 @@ public:
     std::size_t tried() const { return tried_; }
     /// What cannot be told is taken for too much.
     bool fits(double error, double reserve = 0) const { return error * governors_.safety[row_] * (1 + reserve) <= governors_.bound[row_]; }
+    /// What does not fit exceeds this.
+    double most(double reserve = 0) const { return governors_.bound[row_] / (governors_.safety[row_] * (1 + reserve)); }
 
 private:
     Row row_;
@@ -112,6 +120,12 @@ double steps_of_trial(const StepContext& context, Row row, const ErrorRows& gove
     return std::min(kMost, goes_on ? std::min(whole, std::max(kFewest, std::ceil(whole / 4))) : whole);
 }
 
+/// Of a trial, in steps of the finer level: to set it up, and the course of the cheaper one, take about as long as four of them.
+double cost_of_trial(const StepContext& context, Row row, const ErrorRows& governors)
+{
+    return steps_of_trial(context, row, governors) + 4;
+}
+
 /// Promises that were judged in one look, and those of them that were broken.
 struct Judged
 {
@@ -145,18 +159,23 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
 {
     const GovernedComponent& g = look.watched()[k];
     const std::string_view id = control.id_of(g.component);
-    const double bound = governors.bound[row], every = governors.watch.every[row];
+    const double bound = governors.bound[row], every = governors.watch.every[row], reserve = governors.watch.hysteresis[row];
     Entries& next = governors.next[row];
     auto entry = place_of(next, id);
     const bool known = g.level >= 0 && (sample || (entry != next.end() && entry->name == id));
     Measurement of(row, k, scale, governors, control);
     std::int32_t level = known ? g.level : 0, tried = level;
-    double error = of.at(level);
+    double error = of.at(level, known ? bound : of.most());
     if (known && level < look.finest()) ++judged.all, judged.broken += error <= bound ? 0u : 1u;
     bool finer = false;
-    for (; level < look.finest() && !of.fits(error); finer = true) error = of.at(++level);
+    double excess = 1;  // of the error of the next cheaper level, as a multiple of what is allowed
+    for (; level < look.finest() && !of.fits(error); finer = true) excess = error / of.most(), error = of.at(++level, of.most());
     if (known && !finer && level > 0 && (sample || look.rested(k)))
-        if (const double cheaper = of.at(tried = level - 1); of.fits(cheaper, governors.watch.hysteresis[row])) --level, error = cheaper;
+    {
+        const double cheaper = of.at(tried = level - 1, of.most(reserve));
+        excess = cheaper / of.most(reserve);
+        if (of.fits(cheaper, reserve)) --level, error = cheaper;
+    }
     if (sample)
     {
         sample->add(level, tried);
@@ -174,7 +193,8 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
     const double likely = error * governors.safety[row];
     const double longest = answers_contacts(governors.watch.levels[row]) ? 1.0 : governors.patience[row];
     double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, longest) : std::isnan(likely) ? 1 : longest;
-    if (level == look.finest()) longer = std::max(longer, kIdle);
+    governors.spent_steps[row] += static_cast<double>(of.tried()) * cost_of_trial(context, row, governors);
+    if (level == look.finest()) longer = std::max(longer, kIdle * std::clamp(std::sqrt(excess), 1.0, kSeldom) * governors.reluctance[row]);
     const double then = context.time + every * (waits ? 1 : longer);
     entry = place_of(next, id);
     if (entry != next.end() && entry->name == id)
@@ -202,6 +222,22 @@ void allow_trials(const StepContext& context, Row row, const Look& look, ErrorRo
     const double steps = std::max(1.0, period_of(row, governors) / context.dt);
     const double more = governors.share[row] * steps * static_cast<double>(look.watched().size());
     governors.allowance[row] = std::min(governors.allowance[row] + more, 2 * more);
+}
+
+/// Trials have to pay: what they cost, in steps of a component with a finer level, is to be less than what the levels save that they
+/// allow. Where it is not, measuring becomes rare, by a factor of up to kMostReluctant. `promised`: components with a cheaper level than
+/// the most exact one, by a measurement.
+void weigh_trials(const StepContext& context, Row row, std::size_t promised, std::size_t watched, ErrorRows& governors)
+{
+    constexpr double kSaves = 0.7;  // of a step with a finer level
+    constexpr double kFades = 1.0 / 16, kMostReluctant = 16, kChange = 1.5;
+    double &spent = governors.spent_steps[row], &saved = governors.saved_steps[row];
+    constexpr double kCredit = 0.5;  // of all components, which may be tried before anything is saved
+    if (saved == 0) saved = kCredit * static_cast<double>(watched) * cost_of_trial(context, row, governors);
+    saved += static_cast<double>(promised) * std::max(1.0, period_of(row, governors) / context.dt);
+    double& reluctance = governors.reluctance[row];
+    reluctance = std::clamp(kSaves * saved < spent ? reluctance * kChange : reluctance / kChange, 1.0, kMostReluctant);
+    spent -= kFades * spent, saved -= kFades * saved;
 }
 
 /// What is not in the sample.
@@ -258,6 +294,8 @@ public:
 
 private:
     Due those_in_sight();
+    double put_off(Entries::iterator place, std::size_t k);
+    bool is_reluctant() const { return !samples_ && g_.reluctance[row_] >= 2; }
     void pass_over(const std::pair<double, std::size_t>& waits);
     void doubt_all(const Due& waiting, std::size_t from);
     double scale_of(std::size_t k) const
@@ -288,9 +326,24 @@ Due ErrorLook::those_in_sight()
         const std::string_view id = control_.id_of(look_.watched()[k].component);
         const auto entry = place_of(g_.next[row_], id);
         const bool known = entry != g_.next[row_].end() && entry->name == id;
-        out.emplace_back(known ? std::get<double>(entry->value) : -1, k);
+        out.emplace_back(known ? std::get<double>(entry->value) : is_reluctant() ? put_off(entry, k) : -1.0, k);
     }
     return out;
+}
+
+/// Where trials do not pay, a component gets the most exact level instead, and is measured later, one after the other. When (s).
+double ErrorLook::put_off(Entries::iterator place, std::size_t k)
+{
+    constexpr std::size_t kParts = 8;
+    const double part = static_cast<double>(k % kParts + 1) / kParts;
+    const double then = context_.time + kIdle * g_.watch.every[row_] * g_.reluctance[row_] * part;
+    const std::string_view id = control_.id_of(look_.watched()[k].component);
+    if (place != g_.next[row_].end() && place->name == id)
+        place->value = then;
+    else
+        g_.next[row_].insert(place, {std::string(id), then});
+    if (look_.may_choose(k, look_.finest())) (void)look_.choose(k, look_.finest(), "to measure errors does not pay at present");
+    return then;
 }
 
 /// What is not measured in this look.
@@ -299,6 +352,7 @@ void ErrorLook::pass_over(const std::pair<double, std::size_t>& waits)
     const auto [at, k] = waits;
     if (at > now_) return;
     if (samples_) return follow_sample(row_, k, sample_, look_, g_);
+    if (is_reluctant()) return (void)put_off(place_of(g_.next[row_], control_.id_of(look_.watched()[k].component)), k);
     const bool too_long = at < 0 || at < context_.time - 2 * g_.watch.every[row_];
     if (too_long && look_.may_choose(k, look_.finest())) (void)look_.choose(k, look_.finest(), why_unmeasured(at >= 0, by_sight_));
 }
@@ -323,10 +377,13 @@ void ErrorLook::run()
     g_.confidence[row_] = confidence_of(g_.held[row_], g_.judged[row_]);
     Due waiting = those_in_sight();
     if (waiting.empty()) return;
-    const std::size_t measured = put_in_order(waiting, static_cast<std::size_t>(g_.looks[row_]), now_);
+    std::size_t measured = put_in_order(waiting, static_cast<std::size_t>(g_.looks[row_]), now_);
+    if (is_reluctant()) measured = static_cast<std::size_t>(std::ceil(static_cast<double>(measured) / g_.reluctance[row_]));
     if (measured > 0) g_.worst[row_] = 0;
     if (samples_) allow_trials(context_, row_, look_, g_);
     Judged judged;
+    const auto is_promised = [&](const auto& w) { return w.first >= 0 && look_.watched()[w.second].level < look_.finest(); };
+    const auto promised = static_cast<std::size_t>(std::count_if(waiting.begin(), waiting.end(), is_promised));
     for (std::size_t n = 0; n < waiting.size(); ++n)
     {
         const std::size_t k = waiting[n].second;
@@ -336,56 +393,11 @@ void ErrorLook::run()
             pass_over(waiting[n]);
     }
     learn(judged, row_, g_);
+    if (!samples_) weigh_trials(context_, row_, promised, look_.watched().size(), g_);
     if (!samples_ && judged.is_burst(g_.target[row_])) doubt_all(waiting, measured);
 }
 
 }  // namespace
-
-void ErrorRows::describe(Schema& schema)
-{
-    watch.describe(schema);
-    schema.param(bound, "bound", unit::one, "error that is allowed within `interval`, against the next finer level, in the unit `unit`")
-        .positive();
-    schema
-        .param(unit, "unit", unit::one,
-               "`m`: a point of a body; `rad`: a body or a shaft; `W`: energy made or lost in a second; `pixels`: as viewers see it")
-        .or_else("m")
-        .one_of({"m", "rad", "W", "pixels"});
-    schema.param(interval, "interval", unit::second, "time within which the error is counted").or_else(0.25).positive();
-    schema.param(target, "target", unit::one, "share of the measurements that shall find the error still below the bound")
-        .or_else(0.95)
-        .at_least(0.5)
-        .at_most(0.999);
-    schema.param(looks, "looks", unit::one, "components that are measured at most in one look").or_else(8).positive();
-    schema
-        .param(share, "share", unit::one,
-               "trial steps at most for each step of the watched components: only a sample of them is measured, and all get the level with "
-               "which a share `target` of the sample keeps the bound; 0: no limit; not used with `pixels`")
-        .or_else(0)
-        .not_negative();
-    schema.param(look_ahead, "look_ahead", unit::second, "of `pixels`: what may come into view within this time counts as seen")
-        .or_else(0.5)
-        .not_negative();
-    schema.param(margin, "margin", unit::radian, "of `pixels`: what is outside of the picture by less than this angle counts as seen")
-        .or_else(0.15)
-        .not_negative();
-    schema.state(next, "next", unit::one, "when a component is measured again, s");
-    schema.state(safety, "safety", unit::one, "factor by which measured errors are taken to be larger").initially(2);
-    schema
-        .state(patience, "patience", unit::one,
-               "times `every` after which what is far below the bound is measured again; it falls with each promise that is broken")
-        .initially(3);
-    schema.state(judged, "judged", unit::one, "measurements of a level that was measured before");
-    schema.state(held, "held", unit::one, "those of them that found the error still below the bound");
-    schema.state(allowance, "allowance", unit::one, "trial steps that may be made within `share`");
-    schema.state(sampled, "sampled", unit::one, "with `share`: components that were sampled, by level; older ones fade");
-    schema.state(sampled_held, "sampled_held", unit::one, "those of them whose error was below the bound");
-    schema.output(confidence, "confidence", unit::one, "with which a level's error is below the bound when it is measured again");
-    schema.output(worst, "worst", unit::one,
-                  "the largest error of the last look in which something was measured, of the levels that were kept");
-    schema.output(measured, "measured", unit::one, "number of errors that were measured");
-    schema.output(unknown, "unknown", unit::one, "number of those that could not be told");
-}
 
 void keep_error(const StepContext& context, Row row, ErrorRows& governors, LevelControl& control)
 {

@@ -37,8 +37,10 @@ void learn_exchange(Reals& learnt, Reals& measured, double step)
 void learn_trial(double& learnt, Reals& measured, double step)
 {
     if (!tells(measured)) return;
-    const double seconds = seconds_of(measured, step) / measured[0];
-    learnt = std::max(seconds, learnt + (seconds - learnt) / 8);
+    constexpr double kMost = 2;  // times as long: one of them may be an accident of the machine
+    double seconds = seconds_of(measured, step) / measured[0];
+    if (learnt > 0) seconds = std::min(seconds, kMost * learnt);
+    learnt = std::max(seconds, learnt + (seconds - learnt) / 4);
     measured.clear();
 }
 

@@ -17,8 +17,8 @@ inline constexpr double kLeastCost = 1e-12;
 /// numbers of components tell both.
 void learn_exchange(Reals& learnt, Reals& measured, double step);
 
-/// The same of trials: s, for each level. What was measured last counts at once if it was longer, and only slowly if it was shorter: a
-/// trial must not make a step too long.
+/// The same of trials: s, for each level. What was measured last counts at once if it was longer, up to twice as much, and only slowly if
+/// it was shorter: a trial must not make a step too long.
 void learn_trial(double& learnt, Reals& measured, double step);
 
 }  // namespace plab::governors

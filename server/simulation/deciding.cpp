@@ -28,19 +28,24 @@ void raise(Apart& largest, const ObjectMotion& a, const ObjectMotion& b)
     raise(largest.angle, angle);
 }
 
-/// The largest departure of the two courses up to each step. One of them may have touched more objects.
+/// How far two courses depart from one another in a step, if that is more than before. One of them may have touched more objects.
+void raise(Apart& largest, const std::vector<ObjectMotion>& a, const std::vector<ObjectMotion>& b)
+{
+    for (std::size_t i = 0, k = 0; i < a.size() && k < b.size();)
+        if (a[i].object == b[k].object)
+            raise(largest, a[i++], b[k++]);
+        else
+            a[i].object < b[k].object ? ++i : ++k;
+}
+
+/// The largest departure of the two courses up to each step.
 std::vector<Apart> departures(const FirstStep& one, const FirstStep& other)
 {
     std::vector<Apart> out;
     Apart largest;
     for (std::size_t n = 0; n < std::min(one.course.size(), other.course.size()); ++n)
     {
-        const std::vector<ObjectMotion>&a = one.course[n], &b = other.course[n];
-        for (std::size_t i = 0, k = 0; i < a.size() && k < b.size();)
-            if (a[i].object == b[k].object)
-                raise(largest, a[i++], b[k++]);
-            else
-                a[i].object < b[k].object ? ++i : ++k;
+        raise(largest, one.course[n], other.course[n]);
         out.push_back(largest);
     }
     return out;
@@ -83,22 +88,26 @@ std::vector<std::string> ids_in(const std::vector<Operation>& operations)
 
 }  // namespace
 
-/// What the first steps would be with a level.
+/// What the first steps would be with a level. Fewer than asked for if `choice.end` says so; then they are made again for whoever needs
+/// more.
 const Result<FirstStep>& Simulation::step_with(std::uint32_t component, const Level& level, const FirstStepChoice& choice)
 {
     if (!tried_.empty() && tried_.front().component != component) tried_.clear();
-    for (const Tried& t : tried_)
-        if (t.level == &level) return t.step;
+    const auto known = std::find_if(tried_.begin(), tried_.end(), [&](const Tried& t) { return t.level == &level; });
+    if (known != tried_.end())
+    {
+        if (!known->step || known->step->course.size() >= static_cast<std::size_t>(choice.steps)) return known->step;
+        tried_.erase(known);
+    }
     Request request;
     request.operations.push_back(SwapOperation{run_.world().id_of(component), level.type, level.values});
     request.trial.budget = TrialChoice::Budget::Unlimited;  // a limit by the clock would make decisions depend on it
     return tried_.emplace_back(Tried{component, &level, Transaction(run_, context_, *this, request).first_step(choice)}).step;
 }
 
-TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval, bool with_cost)
+/// How many steps of an interval of `whole` steps a trial makes.
+int Simulation::steps_of_trial(std::uint32_t component, double whole) const
 {
-    const double h = run_.clock.time_at(tick() + 1) - time();
-    const double whole = std::max(1.0, std::round(interval / h));
     // What a solver errs goes on as it begins, so a quarter of the interval is tried. An impact does not announce itself, and where a
     // coupling is exchanged the first step shows more of the exchange than of the level: so the whole interval is tried.
     const bool goes_on = run_.world().type_of(component)->info.family == "Solver";
@@ -107,11 +116,30 @@ TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& l
     // A few steps tell neither what adds up from what grows, nor what a mechanism does in the rest of the interval.
     constexpr double kFewest = 8;
     const double wanted = goes_on ? std::min(whole, std::max(kFewest, std::ceil(whole / 4))) : whole;
-    const int steps = static_cast<int>(std::min(wanted, kMostSteps));
+    return static_cast<int>(std::min(wanted, kMostSteps));
+}
+
+/// The finer level costs most, so its steps are made beside those of the other one, and end where it is known that they depart too far.
+TrialFindings Simulation::error_of_level(const LevelQuestion& asked)
+{
+    const double h = run_.clock.time_at(tick() + 1) - time();
+    const double whole = std::max(1.0, std::round(asked.interval / h));
     constexpr std::uint64_t kMeasure = 200'000;  // ns
-    const FirstStepChoice choice{steps, measuring_ && with_cost ? kMeasure : 0};
-    if (!step_with(component, level, choice) || !step_with(component, finer, choice)) return {};
-    const FirstStep &one = *step_with(component, level, choice), &other = *step_with(component, finer, choice);
+    FirstStepChoice choice;
+    choice.steps = steps_of_trial(asked.component, whole), choice.measure_ns = measuring_ && asked.with_cost ? kMeasure : 0;
+    const auto first = step_with(asked.component, *asked.level, choice);
+    if (!first) return {};
+    const FirstStep& one = *first;
+    Apart largest;
+    const CourseEnd departs = [&](const std::vector<std::vector<ObjectMotion>>& course)
+    {
+        if (course.size() <= one.course.size()) raise(largest, one.course[course.size() - 1], course.back());
+        return largest.distance > asked.enough.distance || largest.angle > asked.enough.angle;
+    };
+    choice.end = &departs;
+    const Result<FirstStep>& second = step_with(asked.component, *asked.finer, choice);
+    if (!second) return {};
+    const FirstStep& other = *second;
     const std::vector<Apart> apart = departures(one, other);
     if (apart.empty()) return {};
     const std::size_t half = (apart.size() + 1) / 2;
@@ -121,14 +149,15 @@ TrialFindings Simulation::error_of_level(std::uint32_t component, const Level& l
     out.error.distance = continued(halfway.distance, end.distance, k, m, whole);
     out.error.angle = continued(halfway.angle, end.angle, k, m, whole);
     out.seconds = one.seconds, out.finer_seconds = other.seconds;
-    if (one.course.back().size() == other.course.back().size()) out.error.power = std::fabs(one.energy - other.energy) / (steps * h);
+    const bool alike = one.course.size() == other.course.size() && one.course.back().size() == other.course.back().size();
+    if (alike) out.error.power = std::fabs(one.energy - other.energy) / (m * h);
     return out;
 }
 
-LevelError Simulation::try_level(std::uint32_t component, const Level& level, const Level& finer, double interval)
+LevelError Simulation::try_level(std::uint32_t component, const Level& level, const Level& finer, double interval, const LevelError& enough)
 {
     tried_.clear();
-    const LevelError out = error_of_level(component, level, finer, interval, false).error;
+    const LevelError out = error_of_level({component, &level, &finer, interval, enough, false}).error;
     tried_.clear();
     return out;
 }
@@ -157,11 +186,12 @@ void Simulation::decide()
     private:
         std::vector<Event>& to_;
     } events(decided_.events);
-    const auto error = [this](std::uint32_t component, const Level* level, const Level* finer, double interval, bool with_cost)
-    { return error_of_level(component, *level, *finer, interval, with_cost); };
-    const std::vector<Decision> decisions = run_.levels().decide(tick(), time(), dt(), error, events);
+    const auto error = [this](const LevelQuestion& asked) { return error_of_level(asked); };
+    std::vector<Decision> decisions = run_.levels().decide(tick(), time(), dt(), error, events);
     tried_.clear();
-    for (auto first = decisions.begin(); first != decisions.end();)
+    const auto in_words = std::stable_partition(decisions.begin(), decisions.end(), [](const Decision& d) { return d.verb.empty(); });
+    exchange_levels({decisions.begin(), in_words});
+    for (auto first = in_words; first != decisions.end();)
     {
         const auto differs = [&](const Decision& d) { return d.by != first->by || d.verb != "add"; };
         const auto last = std::find_if(first + 1, decisions.end(), differs);
@@ -170,6 +200,78 @@ void Simulation::decide()
         first = end;
     }
     note_levels();
+}
+
+/// What all governors exchange is one transaction, because most of what an exchange costs does not depend on how much is exchanged. If it
+/// is refused, each of them exchanges by itself.
+void Simulation::exchange_levels(std::span<const Decision> decisions)
+{
+    if (decisions.empty() || take_effect_as_one(decisions)) return;
+    for (const Decision& decision : decisions) carry_out_levels(decision);
+}
+
+bool Simulation::take_effect_as_one(std::span<const Decision> decisions)
+{
+    Request request;
+    request.trial.budget = TrialChoice::Budget::None;
+    for (const Decision& d : decisions) request.operations.insert(request.operations.end(), d.operations.begin(), d.operations.end());
+    const std::uint64_t begin = now_ns(), thread_begin = thread_ns();
+    const Reply reply = Transaction(run_, context_, *this, request).run();
+    const StepCost cost{1e-9 * static_cast<double>(now_ns() - begin), 1e-9 * static_cast<double>(thread_ns() - thread_begin)};
+    if (!reply.done)
+    {
+        last_refusal_ = reply.errors.empty() ? std::string() : reply.errors.front().text();
+        run_.stepper().charge(decisions.front().by, static_cast<std::int64_t>(reply.pause_ns));
+        return false;
+    }
+    run_.levels().note_exchange(request.operations.size(), cost), step_times_.begin_anew();
+    run_.watch->begin_anew();
+    note_levels();
+    auto swap = reply.swaps.begin();
+    for (const Decision& d : decisions)
+    {
+        Reply own = reply;
+        const auto last = swap + std::min(reply.swaps.end() - swap, static_cast<std::ptrdiff_t>(d.operations.size()));
+        own.swaps.assign(swap, last), swap = last;
+        own.pause_ns *= static_cast<double>(d.operations.size()) / static_cast<double>(request.operations.size());
+        note_levels_taken(d, std::move(own));
+    }
+    return true;
+}
+
+/// Tells what a governor has exchanged.
+void Simulation::note_levels_taken(const Decision& decision, Reply reply)
+{
+    run_.stepper().charge(decision.by, static_cast<std::int64_t>(reply.pause_ns));
+    for (std::size_t k = 0; k < reply.swaps.size(); ++k)
+    {
+        const SwapReport& swap = reply.swaps[k];
+        const std::uint32_t component = run_.world().find(swap.id);
+        const std::string& why = decision.reasons[std::min(k, decision.reasons.size() - 1)];
+        run_.levels().note_change(component, why, time());
+        Event e;
+        e.tick = tick(), e.time = time(), e.kind = "level.changed", e.component = component;
+        e.message = swap.from + " -> " + swap.to + ": " + why;
+        decided_.events.push_back(std::move(e));
+    }
+    Request request;
+    request.trial.budget = TrialChoice::Budget::None;
+    request.operations = decision.operations;
+    reply.made = std::make_shared<const Request>(std::move(request)), reply.decided_by = run_.world().id_of(decision.by);
+    own_requests_.push_back(std::move(reply));
+}
+
+/// An exchange that is refused must not keep the others of the same decision from taking effect.
+void Simulation::carry_out_levels(const Decision& decision)
+{
+    if (take_effect_as_one({&decision, 1}) || decision.operations.size() < 2) return;
+    for (std::size_t k = 0; k < decision.operations.size(); ++k)
+    {
+        Decision one;
+        one.by = decision.by, one.operations = {decision.operations[k]}, one.reasons = {decision.reasons[k]};
+        const auto& id = std::get<SwapOperation>(one.operations.front()).id;
+        if (!take_effect_as_one({&one, 1})) refuse_decision(decision.by, "level of " + id, last_refusal_);
+    }
 }
 
 /// Additions of one component are one transaction, because the cost of a transaction grows with the scene. If it is refused, each half is
@@ -212,55 +314,29 @@ bool Simulation::take_effect_together(std::span<const Decision> additions)
     return take_effect(whole, request, whole.reasons);
 }
 
-/// An exchange that is refused must not keep the others of the same decision from taking effect.
 void Simulation::carry_out_decision(const Decision& decision)
 {
+    auto read = read_decision(decision);
+    if (!read) return refuse_decision(decision.by, decision.verb + " " + decision.target, read.error().reason);
     Request request;
     request.trial.budget = TrialChoice::Budget::None;
-    request.operations = decision.operations;
+    request.operations = std::move(read->operations);
     request.made_by = run_.world().id_of(decision.by);
-    if (!decision.verb.empty())
-    {
-        auto read = read_decision(decision);
-        if (!read) return refuse_decision(decision.by, decision.verb + " " + decision.target, read.error().reason);
-        request.operations = std::move(read->operations);
-    }
-    if (take_effect(decision, request, decision.reasons) || request.operations.size() < 2 || !decision.verb.empty()) return;
-    for (std::size_t k = 0; k < decision.operations.size(); ++k)
-    {
-        request.operations = {decision.operations[k]};
-        const auto& id = std::get<SwapOperation>(decision.operations[k]).id;
-        if (!take_effect(decision, request, {decision.reasons[k]})) refuse_decision(decision.by, "level of " + id, last_refusal_);
-    }
+    (void)take_effect(decision, request, decision.reasons);
 }
 
 bool Simulation::take_effect(const Decision& decision, const Request& request, const std::vector<std::string>& reasons)
 {
-    const std::uint64_t begin = now_ns(), thread_begin = thread_ns();
     Reply reply = Transaction(run_, context_, *this, request).run();
-    const StepCost cost{1e-9 * static_cast<double>(now_ns() - begin), 1e-9 * static_cast<double>(thread_ns() - thread_begin)};
     run_.stepper().charge(decision.by, static_cast<std::int64_t>(reply.pause_ns));
     if (!reply.done)
     {
         last_refusal_ = reply.errors.empty() ? std::string() : reply.errors.front().text();
-        if (reasons.size() < 2 && !decision.verb.empty())
-            refuse_decision(decision.by, decision.verb + " " + decision.target, last_refusal_);
+        if (reasons.size() < 2) refuse_decision(decision.by, decision.verb + " " + decision.target, last_refusal_);
         return false;
     }
-    if (decision.verb.empty()) run_.levels().note_exchange(decision.by, decision.operations.size(), cost), step_times_.begin_anew();
     run_.watch->begin_anew();
     note_levels();
-    for (std::size_t k = 0; k < reply.swaps.size() && decision.verb.empty(); ++k)
-    {
-        const SwapReport& swap = reply.swaps[k];
-        const std::uint32_t component = run_.world().find(swap.id);
-        const std::string& why = reasons[std::min(k, reasons.size() - 1)];
-        run_.levels().note_change(component, why, time());
-        Event e;
-        e.tick = tick(), e.time = time(), e.kind = "level.changed", e.component = component;
-        e.message = swap.from + " -> " + swap.to + ": " + why;
-        decided_.events.push_back(std::move(e));
-    }
     if (decision.verb == "add" || decision.verb == "remove")
     {
         run_.changes.touched.push_back(run_.world().id_of(decision.by));  // it remembers what it did

@@ -75,8 +75,8 @@ public:
     void let_measure(bool measuring) { measuring_ = measuring; }
     const LevelBook& levels() const { return run_.levels(); }
     /// What trial steps from the present boundary tell a governor: how far a component with this level departs within `interval` (s) from
-    /// where the next finer one would take it. They leave no trace.
-    LevelError try_level(std::uint32_t component, const Level& level, const Level& finer, double interval);
+    /// where the next finer one would take it. They leave no trace. `enough`: see LevelQuestion.
+    LevelError try_level(std::uint32_t component, const Level& level, const Level& finer, double interval, const LevelError& enough = {});
     /// From where the viewers of the scene look at the present boundary.
     std::vector<Viewpoint> viewpoints() { return run_.levels().viewpoints(tick(), time(), dt()); }
     /// Where the cameras of the scene send their pictures. Null: cameras do not draw.
@@ -126,6 +126,10 @@ private:
     // deciding.cpp
     void measure_for_governors();
     void decide();
+    void exchange_levels(std::span<const Decision> decisions);
+    bool take_effect_as_one(std::span<const Decision> decisions);
+    void note_levels_taken(const Decision& decision, Reply reply);
+    void carry_out_levels(const Decision& decision);
     void carry_out_decisions(std::span<const Decision> decisions);
     void carry_out_decision(const Decision& decision);
     Result<Request> read_decision(const Decision& decision) const;
@@ -136,7 +140,8 @@ private:
     /// Observers see the governor of a component with it.
     void note_levels();
     const Result<FirstStep>& step_with(std::uint32_t component, const Level& level, const FirstStepChoice& choice);
-    TrialFindings error_of_level(std::uint32_t component, const Level& level, const Level& finer, double interval, bool with_cost);
+    int steps_of_trial(std::uint32_t component, double whole) const;
+    TrialFindings error_of_level(const LevelQuestion& asked);
 
     bool run_step();
     void note_step_time(std::uint64_t begin, std::uint64_t thread_begin);

@@ -17,6 +17,14 @@ namespace
 using simulation::LevelInfo;
 using simulation::Simulation;
 
+std::string level_of_body(const Simulation& run, Ref body)
+{
+    for (const LevelInfo& l : run.levels().levels())
+        for (const Ref object : run.levels().objects_of(l.component))
+            if (object == body) return l.text;
+    return {};
+}
+
 /// Sums of squares until take_mean() is called.
 void add_errors(Simulation& run, const Simulation& reference, const std::vector<ObjectPair>& objects, GovernError& out)
 {
@@ -29,7 +37,10 @@ void add_errors(Simulation& run, const Simulation& reference, const std::vector<
         if (scale == 0) continue;
         const double pixels = metres * scale;
         out.pixels += pixels * pixels, ++out.seen;
-        out.worst_pixels = std::max(out.worst_pixels, pixels);
+        if (pixels <= out.worst_pixels) continue;
+        const Ref body{Facet::Body, p.here};
+        out.worst_pixels = pixels, out.worst = run.world().id_of(body), out.worst_at = run.time();
+        out.worst_level = level_of_body(run, body);
     }
 }
 
@@ -99,14 +110,16 @@ public:
 private:
     Result<void> begin()
     {
-        Contender governed;
-        governed.point.name = "governed", governed.point.governed = true;
-        governed.run = std::make_unique<Simulation>(types_);
-        if (auto loaded = governed.run->load(plan_.scene); !loaded) return loaded;
-        governed.run->let_measure(true);
-        if (auto found = choose_governors(*governed.run); !found) return found;
-        if (governed.run->viewpoints().empty()) return reason("the scene has no viewer, for whom an error in pixels could be told");
-        contenders_.push_back(std::move(governed));
+        if (auto added = add_governed("governed", plan_.scene); !added) return added;
+        Simulation& governed = *contenders_.front().run;
+        if (auto found = choose_governors(governed); !found) return found;
+        if (governed.viewpoints().empty()) return reason("the scene has no viewer, for whom an error in pixels could be told");
+        for (const Setting& variant : plan_.variants)
+        {
+            const auto scene = apply(plan_.scene, types_, {variant});
+            if (!scene) return scene.errors();
+            if (auto added = add_governed("governed, " + variant.text(), *scene); !added) return added;
+        }
         for (std::size_t k = 0; k < choices(); ++k)
         {
             Contender fixed;
@@ -124,6 +137,17 @@ private:
         }
         reference_ = std::make_unique<Simulation>(types_);
         reference_->let_decide(false);
+        return {};
+    }
+
+    Result<void> add_governed(const std::string& name, const model::SceneSpec& scene)
+    {
+        Contender governed;
+        governed.point.name = name, governed.point.governed = true;
+        governed.run = std::make_unique<Simulation>(types_);
+        if (auto loaded = governed.run->load(scene); !loaded) return loaded;
+        governed.run->let_measure(true);
+        contenders_.push_back(std::move(governed));
         return {};
     }
 
@@ -283,12 +307,21 @@ Result<GovernResult> compare_governor(model::TypeSource& types, const GovernPlan
 
 Result<GovernResult> governed_levels(model::TypeSource& types, const GovernPlan& plan) { return Comparison(types, plan).list(); }
 
-std::optional<double> gain(const GovernResult& result)
+std::optional<double> gain(const GovernResult& result) { return gain(result, result.points.front()); }
+
+const GovernPoint* better_than(const GovernResult& result, const GovernPoint& fixed)
+{
+    const GovernPoint* out = nullptr;
+    for (const GovernPoint& p : result.points)
+        if (p.governed && p.cpu < fixed.cpu && p.error.pixels < fixed.error.pixels && (!out || p.cpu < out->cpu)) out = &p;
+    return out;
+}
+
+std::optional<double> gain(const GovernResult& result, const GovernPoint& governed)
 {
     std::vector<const GovernPoint*> fixed;
     for (const GovernPoint& p : result.points)
         if (!p.governed && p.cpu > 0 && p.error.pixels > 0) fixed.push_back(&p);
-    const GovernPoint& governed = result.points.front();
     std::sort(fixed.begin(), fixed.end(), [](const GovernPoint* a, const GovernPoint* b) { return a->cpu < b->cpu; });
     const GovernPoint* before = nullptr;  // of the front
     for (const GovernPoint* p : fixed)

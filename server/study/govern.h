@@ -15,6 +15,7 @@
 #include "model/type_registry.h"
 #include "plab/interruption.h"
 #include "plab/result.h"
+#include "study/settings.h"
 
 namespace plab::study
 {
@@ -26,6 +27,7 @@ struct GovernPlan
     double until = 10;                     ///< s
     double between = 1, window = 0.25;     ///< s: from one comparison to the next; of a comparison
     int refine = 4;                        ///< steps of the reference for each step of the run
+    std::vector<Setting> variants;         ///< of the governors: for each one there is a governed run more
     const Interruption* stop = nullptr;
     std::function<void(const std::string&)> progress;
 };
@@ -37,6 +39,9 @@ struct GovernError
     double pixels = 0, worst_pixels = 0;  ///< root mean square; largest
     double metres = 0;                    ///< root mean square of all of them, seen or not
     std::size_t seen = 0, bodies = 0;     ///< samples
+    std::string worst;                    ///< the body with the largest one
+    std::string worst_level;              ///< of the component that acts on it, at the end of that comparison
+    double worst_at = 0;                  ///< s
 };
 
 /// s of CPU time, with what was decided before the step; how many levels were tried and components exchanged.
@@ -48,7 +53,7 @@ struct GovernStep
 
 struct GovernPoint
 {
-    std::string name;  ///< "governed", or the level that all have
+    std::string name;  ///< "governed", with the setting of a variant, or the level that all have
     bool governed = false;
     double cpu = 0;  ///< s of CPU time for each simulated second: the whole scene, with all decisions
     double step_median = 0, step_99 = 0, step_longest = 0;  ///< s of CPU time
@@ -64,7 +69,7 @@ struct GovernResult
     int refine = 0;
     std::size_t components = 0, objects = 0;  ///< that are watched; on which they act
     std::vector<std::string> levels;          ///< of several governors: which one of each
-    std::vector<GovernPoint> points;          ///< the governed one first, then from the cheapest level on
+    std::vector<GovernPoint> points;          ///< the governed one first, then its variants, then from the cheapest level on
 };
 
 /// Errors: the scene has no such governor or no viewer; it was interrupted.
@@ -73,10 +78,14 @@ Result<GovernResult> compare_governor(model::TypeSource& types, const GovernPlan
 /// The governor of the plan and its levels, without figures. Errors as above.
 Result<GovernResult> governed_levels(model::TypeSource& types, const GovernPlan& plan);
 
-/// How many times the CPU time of the governed run one would need with a single level for its error: on the line that joins the levels
+/// How many times the CPU time of a governed run one would need with a single level for its error: on the line that joins the levels
 /// which no other level beats, in logarithms of both. More than 1: the governed point is below and left of it. Nothing: the governed run is
 /// more exact than every level, or less exact than the cheapest one.
+std::optional<double> gain(const GovernResult& result, const GovernPoint& governed);
+/// Of the first one.
 std::optional<double> gain(const GovernResult& result);
+/// The governed run that is both cheaper and more exact than this level for all, the fastest one if there are several; null: there is none.
+const GovernPoint* better_than(const GovernResult& result, const GovernPoint& fixed);
 
 std::vector<std::string> govern_findings(const GovernResult& result);
 figures::Drawing govern_picture(const GovernResult& result);

@@ -56,7 +56,23 @@ std::vector<std::string> govern_findings(const GovernResult& r)
 {
     const GovernPoint& governed = r.points.front();
     std::vector<std::string> out{r.governor + " (" + r.type + "): " + figures_of(governed) + "."};
-    for (std::size_t k = 1; k < r.points.size(); ++k) out.push_back(compared(governed, r.points[k]));
+    for (const GovernPoint& p : r.points)
+        if (!p.governed) out.push_back(compared(governed, p));
+    const bool has_variants = r.points.size() > 1 && r.points[1].governed;
+    for (std::size_t k = 1; k < r.points.size() && has_variants; ++k)
+    {
+        const GovernPoint& p = r.points[k];
+        if (p.governed)
+        {
+            const auto times = gain(r, p);
+            out.push_back(p.name + ": " + figures_of(p) + (times ? ", gain " + short_number(*times) : std::string()) + ".");
+        }
+        else if (const GovernPoint* better = better_than(r, p))
+            out.push_back(p.name + " for all is beaten in both by \"" + better->name + "\": " + short_number(p.cpu / better->cpu) +
+                          " times as fast and " + short_number(p.error.pixels / better->error.pixels) + " times as exact.");
+        else
+            out.push_back(p.name + " for all: no governed run is both faster and more exact.");
+    }
     if (const auto times = gain(r))
         out.push_back(*times > 1 ? "The governed point is below and left of the line that joins the single levels: with one level for all, "
                                    "its error would cost " +
@@ -64,6 +80,9 @@ std::vector<std::string> govern_findings(const GovernResult& r)
                                  : "The governed point is not below and left of the line that joins the single levels: with one level for "
                                    "all, its error would cost " +
                                        short_number(*times) + " times its CPU time.");
+    if (!governed.error.worst.empty())
+        out.push_back("Its largest error: " + short_number(governed.error.worst_pixels) + " pixels, of " + governed.error.worst + " at " +
+                      short_number(governed.error.worst_at) + " s, with " + governed.error.worst_level + ".");
     if (r.budget > 0)
         out.push_back("Of 100 steps, 99 took at most " + ms(governed.step_99) + " of a budget of " + ms(r.budget) + " (" +
                       short_number(governed.step_99 / r.budget) + ").");
@@ -87,7 +106,8 @@ Drawing govern_picture(const GovernResult& r)
     draw_panel(d, p, "CPU time of the whole scene, ms per simulated second", "error in the picture, pixels (root mean square)");
     Labels labels;
     std::vector<Spot> line;
-    for (std::size_t k = 1; k < r.points.size(); ++k) line.push_back(p.at(costs[k], errors[k]));
+    for (std::size_t k = 1; k < r.points.size(); ++k)
+        if (!r.points[k].governed) line.push_back(p.at(costs[k], errors[k]));
     std::sort(line.begin(), line.end(), [](const Spot& a, const Spot& b) { return a.x < b.x; });
     if (line.size() > 1) d.line(line, {kMuted, 1.2, true}, "one level for all");
     for (std::size_t k = 0; k < r.points.size(); ++k) labels.occupy(p.at(costs[k], errors[k]), 6);
@@ -96,7 +116,10 @@ Drawing govern_picture(const GovernResult& r)
         const Spot at = p.at(costs[k], errors[k]);
         const bool governed = r.points[k].governed;
         d.marker(at, governed ? 3 : 0, governed ? 8 : 5.5, Ink::series(governed ? 1 : 0), true, hint_of(r.points[k], r.levels));
-        labels.add(d, at, governed ? r.type : label_of(r.points[k].name), 12, {}, governed);
+        const std::string name = k == 0     ? r.type
+                                 : governed ? r.points[k].name.substr(r.points[k].name.find(' ') + 1)
+                                            : label_of(r.points[k].name);
+        labels.add(d, at, name, 12, {}, governed);
     }
     return d;
 }

@@ -142,6 +142,12 @@ int run_govern(const study::StudyOptions& options, model::TypeSource& types, mod
     plan.title = scene.settings.title.empty() ? options.scene : scene.settings.title;
     plan.scene = std::move(scene), plan.command = options.command, plan.governor = options.governor;
     plan.until = options.until, plan.stop = &work;
+    for (const std::vector<study::Setting>& values : options.varied)
+        for (const study::Setting& value : values)
+        {
+            if (value.is_dt()) return fail({reason("--govern varies parameters of governors, not dt")});
+            plan.variants.push_back(value);
+        }
     if (options.list)
     {
         const auto listed = study::governed_levels(types, plan);

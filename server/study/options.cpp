@@ -24,6 +24,7 @@ constexpr const char* kExamples = R"(Examples:
   plab-study --suite -o out                                       the catalogue of this installation; --list shows its size
   plab-study --suite my/suite.json --repeat 1 -o out
   plab-study scenes/city.xml --govern '*' --until 10 -o out       governors against one level of detail for all
+  plab-study scenes/levels/springs.xml --govern --vary 'lod.pixels=0.5 20,0.5 60' --until 5 -o out     the same with other settings too
   plab-study scenes/levels/chains.xml --verify-levels --until 10 -o out    are the true errors of levels below the bound?
   plab-study run.mcap --verify-levels -o out                      the same of a recorded run
 
@@ -129,7 +130,9 @@ void add_study_options(CLI::App& app, StudyOptions& options, Texts& texts, std::
     const auto many = [&](const char* name, std::vector<std::string>& into, const char* what)
     { app.add_option(name, into, what)->take_all()->allow_extra_args(false); };
     app.add_option("scene", options.scene, "blueprint (XML)");
-    many("--vary", texts.vary, "ID=TypeA,TypeB or ID.param=v1,v2 or dt=1/30,1/60: values to vary (may be repeated: all combinations)");
+    many("--vary", texts.vary,
+         "ID=TypeA,TypeB or ID.param=v1,v2 or dt=1/30,1/60: values to vary (may be repeated: all combinations); with --govern: a governed "
+         "run more for each value of a parameter of a governor");
     many("--algorithm", texts.algorithms,
          "[NAME:] ID=Type ID.param=value ...: settings that belong together (may be repeated); each is combined with all of --vary");
     app.add_option("--reference", texts.reference,
@@ -184,8 +187,8 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
     if (auto end = program::parse_command_line(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return end;
     options.scene = program::file_or_installed(options.scene);
     options.suite = app.count("--suite") > 0, options.govern = app.count("--govern") > 0;
-    if (options.govern && (options.suite || !texts.vary.empty() || !texts.algorithms.empty() || !texts.swaps.empty()))
-        return ParseEnd{2, "plab-study: --govern takes its levels from the governor: leave --suite, --vary, --algorithm and --swap out\n"};
+    if (options.govern && (options.suite || !texts.algorithms.empty() || !texts.swaps.empty()))
+        return ParseEnd{2, "plab-study: --govern takes its levels from the governor: leave --suite, --algorithm and --swap out\n"};
     if (options.verify_levels &&
         (options.govern || options.suite || !texts.vary.empty() || !texts.algorithms.empty() || !texts.swaps.empty()))
         return ParseEnd{

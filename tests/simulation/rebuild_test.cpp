@@ -220,6 +220,40 @@ TEST_CASE("after any request, what is derived again and what is kept give the ru
     }
 }
 
+TEST_CASE("an exchange of solvers or answers leaves the locator of events as it is, and impacts are what a new one finds")
+{
+    std::string balls = component("weight", "Field/Gravity", "between=\"*\"") + component("plane", "Shape/Plane") +
+                        component("ground", "State/Static", "shape=\"plane\"") + component("form", "Shape/Sphere", "radius=\"0.1\"");
+    for (const char* n : {"0", "1", "2"})
+        balls +=
+            component(std::string("ball") + n, "State/RigidBody",
+                      std::string("shape=\"form\" mass=\"1\" linear_velocity=\"0.3 0 0\" solver=\"Solver/RungeKutta4\" position=\"0.") + n +
+                          "5 0 0.3\"");
+    balls += component("contact", "CDetection/ODE",
+                       "between=\"ball0 ball1 ball2\" against=\"ground\" resolution=\"Resolution/LocalRoot\" response=\"Response/Impulse\" "
+                       "response.restitution=\"0.9\" response.friction=\"0.2\"");
+    Scene kept(balls, "dt='1/120'"), derived(balls, "dt='1/120'");
+    REQUIRE_MESSAGE(kept.loaded(), kept.error());
+    kept.keep_events = true;
+    for (int i = 0; i < 12; ++i)
+    {
+        const char* const solver = i % 2 == 0 ? "Solver/DormandPrince54" : "Solver/RungeKutta4";
+        const char* const answer = i % 4 == 1 ? "Resolution/LocalBisection" : "Resolution/LocalRoot";
+        const SwapOperation swap = i % 3 == 2 ? SwapOperation{"contact.resolution", answer, {}}
+                                              : SwapOperation{"ball" + std::to_string(i % 3) + ".solver", solver, {}};
+        for (Scene* s : {&kept, &derived})
+        {
+            const Reply reply = s->ask(swap);
+            REQUIRE_MESSAGE(reply.done, first_error(reply.errors));
+        }
+        REQUIRE(derived.simulation().restore(derived.simulation().capture()).ok());
+        kept.step(17), derived.step(17);
+        REQUIRE(difference(kept.simulation(), derived.simulation()) == "");
+    }
+    CHECK(kept.vec("ball0", "position").x > 0.3);
+    CHECK(kept.vec("ball0", "position").z < 0.35);
+}
+
 TEST_CASE("an exchange of solvers leaves the blocks of forces where they are, and one of a force does not")
 {
     Scene s(scene(), "dt='1/120'");

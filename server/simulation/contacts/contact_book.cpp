@@ -82,7 +82,7 @@ double sliding_margin(const Bodies& bodies, Ref a, Ref b, const Vec3& normal, do
 
 }  // namespace
 
-Errors ContactBook::rebuild(bool sizes)
+Errors ContactBook::rebuild(bool sizes, bool only_solvers)
 {
     const std::vector<Detector> before = std::exchange(detectors_, find_detectors(step_.world, step_.schedule));
     const std::optional<world::Revisions> last = std::exchange(built_from_, std::nullopt);
@@ -98,7 +98,7 @@ Errors ContactBook::rebuild(bool sizes)
     if (!keeps_found_) found_.clear(), runs_.clear();
     has_sizes_ = has_sizes_ && last && now.keeps_bodies_since(*last);
     if ((sizes || !detectors_.empty()) && !std::exchange(has_sizes_, true)) measure_bodies();
-    list_participants();
+    if (!only_solvers || !same) list_participants();
     detect_among(nullptr), detect_all_once();
     built_from_ = now;
     return {};

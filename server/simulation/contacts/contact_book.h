@@ -21,8 +21,9 @@ public:
     explicit ContactBook(StepState& step) : step_(step) {}
 
     /// To be called after any structural change: finds detectors and sizes of bodies, and drops pairs whose detector or bodies are gone.
-    /// Errors: see contact_rules.h. `sizes`: sizes of bodies are wanted even if there is no detector.
-    Errors rebuild(bool sizes = true);
+    /// Errors: see contact_rules.h. `sizes`: sizes of bodies are wanted even if there is no detector. `only_solvers`: nothing but solvers
+    /// has changed since the last rebuild (world::Revisions).
+    Errors rebuild(bool sizes = true, bool only_solvers = false);
     /// Whether found() survived the last rebuild, because nothing on which it depends has changed.
     bool keeps_found() const { return keeps_found_; }
     /// Whether nothing on which contacts may depend has changed since the last rebuild.

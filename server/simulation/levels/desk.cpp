@@ -99,7 +99,8 @@ LevelError LevelBook::Desk::error(Row /*row*/, std::size_t index, std::int32_t l
     const std::uint32_t component = governor_->watched[index].component;
     constexpr std::size_t kMostMeasured = 64;
     const std::uint64_t begin = now_ns(), thread_begin = thread_ns();
-    const TrialFindings found = error_(component, &levels[at], &levels[at + 1], interval, governor_->trials < kMostMeasured);
+    const TrialFindings found =
+        error_({component, &levels[at], &levels[at + 1], interval, book_.enough_for(*governor_), governor_->trials < kMostMeasured});
     book_.note_tried(*governor_, {1e-9 * static_cast<double>(now_ns() - begin), 1e-9 * static_cast<double>(thread_ns() - thread_begin)});
     note_trial(*governor_, index, level, interval, found, book_.trials_[component]);
     return found.error;

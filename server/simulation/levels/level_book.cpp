@@ -231,27 +231,34 @@ bool is_input(const Schema& schema, const char* name)
 
 }  // namespace
 
-bool LevelBook::is_told(const Governor& governor, const char* input) const
+bool LevelBook::is_told(std::uint32_t governor, const char* input) const { return is_input(world_.table_of(governor).schema(), input); }
+
+/// A governor may have a field `enough`, in m or in rad as its field `unit` says, which it sets before it asks for an error; 0: no limit.
+LevelError LevelBook::enough_for(const Governor& governor) const
 {
-    return is_input(world_.table_of(governor.component).schema(), input);
+    LevelError out;
+    const double enough = real_of(world_, governor.component, "enough");
+    if (enough > 0) (text_of(world_, governor.component, "unit") == "rad" ? out.angle : out.distance) = enough;
+    return out;
 }
 
-void LevelBook::note_exchange(std::uint32_t governor, std::size_t n, const StepCost& cost)
+void LevelBook::note_exchange(std::size_t n, const StepCost& cost)
 {
     decided_.exchanged += n, decided_.exchanging += cost;
+    bool told = false;
     for (Governor& g : governors_)
-        if (g.component == governor)
-        {
-            g.exchanged = n, g.exchange_cost = cost, g.waits = true;
-            if (is_told(g, "exchange_cost")) decided_.told += cost;
-        }
+    {
+        g.exchanged += n, g.exchange_cost += cost, g.waits = true;
+        told = told || is_told(g.component, "exchange_cost");
+    }
+    if (told) decided_.told += cost;
 }
 
 void LevelBook::note_tried(Governor& g, const StepCost& cost)
 {
     ++g.tried, ++decided_.trials;
     g.trial_time += cost, decided_.trying += cost;
-    if (is_told(g, "trial_time")) decided_.told += cost;
+    if (is_told(g.component, "trial_time")) decided_.told += cost;
 }
 
 bool LevelBook::note_step(const StepCost& cost)
@@ -264,8 +271,13 @@ bool LevelBook::note_step(const StepCost& cost)
 bool LevelBook::is_due(const Governor& g, double time, double dt, const StepTimes& steps) const
 {
     constexpr std::size_t kFew = 4;  // steps after an exchange: their median is not that of the first one, which is longer
-    if (!is_told(g, "step_cost") || steps.count() == 0) return false;
-    if (g.waits) return steps.count() >= kFew || real_of(world_, g.component, "step_cost") == 0;
+    if (!is_told(g.component, "step_cost") || steps.count() == 0) return false;
+    const double told = real_of(world_, g.component, "step_cost");
+    if (g.waits) return steps.count() >= kFew || told == 0;
+    // The machine has become busy, or the scene takes more: who spends time has to know before its next look.
+    constexpr double kMuchMore = 1.15;
+    const StepCost recent = steps.recent();
+    if ((text_of(world_, g.component, "clock") == "wall" ? recent.wall : recent.processor) > kMuchMore * told) return true;
     const double every = std::max(dt, real_of(world_, g.component, "every"));
     return std::floor(time / every + 1e-9) != std::floor((time - dt) / every + 1e-9);
 }
@@ -282,7 +294,7 @@ std::vector<Request> LevelBook::measurements(double time, double dt, StepTimes& 
         request.trial.budget = TrialChoice::Budget::None;
         const auto set = [&](const char* name, Value value)
         {
-            if (is_told(g, name)) request.operations.push_back(SetOperation{world_.id_of(g.component), name, std::move(value)});
+            if (is_told(g.component, name)) request.operations.push_back(SetOperation{world_.id_of(g.component), name, std::move(value)});
         };
         if (is_due(g, time, dt, steps))
         {
@@ -295,10 +307,10 @@ std::vector<Request> LevelBook::measurements(double time, double dt, StepTimes& 
         if (g.exchanged > 0)
             set("exchange_cost", Value(Reals{static_cast<double>(g.exchanged), counted(g.exchange_cost), counted(decided_.step)}));
         if (g.tried > 0) set("trial_time", Value(Reals{static_cast<double>(g.tried), counted(g.trial_time), counted(decided_.step)}));
-        g.exchanged = g.tried = 0, g.trial_time = {};
+        g.exchanged = g.tried = 0, g.exchange_cost = g.trial_time = {};
         if (!request.operations.empty()) out.push_back(std::move(request));
     }
-    if (used) steps.begin_anew();
+    if (used) steps.go_on();
     return out;
 }
 

@@ -30,6 +30,18 @@ struct Decision
     std::vector<std::string> reasons;    ///< one for each of them, or for the request
 };
 
+/// How far apart are two levels of a component? See LevelControl::error(). The levels stay where they are until it is answered. `enough`:
+/// whoever asks need not know more than that the error exceeds this distance or angle (NaN: no limit), so the trial may end there, and what
+/// it has shown until then is the answer.
+struct LevelQuestion
+{
+    std::uint32_t component = kNoIndex;
+    const Level *level = nullptr, *finer = nullptr;
+    double interval = 0;  ///< s
+    LevelError enough;
+    bool with_cost = false;  ///< also what the steps cost, for which they have to be repeated
+};
+
 /// What trial steps with a level and with the next finer one showed.
 struct TrialFindings
 {
@@ -74,10 +86,7 @@ struct LevelInfo
 class LevelBook
 {
 public:
-    /// Measures how far apart two levels of a component are after a step: see LevelControl::error(). `with_cost`: also what the steps cost,
-    /// for which they have to be repeated.
-    using MeasureError =
-        std::function<TrialFindings(std::uint32_t component, const Level* level, const Level* finer, double interval, bool with_cost)>;
+    using MeasureError = std::function<TrialFindings(const LevelQuestion&)>;
 
     LevelBook(world::World& world, Stepper& stepper);
     ~LevelBook();
@@ -98,15 +107,16 @@ public:
 
     /// Of the last boundary.
     const DecisionCost& decision_cost() const { return decided_; }
-    /// What a transaction of a governor cost that exchanged n components.
-    void note_exchange(std::uint32_t governor, std::size_t n, const StepCost& cost);
+    /// What a transaction cost that exchanged n components. Each governor that spends time is told, whoever asked for it.
+    void note_exchange(std::size_t n, const StepCost& cost);
     /// What the step after the last boundary cost, without what governors are told. Returns whether it was a usual one: after an exchange
     /// or a trial the processor finds other data in its caches.
     bool note_step(const StepCost& cost);
     /// Inputs for governors that have these fields: `step_cost` (s), what a step costs usually, as often as their field `every` (s) states,
-    /// once as soon as it is known, and soon after they have exchanged something; with it `spread`, and `trial_costs` (s for each object,
-    /// by level); `exchange_cost` after each exchange, and `trial_time` after trials: how many, and what they cost. By the wall clock if
-    /// their field `clock` says "wall"; steps of trials always. `steps`: how it was, which is used up then.
+    /// once as soon as it is known, soon after something was exchanged, and when steps take much longer than it was told; with it `spread`,
+    /// and `trial_costs` (s for each object, by level); `exchange_cost` after each exchange, and `trial_time` after trials: how many, and
+    /// what they cost. By the wall clock if their field `clock` says "wall"; steps of trials always. `steps`: how it was, which is used up
+    /// then.
     std::vector<Request> measurements(double time, double dt, StepTimes& steps);
 
     /// All watched components, by governor and then by id.
@@ -135,7 +145,7 @@ private:
         // Measured since the last input of that kind.
         std::vector<std::vector<double>> trial_seconds;  ///< for each object, by level
         std::size_t trials = 0;                          ///< whose cost was measured: after some of them, steps tell it better
-        std::size_t exchanged = 0;                       ///< components
+        std::size_t exchanged = 0;                       ///< components, by all governors
         StepCost exchange_cost;
         std::size_t tried = 0;  ///< levels, each beside the next finer one
         StepCost trial_time;
@@ -155,7 +165,8 @@ private:
     };
     class Desk;
 
-    bool is_told(const Governor& governor, const char* input) const;
+    bool is_told(std::uint32_t governor, const char* input) const;
+    LevelError enough_for(const Governor& governor) const;
     bool is_due(const Governor& governor, double time, double dt, const StepTimes& steps) const;
     void note_tried(Governor& governor, const StepCost& cost);
     static void note_trial(Governor& governor, std::size_t index, std::int32_t level, double interval, const TrialFindings& found,

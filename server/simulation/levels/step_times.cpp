@@ -1,6 +1,7 @@
 #include "simulation/levels/step_times.h"
 
 #include <algorithm>
+#include <array>
 
 namespace plab::simulation
 {
@@ -10,6 +11,7 @@ namespace
 constexpr std::size_t kMostSteps = 1024;  ///< of which the median is taken
 constexpr std::size_t kMemory = 512;      ///< ratios
 constexpr std::size_t kFew = 4;           ///< a median of fewer steps is chance
+constexpr std::size_t kRecent = 7;
 
 }  // namespace
 
@@ -31,17 +33,43 @@ void StepTimes::add(const StepCost& step)
 
 void StepTimes::begin_anew()
 {
-    const StepCost by = usual();
-    if (steps_.size() >= kFew && by.wall > 0 && by.processor > 0)
-        for (const StepCost& step : steps_)
-        {
-            const StepCost ratio{step.wall / by.wall, step.processor / by.processor};
-            if (ratios_.size() < kMemory)
-                ratios_.push_back(ratio);
-            else
-                ratios_[oldest_] = ratio, oldest_ = (oldest_ + 1) % kMemory;
-        }
-    steps_.clear();
+    note_ratios(expected_);
+    steps_.clear(), expected_ = {};
+}
+
+void StepTimes::go_on()
+{
+    const StepCost now = usual();
+    note_ratios(expected_);
+    steps_.clear(), expected_ = now;
+}
+
+void StepTimes::note_ratios(const StepCost& expected)
+{
+    StepCost by = usual();
+    if (expected.wall > 0 && expected.processor > 0) by = {std::min(by.wall, expected.wall), std::min(by.processor, expected.processor)};
+    if (steps_.size() < kFew || !(by.wall > 0) || !(by.processor > 0)) return;
+    for (const StepCost& step : steps_)
+    {
+        const StepCost ratio{step.wall / by.wall, step.processor / by.processor};
+        if (ratios_.size() < kMemory)
+            ratios_.push_back(ratio);
+        else
+            ratios_[oldest_] = ratio, oldest_ = (oldest_ + 1) % kMemory;
+    }
+}
+
+StepCost StepTimes::recent() const
+{
+    if (steps_.size() < kRecent) return {};
+    const auto of = [this](double StepCost::*clock)
+    {
+        std::array<double, kRecent> last;
+        for (std::size_t k = 0; k < kRecent; ++k) last[k] = steps_[steps_.size() - kRecent + k].*clock;
+        std::nth_element(last.begin(), last.begin() + kRecent / 2, last.end());
+        return last[kRecent / 2];
+    };
+    return {of(&StepCost::wall), of(&StepCost::processor)};
 }
 
 StepCost StepTimes::usual() const

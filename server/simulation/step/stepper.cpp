@@ -22,7 +22,8 @@ void Stepper::collect_cost()
 {
     step_.report.evaluations += std::exchange(motion_.scratch().evaluations, 0) + advance_.batches().take_evaluations();
     step_.meter.stop();
-    cost_.book(step_.meter.accounts());
+    // Of a part of the scene nobody asks; the accounts are those of the whole scene, and booking them would cost more than a small part does.
+    if (!part_) cost_.book(step_.meter.accounts());
 }
 
 void Stepper::retire(std::uint32_t component)

@@ -98,7 +98,7 @@ Result<void> Stepper::rebuild()
         choose_answers(change);
     else if (Errors refused = derive_structure(no_solvers, change); !refused.empty())
         return refused;
-    if (Errors refused = book_.rebuild(part_ == nullptr); !refused.empty()) return refused;
+    if (Errors refused = book_.rebuild(part_ == nullptr, only_solvers); !refused.empty()) return refused;
     if (only_solvers)
         advance_.solvers_changed();
     else
@@ -107,7 +107,8 @@ Result<void> Stepper::rebuild()
     forces_.rebuild();
     touches_.rebuild();
     sleeping_contacts_.rebuild();
-    locator_.reset();
+    // It knows the sizes of bodies and the groups: a step after an exchange of solvers or answers would measure all of them again.
+    if (!only_solvers && !only_answers) locator_.reset();
     saved_mark_ = nullptr;
     rebuild_costs();
     render_scene_.structure_changed();

@@ -27,6 +27,7 @@ bool concerns_contacts(const world::World& world, std::uint32_t component)
 {
     const Facet facet = world.component(component).facet;
     if (facet != Facet::Component) return facet == Facet::Body || facet == Facet::Shape;
+    if (const model::ComponentType* type = world.type_of(component); type && type->only_advances()) return false;
     for (const auto& table : world.tables())
     {
         if (!table->type().takes_part(Phase::Detect)) continue;

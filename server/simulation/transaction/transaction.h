@@ -37,7 +37,8 @@ struct FirstStep
 struct FirstStepChoice
 {
     int steps = 1;
-    std::uint64_t measure_ns = 0;  ///< time for which the first step may be repeated to measure what it costs; 0: it is not measured
+    const CourseEnd* end = nullptr;  ///< null: all steps are made
+    std::uint64_t measure_ns = 0;    ///< time for which the first step may be repeated to measure what it costs; 0: it is not measured
 };
 
 /// A transaction: back up, apply, try, then commit or roll back.

@@ -238,13 +238,15 @@ TrialResult Trial::once(Stepper& part, const TrialScope& scope, const std::vecto
     out.given_up = deadline.has_interrupted();
     out.failure = failure_in(part.events());
     if (step_.course) out.course.push_back(motion_in(scope));
-    for (int n = 1; n < step_.count && !out.given_up && out.failure.empty(); ++n)
+    const auto is_enough = [&] { return step_.end && (*step_.end)(out.course); };
+    int made = 1;
+    for (; made < step_.count && !out.given_up && out.failure.empty() && !is_enough(); ++made)
     {
-        part.step(step_.tick + n, step_.start + n * step_.h, step_.h);
+        part.step(step_.tick + made, step_.start + made * step_.h, step_.h);
         out.given_up = deadline.has_interrupted(), out.failure = failure_in(part.events());
         if (step_.course) out.course.push_back(motion_in(scope));
     }
-    const Totals then = totals_of(world_, part, step_.start + step_.count * step_.h, step_.tick + step_.count);
+    const Totals then = totals_of(world_, part, step_.start + made * step_.h, step_.tick + made);
     out.kinetic_after = then.kinetic;
     out.outcome.energy = then.kinetic + then.stored, out.outcome.momentum = then.momentum;
     for (const std::uint32_t c : components) out.errors.push_back(c == kNoIndex ? 0.0 : world_.largest_error(c));

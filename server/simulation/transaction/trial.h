@@ -1,6 +1,7 @@
 /// One step of a part of the scene that is made and undone again: the measurement on which swaps are judged.
 #pragma once
 
+#include <functional>
 #include <set>
 #include <string>
 
@@ -10,14 +11,19 @@
 namespace plab::simulation
 {
 
+struct ObjectMotion;
+/// Whether the steps that a trial has made are enough: the motion after each of them.
+using CourseEnd = std::function<bool(const std::vector<std::vector<ObjectMotion>>&)>;
+
 /// A step at a boundary, as Simulation would make it next.
 struct TrialStep
 {
     Tick tick = 0;
-    double start = 0, h = 0;       ///< s
-    int count = 1;                 ///< steps in a row; objects that others touch before the last one are not noticed
-    bool course = false;           ///< also the motion after each of them
-    std::uint64_t measure_ns = 0;  ///< time for which the first step is repeated after the trial, in place of a time until which
+    double start = 0, h = 0;         ///< s
+    int count = 1;                   ///< steps in a row; objects that others touch before the last one are not noticed
+    bool course = false;             ///< also the motion after each of them
+    const CourseEnd* end = nullptr;  ///< of a trial with `course`; null: all steps are made
+    std::uint64_t measure_ns = 0;    ///< time for which the first step is repeated after the trial, in place of a time until which
     bool derives = false;  ///< the scene's stepper has not been rebuilt for the present structure: the trial's own one derives from it
     bool looked = false;   ///< all detectors have looked at all bodies where these are now
 };

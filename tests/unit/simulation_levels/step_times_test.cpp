@@ -42,3 +42,30 @@ TEST_CASE("the spread is how many times what was usual at their time 99 of 100 s
     for (int k = 0; k < 6; ++k) add(times, 100, 1e-3), times.begin_anew();
     CHECK(times.spread().processor == doctest::Approx(1));
 }
+
+TEST_CASE("where no level has changed, steps that all take longer than what was told are spread too")
+{
+    StepTimes times;
+    add(times, 100, 2e-3), times.go_on();
+    CHECK(times.spread().processor == doctest::Approx(1));
+    add(times, 90, 2e-3), add(times, 10, 3e-3), times.go_on();
+    CHECK(times.spread().processor == doctest::Approx(1.5));
+    add(times, 100, 3.6e-3), times.go_on();  // the machine is busy: 1.8 times what was usual
+    CHECK(times.spread().processor == doctest::Approx(1.8));
+    add(times, 100, 3.6e-3), times.begin_anew();  // as usual now
+    add(times, 100, 9e-3), times.begin_anew();    // with other levels
+    CHECK(times.spread().processor == doctest::Approx(1.8));
+}
+
+TEST_CASE("what is recent is the median of the last seven steps")
+{
+    StepTimes times;
+    add(times, 6, 1e-3);
+    CHECK(times.recent().processor == 0);
+    add(times, 20, 1e-3), add(times, 4, 3e-3);
+    CHECK(times.recent().processor == doctest::Approx(3e-3));
+    CHECK(times.recent().wall == doctest::Approx(6e-3));
+    CHECK(times.usual().processor == doctest::Approx(1e-3));
+    times.go_on();
+    CHECK(times.recent().processor == 0);
+}

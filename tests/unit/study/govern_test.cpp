@@ -39,6 +39,26 @@ TEST_CASE("the gain is the cost of the same error on the line that joins the lev
     CHECK_FALSE(gain(with_governed(0.5, 10)));
 }
 
+TEST_CASE("a level is beaten only by a governed run that is both cheaper and more exact; of several the cheapest one is named")
+{
+    GovernResult r = with_governed(5, 1e-2);
+    r.points.insert(r.points.begin() + 1, {point(60, 5e-5, true), point(90, 4e-5, true), point(110, 1e-6, true)});
+    CHECK(better_than(r, r.points[4]) == nullptr);  // nothing is cheaper than the cheapest one
+    CHECK(better_than(r, r.points[5]) == nullptr);
+    REQUIRE(better_than(r, r.points[6]));
+    CHECK(better_than(r, r.points[6])->cpu == 60);
+    CHECK(better_than(r, point(1, 1e-2)) == nullptr);  // as exact is not more exact
+    CHECK_FALSE(gain(r, r.points[3]));
+    const std::string found = [&]
+    {
+        std::string all;
+        for (const std::string& sentence : govern_findings(r)) all += sentence + "\n";
+        return all;
+    }();
+    CHECK(test::has(found, "is beaten in both by"));
+    CHECK(test::has(found, "1.67 times as fast and 2 times as exact"));
+}
+
 TEST_CASE("a governed scene and its single levels: the cheapest level has the largest error, and the governor's is that of what is seen")
 {
     std::string text =
@@ -67,6 +87,21 @@ TEST_CASE("a governed scene and its single levels: the cheapest level has the la
     CHECK(cheap.pixels > 10 * exact.pixels);
     CHECK(governed.pixels == doctest::Approx(exact.pixels).epsilon(0.2));
     CHECK(governed.metres > 3 * exact.metres);  // nobody looks behind
+    CHECK(governed.worst.starts_with("bob."));
+    CHECK(governed.worst_level == "Solver/RungeKutta4");
+    CHECK(governed.worst_at > 0);
+    // Of a variant that gives the cheapest level to all, the error is that of the cheapest level.
+    plan.variants = {{"lod.pixels", "1e9"}};
+    const auto varied = compare_governor(test::library(), plan);
+    REQUIRE(varied.ok());
+    REQUIRE(varied->points.size() == 4);
+    CHECK(varied->points[1].name == "governed, lod.pixels=1e9");
+    CHECK(varied->points[1].governed);
+    CHECK(varied->points[1].error.pixels == doctest::Approx(cheap.pixels).epsilon(0.05));
+    CHECK_FALSE(varied->points[2].governed);
+    plan.variants = {{"lod.pixel", "1"}};
+    CHECK_FALSE(compare_governor(test::library(), plan).ok());
+    plan.variants.clear();
     plan.governor = "other";
     const auto refused = compare_governor(test::library(), plan);
     REQUIRE_FALSE(refused.ok());
