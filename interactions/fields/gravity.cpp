@@ -27,7 +27,7 @@ void stored_by_gravity(Rows rows, const GravityRows& gravity, const Bodies& bodi
     for (const Row row : rows)
         for (const Ref body : gravity.between[row])
             if (bodies.dynamic(body.index))
-                energy.joule -= bodies.mass[body.index] * dot(gravity.acceleration[row], bodies.position[body.index]);
+                energy.add(-bodies.mass[body.index] * dot(gravity.acceleration[row], bodies.position[body.index]), body);
 }
 
 }  // namespace plab::fields

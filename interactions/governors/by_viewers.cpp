@@ -97,14 +97,19 @@ struct Seen
     bool hidden = false;  ///< it would be in view if nothing were in the way
 };
 
-std::vector<Occluder> boxes_of(const RefList& occluders, const Bodies& bodies, const Shapes& shapes)
+/// What moves hides nothing: what is behind it may be seen at once.
+std::vector<Occluder> boxes_of(const RefList& occluders, const Bodies& bodies, const Shapes& shapes, double look_ahead)
 {
+    constexpr double kMoved = 1e-3;  // m
     std::vector<Occluder> out;
     for (const Ref body : occluders)
         for (const Ref shape : bodies.shapes[body.index])
         {
             const Geometry& g = shapes.geometry[shape.index];
             if (g.kind != GeometryKind::Box) continue;
+            const double speed =
+                length(bodies.velocity[body.index]) + (length(g.pose.p) + length(g.size)) * length(bodies.angular_velocity[body.index]);
+            if (speed * look_ahead > kMoved) continue;
             const Pose X_WB = bodies.pose(body.index);
             out.push_back({{X_WB * g.pose.p, X_WB.q * g.pose.q}, g.size});
         }
@@ -120,7 +125,10 @@ Seen see(const GovernedComponent& g, std::span<const Viewpoint> eyes, std::span<
         const double reach = approach(eye, g, look_ahead);
         const Ball reached{g.center, g.radius + reach};
         if (!is_in_view(widened(eye, margin), reached)) continue;
-        const auto hides = [&](const Occluder& box) { return is_hidden(eye.position, reached, box); };
+        // An eye near the edge of a box sees what is far behind it much sooner than it moves that way. From where a box hides something is
+        // a convex set, so what is hidden at both ends of the eye's way is hidden all along.
+        const Vec3 soon = eye.position + look_ahead * eye.velocity;
+        const auto hides = [&](const Occluder& box) { return is_hidden(eye.position, reached, box) && is_hidden(soon, reached, box); };
         if (std::any_of(boxes.begin(), boxes.end(), hides))
         {
             out.hidden = out.by == kNoIndex;
@@ -143,7 +151,7 @@ Result<void> choose_by_sight(const StepContext& context, Row row, VisibilityRows
     const Reals& bounds = governors.pixels[row];
     if (auto fits = one_bound_per_level("pixels", bounds, control.levels(row)); !fits) return fits;
     Look look(context, row, governors.watch, control);
-    const std::vector<Occluder> boxes = boxes_of(governors.occluders[row], bodies, shapes);
+    const std::vector<Occluder> boxes = boxes_of(governors.occluders[row], bodies, shapes, governors.look_ahead[row]);
     const auto level_at = [&](double pixels)
     { return static_cast<std::int32_t>(std::count_if(bounds.begin(), bounds.end(), [&](double b) { return pixels > b; })); };
     governors.in_view[row] = governors.hidden[row] = 0;

@@ -33,6 +33,8 @@ void add_contact_forces(const StepContext& context, Row row, SurfaceColumns& sur
                         Impact& impact, Normal normal)
 {
     Total total;
+    std::vector<StoredShare>& shares = surface.shares[row].of_contacts;
+    shares.clear();
     wrenches.begin(row < context.component_of_row.size() ? context.component_of_row[row] : kNoIndex);
     for (Contact& c : impact.contacts)
     {
@@ -53,6 +55,7 @@ void add_contact_forces(const StepContext& context, Row row, SurfaceColumns& sur
         for (const auto& [body, f] : {std::pair(c.a, -force), std::pair(c.b, force)})
             if (bodies.dynamic(body.index)) wrenches.add_force_at(body, f, c.point);
         c.impulse = force * impact.dt, c.stretch = t.stretch, c.slip = length(slip);
+        shares.push_back({c.a, c.b, n.stored + t.stored});
         total.stored += n.stored + t.stored, total.force += n.force;
         total.penetration = std::max(total.penetration, c.depth);
     }
@@ -88,6 +91,7 @@ void SurfaceColumns::describe(Schema& s)
         .positive()
         .at_most(1e6);
     s.output(stored, "stored", unit::joule, "energy in the springs at the end of the step");
+    s.scratch(shares, "shares", "of `stored`, by contact");
     s.output(force, "force", unit::newton, "sum of the normal forces at the end of the step");
     s.output(penetration, "penetration", unit::metre, "deepest overlap with a contact force at the end of the step").reported_as_error();
 }
@@ -171,14 +175,24 @@ void evaluate_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRow
     add_contact_forces(context, row, rows.surface, bodies, wrenches, impact, law);
 }
 
-void stored_penalty(Rows rows, const PenaltyRows& table, StoredEnergy& stored)
+namespace
 {
-    for (const Row row : rows) stored.joule += table.surface.stored[row];
+
+/// The shares are those of the last evaluation, which is that of all contacts at the end of the step. After a restore there are none yet.
+void add_stored(Rows rows, const SurfaceColumns& surface, StoredEnergy& stored)
+{
+    for (const Row row : rows)
+    {
+        stored.joule += surface.stored[row];
+        if (stored.sink)
+            for (const StoredShare& share : surface.shares[row].of_contacts) stored.sink->add(share.joule, share.a, share.b);
+    }
 }
 
-void stored_hunt_crossley(Rows rows, const HuntCrossleyRows& table, StoredEnergy& stored)
-{
-    for (const Row row : rows) stored.joule += table.surface.stored[row];
-}
+}  // namespace
+
+void stored_penalty(Rows rows, const PenaltyRows& table, StoredEnergy& stored) { add_stored(rows, table.surface, stored); }
+
+void stored_hunt_crossley(Rows rows, const HuntCrossleyRows& table, StoredEnergy& stored) { add_stored(rows, table.surface, stored); }
 
 }  // namespace plab::response

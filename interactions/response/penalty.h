@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "plab/registrar.h"
 
@@ -26,6 +27,17 @@ struct Solved
     double value = 0;
 };
 
+/// J, in the springs of one contact.
+struct StoredShare
+{
+    Ref a, b;
+    double joule = 0;
+};
+struct StoredShares
+{
+    std::vector<StoredShare> of_contacts;  ///< of those that pushed when the law was evaluated last
+};
+
 /// Columns common to both laws: surface parameters, and limits for the host (server/simulation/contact_forces/contact_forces.h
 /// reads steps_per_contact and max_substeps by name).
 struct SurfaceColumns
@@ -36,6 +48,7 @@ struct SurfaceColumns
     Column<std::int64_t> steps_per_contact;     // steps of the solver per half period
     Column<std::int64_t> max_substeps;          // per step
     Column<double> stored, force, penetration;  // J, N, m
+    Column<StoredShares> shares;
 
     void describe(Schema& schema);
 };

@@ -17,6 +17,7 @@ struct ConnectorRows
     Column<Vec3> position;     ///< p_BF, m
     Column<Quat> orientation;  ///< q_BF
     Column<double> radius;     ///< m
+    Column<double> tolerance;  ///< m
 
     void describe(Schema& schema);
 };

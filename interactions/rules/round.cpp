@@ -80,10 +80,10 @@ void Round::look_after_links()
 bool Round::look_after(Link& link)
 {
     const bool there = link.site_a != kNoIndex && link.site_b != kNoIndex;
-    Bounds bounds = bounds_;
-    if (link.progress == Progress::Drawing) bounds.kind = Kind::Near;
     if (there)
     {
+        Bounds bounds = bounds_for(row_, memory_.sites[link.site_a], memory_.sites[link.site_b]);
+        if (link.progress == Progress::Drawing) bounds.kind = Kind::Near;
         const Measures m = measures_of(memory_, link.site_a, link.site_b);
         if (holds(bounds, m, memory_.sites[link.site_a].radius, memory_.sites[link.site_b].radius, rules_.hold[row_]))
         {
@@ -147,7 +147,7 @@ void Round::meet()
         if (one.object == other.object || memory_.find(i, j)) continue;
         Pair pair{in_order ? i : j, in_order ? j : i, {}, {}};
         pair.measures = measures_of(memory_, pair.a, pair.b);
-        if (!applies(row_, pair) || is_full(pair) || yields(pair)) continue;
+        if (!applies(row_, pair) || is_full(row_, pair) || yields(pair)) continue;
         make(std::move(pair));
     }
 }
@@ -157,7 +157,7 @@ bool Round::applies(Row row, Pair& pair) const
     const Memory& memory = *rules_.memory[row];
     const Site &a = memory.sites[pair.a], &b = memory.sites[pair.b];
     if (!is_dynamic(a, scene_.bodies, scene_.shafts) && !is_dynamic(b, scene_.bodies, scene_.shafts)) return false;
-    Bounds bounds = rules_.bounds(row);
+    Bounds bounds = bounds_for(row, a, b);
     if (rules_.draw[row] > 0) bounds.kind = Kind::Near;
     if (!holds(bounds, pair.measures, a.radius, b.radius)) return false;
     pair.values = rules_.values[row];
@@ -175,10 +175,19 @@ bool Round::applies(Row row, Pair& pair) const
     return answer && *answer;
 }
 
-bool Round::is_full(const Pair& pair) const
+bool Round::is_full(Row row, const Pair& pair) const
 {
-    const auto full = [this](std::int64_t most, std::uint32_t site) { return most > 0 && memory_.count_at(site) >= most; };
-    return full(rules_.a.most[row_], pair.a) || full(rules_.b.most[row_], pair.b);
+    const Memory& memory = *rules_.memory[row];
+    const auto full = [&](std::int64_t most, std::uint32_t site) { return most > 0 && memory.count_at(site) >= most; };
+    return full(rules_.a.most[row], pair.a) || full(rules_.b.most[row], pair.b);
+}
+
+/// A connector may be looser than the rule.
+Bounds Round::bounds_for(Row row, const Site& a, const Site& b) const
+{
+    Bounds out = row == row_ ? bounds_ : rules_.bounds(row);
+    out.tolerance = std::max({out.tolerance, a.tolerance, b.tolerance});
+    return out;
 }
 
 bool Round::precedes(Row other) const
@@ -205,7 +214,7 @@ bool Round::yields(const Pair& pair) const
                     Pair seen{site_a, site_b, {}, {}};
                     if (!theirs.sites[site_a].is_a || !theirs.sites[site_b].is_b) continue;
                     seen.measures = measures_of(theirs, site_a, site_b);
-                    if (applies(other, seen)) return true;
+                    if (applies(other, seen) && !is_full(other, seen)) return true;
                 }
     }
     return false;

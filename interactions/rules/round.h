@@ -41,7 +41,8 @@ private:
     /// Another rule of the slot that has the two objects, or takes precedence.
     bool yields(const Pair& pair) const;
     bool precedes(Row other) const;
-    bool is_full(const Pair& pair) const;
+    bool is_full(Row row, const Pair& pair) const;
+    Bounds bounds_for(Row row, const Site& a, const Site& b) const;
 
     void look_after_links();
     bool look_after(Link& link);

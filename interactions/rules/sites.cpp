@@ -64,6 +64,7 @@ std::vector<Site> find_sites(const Lookup& lookup, const Wanted& a, const Wanted
         if (!is_object)
         {
             const Value position = lookup.value_of(ref, "position"), orientation = lookup.value_of(ref, "orientation");
+            site.tolerance = number(lookup, ref, "tolerance");
             site.offset = {std::get<Vec3>(position), std::get<Quat>(orientation)};
         }
         site.radius = radius_of(lookup, object, site.connector);

@@ -23,9 +23,10 @@ struct Site
 {
     std::uint32_t component = kNoIndex;  ///< the connector, or the object itself
     Ref object;
-    Ref connector;      ///< not valid: the object itself
-    Pose offset;        ///< X_BF
-    double radius = 0;  ///< m
+    Ref connector;         ///< not valid: the object itself
+    Pose offset;           ///< X_BF
+    double radius = 0;     ///< m
+    double tolerance = 0;  ///< m, of the connector; the larger one of this and of the rule's counts
     bool is_a = false, is_b = false;
 };
 

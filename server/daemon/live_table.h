@@ -25,6 +25,8 @@ public:
     void show_busy(const publish::Busy& busy);
 
 private:
+    static void keep(std::deque<std::string>& lines, std::size_t most, std::string line);
+
     std::mutex output_;  ///< only one thread writes at a time
     bool wanted_, terminal_;
     std::string footer_;
@@ -32,7 +34,10 @@ private:
     std::chrono::steady_clock::time_point busy_shown_{};
     double next_ = 0;
     Tick shown_tick_ = -1;
-    std::deque<std::string> lines_;
+    std::deque<std::string> lines_, changes_;  ///< latest events; on a terminal, latest changes of level
+    std::string levels_;                       ///< shown until the time below, or another run
+    std::chrono::steady_clock::time_point levels_until_{};
+    std::uint64_t levels_of_run_ = 0;
 };
 
 /// "contact.impact contact (red, green): message".

@@ -8,6 +8,7 @@
 #include "model/numbers.h"
 #include "publish/error_probe.h"
 #include "publish/figures.h"
+#include "simulation/costs/component_costs.h"
 #include "world/host_tables.h"
 
 namespace plab::daemon
@@ -36,7 +37,7 @@ Json object_json(const world::World& world, std::uint32_t i)
     return out;
 }
 
-Json interaction_json(const simulation::Simulation& s, std::uint32_t i, const publish::Cost& cost)
+Json interaction_json(const simulation::Simulation& s, std::uint32_t i, const simulation::ComponentCost& cost)
 {
     const world::World& world = s.world();
     const publish::ErrorFigure error = publish::own_error(s, i);
@@ -148,7 +149,7 @@ std::string in_lines(const Json& document)
 std::string end_state_json(const simulation::Simulation& s)
 {
     const world::World& world = s.world();
-    const publish::Costs costs(s);
+    const simulation::ComponentCosts costs(s.world(), s.stepper().cost());
     Json objects = Json::object(), interactions = Json::object();
     // Pairs are appended: looking for the key, as `[]` does in an ordered object, would make this quadratic.
     const auto append = [&](Json& to, std::uint32_t i, Json value)

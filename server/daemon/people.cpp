@@ -31,7 +31,7 @@ private:
 const std::string& wanted_of(const wire::UserSample& s) { return s.user; }
 const std::string& wanted_of(const wire::ViewerSample& s) { return s.viewer; }
 
-/// `age`: s of simulated time since the sample arrived.
+/// `age`: s of simulated time since the sample was sent.
 People::Ask ask_of(const wire::UserSample& s, const simulation::Simulation& simulation, const std::string& id, bool gone, double age)
 {
     const world::World& world = simulation.world();
@@ -63,6 +63,15 @@ People::Ask ask_of(const wire::ViewerSample& s, const simulation::Simulation&, c
     sets.add("velocity", Value(s.velocity)), sets.add("field_of_view", Value(s.field_of_view));
     sets.add("width", Value(s.width)), sets.add("height", Value(s.height));
     return std::move(sets).ask();
+}
+
+/// Samples since the last one that counted, which did not count: replaced by newer ones here, in the bus, or in the client, or lost on
+/// the way. A client counts its samples; one that begins anew, or counts otherwise, is known only as far as samples have arrived.
+template <class Sample>
+std::uint64_t skipped_before(std::uint64_t number, std::uint64_t last, const publish::ReceivedSample<Sample>& received)
+{
+    const std::uint64_t missing = last > 0 && number > last ? number - last - 1 : 0;
+    return received.gone ? received.skipped : std::max(missing, received.skipped);
 }
 
 bool has_inputs(const model::ComponentType& type, std::initializer_list<const char*> names)
@@ -128,7 +137,9 @@ void People::move_one(Clients& clients, const std::vector<std::string>& there, c
     // One component for each client: what it moves at present has to be let go before it takes another.
     const bool is_other = !client.component.empty() && wanted_of(sample) != client.wanted;
     if (is_other && received.gone) return;
-    client.heard_ns = now_ns, client.number = sample.number, client.skipped += received.skipped;
+    client.heard_ns = now_ns, client.skipped += skipped_before(sample.number, client.number, received);
+    client.number = sample.number;
+    const std::int64_t sent_ns = received.gone ? received.arrived_ns : client.clock.sent(sample.stamp_ns, received.arrived_ns);
     std::string why_not = is_other ? "the client moves " + client.component + " already" : std::string();
     if (!is_other)
     {
@@ -138,7 +149,7 @@ void People::move_one(Clients& clients, const std::vector<std::string>& there, c
     if (why_not.empty())
     {
         const double rate = simulation_->rate();
-        const double age = std::clamp(1e-9 * static_cast<double>(now_ns - received.arrived_ns) * rate, 0.0, 1.0);
+        const double age = std::clamp(1e-9 * static_cast<double>(now_ns - sent_ns) * rate, 0.0, 1.0);
         Ask ask = ask_of(sample, *simulation_, client.component, received.gone, age);
         ask.is_user = kIsUser, ask.client = sample.client, ask.number = sample.number;
         const simulation::Reply reply = carry_out(ask);

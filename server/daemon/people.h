@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/client_clock.h"
 #include "publish/records.h"
 #include "simulation/simulation.h"
 
@@ -48,6 +49,7 @@ private:
         std::string component;  ///< that it moves; "": none
         std::uint64_t number = 0, skipped = 0;
         std::int64_t heard_ns = 0;
+        ClientClock clock;
         std::string last_complaint;
     };
     using Clients = std::map<wire::ClientId, Client>;

@@ -42,14 +42,6 @@ std::vector<wire::Parameter> parameters_of(const world::World& world, std::uint3
 namespace
 {
 
-/// In the unit that its governor counts in, as far as trial steps tell it; pixels depend on the viewer, so metres stand for them.
-std::pair<double, const char*> error_of(const simulation::LevelTrial& trial, const std::string& unit)
-{
-    if (unit == "W") return {trial.error.power, "W"};
-    if (unit == "rad" || std::isnan(trial.error.distance)) return {trial.error.angle, "rad"};
-    return {trial.error.distance, "m"};
-}
-
 /// What a governor has to do with the component, as parameters of the kind "level"; nothing if no governor watches it.
 void add_level(const simulation::Simulation& s, std::uint32_t component, std::vector<wire::Parameter>& out)
 {
@@ -66,13 +58,22 @@ void add_level(const simulation::Simulation& s, std::uint32_t component, std::ve
     for (const simulation::LevelTrial& trial : level->trials)
     {
         const std::string of = "." + std::to_string(trial.level);
-        const auto [error, unit] = error_of(trial, level->error_unit);
+        const auto [error, unit] = simulation::error_of_trial(trial, level->error_unit);
         add(("level_name" + of).c_str(), trial.text);
         if (!std::isnan(error)) add(("level_error" + of).c_str(), model::format_value(error), unit);
         if (trial.seconds > 0) add(("level_cost" + of).c_str(), model::format_value(trial.seconds), "s");
     }
     if (level->reason.empty()) return;
     add("level_reason", level->reason), add("level_since", model::format_value(level->since), "s");
+    const simulation::LevelChange& last = level->last;
+    add("level_before", last.from);
+    const auto add_figure = [&](const char* name, double value, const char* unit)
+    {
+        if (!std::isnan(value)) add(name, model::format_value(value), unit);
+    };
+    add_figure("level_cost_before", last.cost.before, "s"), add_figure("level_cost_after", last.cost.after, "s");
+    add_figure("level_error_before", last.error.before, last.error.unit.c_str());
+    add_figure("level_error_after", last.error.after, last.error.unit.c_str());
 }
 
 }  // namespace

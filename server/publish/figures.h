@@ -15,25 +15,6 @@ bool is_object(const world::Component& component);
 bool is_interaction(const world::Component& component);
 bool is_solver(const world::World& world, std::uint32_t component);
 
-/// CPU time of a component per step, ns.
-struct Cost
-{
-    simulation::Spread last;   ///< of the last steps; no samples: no step has been made yet
-    double mean = 0;           ///< since the scene was built
-    std::uint32_t shared = 1;  ///< number of components of the type that share the cost of the type; 1: measured individually
-};
-/// By directory index; empty for groups.
-class Costs
-{
-public:
-    explicit Costs(const simulation::Simulation& simulation);
-    Cost of(std::uint32_t component) const;
-
-private:
-    const simulation::Simulation* simulation_;
-    std::vector<Cost> by_table_;  ///< of one row
-};
-
 /// kinetic - kinetic at start - work: energy that the methods created or lost, J.
 double unexplained(const simulation::Simulation& simulation, const simulation::Totals& totals);
 

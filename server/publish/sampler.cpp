@@ -7,6 +7,7 @@
 #include "publish/entries.h"
 #include "publish/figures.h"
 #include "simulation/contacts/sleeping_pairs.h"
+#include "simulation/costs/component_costs.h"
 
 namespace plab::publish
 {
@@ -23,8 +24,8 @@ void fill_ledger(const simulation::Simulation& s, wire::Metrics& out)
     out.momentum = totals.momentum, out.angular_momentum = totals.angular_momentum;
 }
 
-wire::InteractionMetrics metrics_of(const simulation::Simulation& s, std::uint32_t i, std::string resolved, const Cost& cost,
-                                    ErrorFigure error)
+wire::InteractionMetrics metrics_of(const simulation::Simulation& s, std::uint32_t i, std::string resolved,
+                                    const simulation::ComponentCost& cost, ErrorFigure error)
 {
     const world::World& world = s.world();
     wire::InteractionMetrics out;
@@ -71,7 +72,7 @@ wire::Metrics Sampler::sample(const simulation::Simulation& s, Nanoseconds now)
     out.contacts = static_cast<std::uint32_t>(contacts.force_pairs().size());
     contacts.each_pair([&](const simulation::PairState& p) { out.contacts += p.ahead ? 0 : 1; });
     std::vector<std::string> resolved = resolved_algorithms(s);
-    const Costs costs(s);
+    const simulation::ComponentCosts costs(s.world(), s.stepper().cost());
     for (const std::uint32_t i : s.world().in_id_order())
     {
         const world::Component& c = s.world().component(i);

@@ -11,10 +11,12 @@ namespace plab::simulation
 namespace
 {
 
-/// How far two objects, or two courses, are apart: m, of a point of a body; rad, of a body or a shaft. NaN: there is no such object.
+/// How far two objects, or two courses, are apart: m, of a point of a body; rad, of a body or a shaft. NaN: there is no such object. J, of
+/// all objects; NaN: not asked for.
 struct Apart
 {
     double distance = std::numeric_limits<double>::quiet_NaN(), angle = std::numeric_limits<double>::quiet_NaN();
+    double energy = std::numeric_limits<double>::quiet_NaN();
 };
 
 void raise(double& largest, double value) { largest = std::isnan(largest) ? value : std::max(largest, value); }
@@ -46,6 +48,9 @@ std::vector<Apart> departures(const FirstStep& one, const FirstStep& other)
     for (std::size_t n = 0; n < std::min(one.course.size(), other.course.size()); ++n)
     {
         raise(largest, one.course[n], other.course[n]);
+        // Of different sets of objects the energies cannot be compared.
+        if (n < std::min(one.energies.size(), other.energies.size()) && one.course[n].size() == other.course[n].size())
+            raise(largest.energy, std::fabs(one.energies[n] - other.energies[n]));
         out.push_back(largest);
     }
     return out;
@@ -126,7 +131,8 @@ TrialFindings Simulation::error_of_level(const LevelQuestion& asked)
     const double whole = std::max(1.0, std::round(asked.interval / h));
     constexpr std::uint64_t kMeasure = 200'000;  // ns
     FirstStepChoice choice;
-    choice.steps = steps_of_trial(asked.component, whole), choice.measure_ns = measuring_ && asked.with_cost ? kMeasure : 0;
+    choice.steps = steps_of_trial(asked.component, whole), choice.energies = asked.energy;
+    choice.measure_ns = measuring_ && asked.with_cost ? kMeasure : 0;
     const auto first = step_with(asked.component, *asked.level, choice);
     if (!first) return {};
     const FirstStep& one = *first;
@@ -148,16 +154,15 @@ TrialFindings Simulation::error_of_level(const LevelQuestion& asked)
     TrialFindings out;
     out.error.distance = continued(halfway.distance, end.distance, k, m, whole);
     out.error.angle = continued(halfway.angle, end.angle, k, m, whole);
+    out.error.power = continued(halfway.energy, end.energy, k, m, whole) / (whole * h);
     out.seconds = one.seconds, out.finer_seconds = other.seconds;
-    const bool alike = one.course.size() == other.course.size() && one.course.back().size() == other.course.back().size();
-    if (alike) out.error.power = std::fabs(one.energy - other.energy) / (m * h);
     return out;
 }
 
 LevelError Simulation::try_level(std::uint32_t component, const Level& level, const Level& finer, double interval, const LevelError& enough)
 {
     tried_.clear();
-    const LevelError out = error_of_level({component, &level, &finer, interval, enough, false}).error;
+    const LevelError out = error_of_level({component, &level, &finer, interval, enough, false, true}).error;
     tried_.clear();
     return out;
 }
@@ -215,6 +220,7 @@ bool Simulation::take_effect_as_one(std::span<const Decision> decisions)
     Request request;
     request.trial.budget = TrialChoice::Budget::None;
     for (const Decision& d : decisions) request.operations.insert(request.operations.end(), d.operations.begin(), d.operations.end());
+    std::vector<LevelChange> changes = run_.levels().before_exchange(request.operations);
     const std::uint64_t begin = now_ns(), thread_begin = thread_ns();
     const Reply reply = Transaction(run_, context_, *this, request).run();
     const StepCost cost{1e-9 * static_cast<double>(now_ns() - begin), 1e-9 * static_cast<double>(thread_ns() - thread_begin)};
@@ -227,33 +233,26 @@ bool Simulation::take_effect_as_one(std::span<const Decision> decisions)
     run_.levels().note_exchange(request.operations.size(), cost), step_times_.begin_anew();
     run_.watch->begin_anew();
     note_levels();
-    auto swap = reply.swaps.begin();
+    std::size_t first = 0;
     for (const Decision& d : decisions)
     {
+        const std::size_t end = std::min({first + d.operations.size(), reply.swaps.size(), changes.size()});
+        const auto part = [&](auto& all) { return std::pair(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(end)); };
         Reply own = reply;
-        const auto last = swap + std::min(reply.swaps.end() - swap, static_cast<std::ptrdiff_t>(d.operations.size()));
-        own.swaps.assign(swap, last), swap = last;
+        own.swaps.assign(part(reply.swaps).first, part(reply.swaps).second);
         own.pause_ns *= static_cast<double>(d.operations.size()) / static_cast<double>(request.operations.size());
-        note_levels_taken(d, std::move(own));
+        const auto [from, to] = part(changes);
+        note_levels_taken(d, std::move(own), {std::make_move_iterator(from), std::make_move_iterator(to)});
+        first = end;
     }
     return true;
 }
 
 /// Tells what a governor has exchanged.
-void Simulation::note_levels_taken(const Decision& decision, Reply reply)
+void Simulation::note_levels_taken(const Decision& decision, Reply reply, std::vector<LevelChange> changes)
 {
     run_.stepper().charge(decision.by, static_cast<std::int64_t>(reply.pause_ns));
-    for (std::size_t k = 0; k < reply.swaps.size(); ++k)
-    {
-        const SwapReport& swap = reply.swaps[k];
-        const std::uint32_t component = run_.world().find(swap.id);
-        const std::string& why = decision.reasons[std::min(k, decision.reasons.size() - 1)];
-        run_.levels().note_change(component, why, time());
-        Event e;
-        e.tick = tick(), e.time = time(), e.kind = "level.changed", e.component = component;
-        e.message = swap.from + " -> " + swap.to + ": " + why;
-        decided_.events.push_back(std::move(e));
-    }
+    announce_exchanges(reply, decision.reasons, std::move(changes));
     Request request;
     request.trial.budget = TrialChoice::Budget::None;
     request.operations = decision.operations;
@@ -337,22 +336,39 @@ bool Simulation::take_effect(const Decision& decision, const Request& request, c
     }
     run_.watch->begin_anew();
     note_levels();
-    if (decision.verb == "add" || decision.verb == "remove")
-    {
-        run_.changes.touched.push_back(run_.world().id_of(decision.by));  // it remembers what it did
-        const std::vector<std::string> ids = ids_in(request.operations);
-        for (std::size_t k = 0; k < ids.size(); ++k)
-        {
-            Event e;
-            e.tick = tick(), e.time = time(), e.component = decision.by;
-            e.kind = decision.verb == "add" ? "component.made" : "component.removed";
-            e.message = ids[k] + ": " + reasons[std::min(k, reasons.size() - 1)];
-            decided_.events.push_back(std::move(e));
-        }
-    }
+    if (decision.verb == "add" || decision.verb == "remove") announce_components(decision, ids_in(request.operations), reasons);
     reply.made = std::make_shared<const Request>(request), reply.decided_by = run_.world().id_of(decision.by);
     own_requests_.push_back(std::move(reply));
     return true;
+}
+
+/// With what both levels cost and how they err: values are these four figures, NaN where one is unknown.
+void Simulation::announce_exchanges(const Reply& reply, const std::vector<std::string>& reasons, std::vector<LevelChange> changes)
+{
+    for (std::size_t k = 0; k < std::min(reply.swaps.size(), changes.size()); ++k)
+    {
+        const std::uint32_t component = run_.world().find(reply.swaps[k].id);
+        const std::string& why = reasons[std::min(k, reasons.size() - 1)];
+        const LevelChange& change = run_.levels().after_exchange(component, why, time(), std::move(changes[k]));
+        Event e;
+        e.tick = tick(), e.time = time(), e.kind = "level.changed", e.component = component;
+        e.message = change.from + " -> " + change.to + ": " + why + "; " + change.text();
+        e.values = {change.cost.before, change.cost.after, change.error.before, change.error.after};
+        decided_.events.push_back(std::move(e));
+    }
+}
+
+void Simulation::announce_components(const Decision& decision, const std::vector<std::string>& ids, const std::vector<std::string>& reasons)
+{
+    run_.changes.touched.push_back(run_.world().id_of(decision.by));  // it remembers what it did
+    for (std::size_t k = 0; k < ids.size(); ++k)
+    {
+        Event e;
+        e.tick = tick(), e.time = time(), e.component = decision.by;
+        e.kind = decision.verb == "add" ? "component.made" : "component.removed";
+        e.message = ids[k] + ": " + reasons[std::min(k, reasons.size() - 1)];
+        decided_.events.push_back(std::move(e));
+    }
 }
 
 void Simulation::refuse_decision(std::uint32_t by, const std::string& what, const std::string& why)

@@ -128,13 +128,15 @@ private:
     void decide();
     void exchange_levels(std::span<const Decision> decisions);
     bool take_effect_as_one(std::span<const Decision> decisions);
-    void note_levels_taken(const Decision& decision, Reply reply);
+    void note_levels_taken(const Decision& decision, Reply reply, std::vector<LevelChange> changes);
     void carry_out_levels(const Decision& decision);
     void carry_out_decisions(std::span<const Decision> decisions);
     void carry_out_decision(const Decision& decision);
     Result<Request> read_decision(const Decision& decision) const;
     bool take_effect_together(std::span<const Decision> additions);
     bool take_effect(const Decision& decision, const Request& request, const std::vector<std::string>& reasons);
+    void announce_exchanges(const Reply& reply, const std::vector<std::string>& reasons, std::vector<LevelChange> changes);
+    void announce_components(const Decision& decision, const std::vector<std::string>& ids, const std::vector<std::string>& reasons);
     void refuse_decision(std::uint32_t by, const std::string& what, const std::string& why);
     void read_changed_governors();
     /// Observers see the governor of a component with it.

@@ -24,6 +24,7 @@ Result<void> EstimateCheck::open(Simulation& exact, const simulation::Snapshot& 
                                  const std::vector<std::string>& watched, double interval, const simulation::LevelBook& levels)
 {
     drop();
+    interval_ = interval;
     const std::size_t count = std::min(kMostComponents, watched.size());
     for (std::size_t n = 0; n < count; ++n)
     {
@@ -35,7 +36,7 @@ Result<void> EstimateCheck::open(Simulation& exact, const simulation::Snapshot& 
         for (std::size_t l = ladder.levels.size() - 1; l-- > 0;)
         {
             const LevelError told = exact.try_level(component, ladder.levels[l], ladder.levels[l + 1], interval);
-            estimate += by_angle_ ? told.angle : told.distance;
+            estimate += told_by(told);
             samples_.push_back({l, objects, {ladder.levels[l].text, id, exact.time(), estimate, 0}});
         }
     }
@@ -45,25 +46,40 @@ Result<void> EstimateCheck::open(Simulation& exact, const simulation::Snapshot& 
         course.let_decide(false);
         if (auto restored = course.restore(state); !restored) return restored;
         if (auto given = give_all(course, watched, ladder.levels[l]); !given) return given;
+        if (unit_ == "W") energies_.emplace_back().begin(course);
     }
     return {};
 }
 
-void EstimateCheck::follow(const Simulation& exact)
+double EstimateCheck::told_by(const LevelError& error) const
+{
+    if (unit_ == "W") return error.power;
+    return unit_ == "rad" ? error.angle : error.distance;
+}
+
+Result<void> EstimateCheck::follow(Simulation& exact)
 {
     for (const auto& course : courses_) (void)course->step_once();
+    for (std::size_t l = 0; l < energies_.size(); ++l)
+        if (auto looked = energies_[l].look(*courses_[l], exact); !looked) return looked;
+    std::vector<Ref> objects;
     for (Sampled& s : samples_)
     {
         const Simulation& course = *courses_[s.level];
+        objects.clear();
         for (const std::string& id : s.objects)
+            if (const std::uint32_t object = course.world().find(id); object != kNoIndex)
+                objects.push_back(course.world().component(object).ref(object));
+        if (!energies_.empty()) s.found.error = std::max(s.found.error, std::fabs(energies_[s.level].excess(course, objects)) / interval_);
+        for (const Ref object : energies_.empty() ? std::span<const Ref>(objects) : std::span<const Ref>())
         {
-            const std::uint32_t object = course.world().find(id);
             ObjectPair pair;
-            if (object == kNoIndex || !find_pair(course, exact, course.world().component(object).ref(object), pair)) continue;
+            if (!find_pair(course, exact, object, pair)) continue;
             const Apart a = apart(course, exact, pair);
-            s.found.error = std::max(s.found.error, by_angle_ ? a.radians : a.metres);
+            s.found.error = std::max(s.found.error, unit_ == "rad" ? a.radians : a.metres);
         }
     }
+    return {};
 }
 
 void EstimateCheck::close(std::vector<EstimateSample>& out)

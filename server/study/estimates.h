@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simulation/simulation.h"
+#include "study/island_energy.h"
 #include "study/shadow.h"
 
 namespace plab::study
@@ -17,7 +18,7 @@ struct EstimateSample
 {
     std::string level, component;
     double begin = 0;                ///< s
-    double estimate = 0, error = 0;  ///< rad, or m
+    double estimate = 0, error = 0;  ///< rad, W, or m
 };
 
 /// Of all samples of a level whose error can be told from rounding: the estimate as a multiple of the true error.
@@ -35,18 +36,20 @@ std::vector<EstimateSpread> spreads_of(const std::vector<EstimateSample>& sample
 class EstimateCheck
 {
 public:
-    EstimateCheck(model::TypeSource& types, bool by_angle) : types_(types), by_angle_(by_angle) {}
+    /// `unit`: of the governor; of pixels, metres are checked.
+    EstimateCheck(model::TypeSource& types, std::string unit) : types_(types), unit_(std::move(unit)) {}
 
     /// `exact` has the state of the run, and the levels of the run as yet. `watched`: of which some are taken, spread evenly.
     Result<void> open(simulation::Simulation& exact, const simulation::Snapshot& state, const simulation::Ladder& ladder,
                       const std::vector<std::string>& watched, double interval, const simulation::LevelBook& levels);
     /// After each step of `exact`.
-    void follow(const simulation::Simulation& exact);
+    Result<void> follow(simulation::Simulation& exact);
     void close(std::vector<EstimateSample>& out);
-    void drop() { courses_.clear(), samples_.clear(); }
+    void drop() { courses_.clear(), energies_.clear(), samples_.clear(); }
     bool is_open() const { return !courses_.empty(); }
 
 private:
+    double told_by(const LevelError& error) const;
     struct Sampled
     {
         std::size_t level = 0;
@@ -55,8 +58,10 @@ private:
     };
 
     model::TypeSource& types_;
-    bool by_angle_;
+    std::string unit_;
+    double interval_ = 0;                                           ///< s
     std::vector<std::unique_ptr<simulation::Simulation>> courses_;  ///< by level
+    std::vector<IslandEnergies> energies_;                          ///< of these beside the exact one, if they count
     std::vector<Sampled> samples_;
 };
 

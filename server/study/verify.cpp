@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/island_energy.h"
 #include "study/shadow.h"
 
 namespace plab::study
@@ -38,7 +39,7 @@ class LevelVerifier::Window
 {
 public:
     Window(model::TypeSource& types, const Simulation& run, std::uint32_t governor)
-        : shadow_(types), types_(types), estimates_(types, field_of(run.world(), governor, "unit", std::string()) == "rad")
+        : shadow_(types), types_(types), estimates_(types, field_of(run.world(), governor, "unit", std::string()))
     {
         const world::World& world = run.world();
         out_.id = world.id_of(governor), out_.type = world.type_of(governor)->info.name;
@@ -58,8 +59,9 @@ public:
         if (open_)
         {
             (void)shadow_.step_once();
-            if (estimates_.is_open()) estimates_.follow(shadow_);
-            compare(run);
+            if (estimates_.is_open())
+                if (auto followed = estimates_.follow(shadow_); !followed) return followed;
+            if (auto compared = compare(run); !compared) return compared;
             if (run.time() >= interval_.begin + out_.interval - 0.5 * run.dt()) close(run, governor);
         }
         return open_ ? Result<void>() : open(run, governor);
@@ -100,6 +102,7 @@ private:
             for (const Ref object : run.levels().objects_of(c.index))
                 if (ObjectPair pair; find_pair(run, shadow_, object, pair)) c.objects.push_back(pair);
         out_.components = components_.size();
+        if (by_energy()) energies_.begin(run);
         interval_ = {}, interval_.begin = run.time(), revision_ = run.revision(), open_ = true;
         return {};
     }
@@ -117,9 +120,21 @@ private:
         }
     }
 
-    void compare(Simulation& run)
+    bool by_energy() const { return out_.unit == "W"; }
+
+    /// The island's: what it made or lost since the interval began, at most, divided by the interval.
+    double power_of(const Simulation& run, const Component& c)
+    {
+        objects_.clear();
+        for (const ObjectPair& p : c.objects) objects_.push_back({p.facet, p.here});
+        return std::fabs(energies_.excess(run, objects_)) / out_.interval;
+    }
+
+    Result<void> compare(Simulation& run)
     {
         find_rows(run);
+        if (by_energy())
+            if (auto looked = energies_.look(run, shadow_); !looked) return looked;
         const bool by_sight = out_.unit == "pixels";
         const std::vector<Viewpoint> eyes = by_sight ? run.viewpoints() : std::vector<Viewpoint>();
         const world::HostTables& host = run.world().host();
@@ -128,7 +143,8 @@ private:
             const auto level = run.levels().level(c.index);
             const bool exact = level && level->level == finest_;
             bool seen = !by_sight;
-            for (const ObjectPair& p : c.objects)
+            if (by_energy()) c.error = std::max(c.error, power_of(run, c));
+            for (const ObjectPair& p : by_energy() ? std::span<const ObjectPair>() : std::span<const ObjectPair>(c.objects))
             {
                 const Apart a = apart(run, shadow_, p);
                 const double scale = by_sight && p.facet == Facet::Body ? pixels_per_metre(eyes, host.bodies.position[p.here]) : 1;
@@ -137,6 +153,7 @@ private:
             }
             c.counts = c.counts || (seen && !exact);
         }
+        return {};
     }
 
     void close(const Simulation& run, std::uint32_t governor)
@@ -166,6 +183,8 @@ private:
     static constexpr std::size_t kBetweenEstimates = 4;  ///< intervals
     std::size_t opened_ = 0;
     EstimateCheck estimates_;
+    IslandEnergies energies_;
+    std::vector<Ref> objects_;  ///< of one component
 };
 
 std::size_t VerifiedGovernor::counted() const
@@ -199,15 +218,7 @@ Result<void> LevelVerifier::begin_run(const Simulation& run)
 {
     for (const auto& window : windows_) window->drop();
     if (windows_.empty())
-        for (const std::uint32_t governor : governors_with_bound(run))
-        {
-            if (field_of(run.world(), governor, "unit", std::string()) == "W")
-                return reason(
-                    run.world().id_of(governor) +
-                    " has a bound in W. Its trial steps take the energy of an island by itself, kinetic and stored; of a whole run the "
-                    "stored energy is known only as one sum, so the share of a component cannot be checked. Give a bound in m or rad");
-            windows_.push_back(std::make_unique<Window>(types_, run, governor));
-        }
+        for (const std::uint32_t governor : governors_with_bound(run)) windows_.push_back(std::make_unique<Window>(types_, run, governor));
     if (!begun_) out_.from = run.time(), out_.objects = body_pairs(run, run).size();
     run_ = run.run(), begun_ = true;
     return {};

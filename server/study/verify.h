@@ -3,9 +3,10 @@
 /// A governor by error states that each component departs within `interval` by less than `bound` from where the most exact level would take
 /// it. So from the state at the begin of each interval a second simulation continues with the most exact level for all components of the
 /// governor, and decides nothing. The error of a component is the largest departure of its objects at any step of the interval, in the unit
-/// of the governor. Intervals in which the component had the most exact level all the time do not count, because there is nothing to
-/// promise; nor do, in pixels, those in which no viewer sees it. In some intervals it is also checked what the trial steps tell on which
-/// the governor relies (estimates.h).
+/// of the governor; in W, the most energy that its island has more or less at any step, divided by the interval (island_energy.h).
+/// Intervals in which the component had the most exact level all the time do not count, because there is nothing to promise; nor do, in
+/// pixels, those in which no viewer sees it. In some intervals it is also checked what the trial steps tell on which the governor relies
+/// (estimates.h).
 #pragma once
 
 #include <functional>
@@ -71,8 +72,8 @@ public:
     LevelVerifier(const LevelVerifier&) = delete;
     LevelVerifier& operator=(const LevelVerifier&) = delete;
 
-    /// To be called at each boundary, before the step and before anything is decided. Errors: a governor counts in W (what a component
-    /// stores is not told by its objects alone); a state cannot be continued.
+    /// To be called at each boundary, before the step and before anything is decided. Errors: a state cannot be continued;
+    /// a governor counts in W, and a component does not say whose the energy is that it stores.
     Result<void> at_boundary(simulation::Simulation& run);
     /// What was measured; intervals that are not over are left out. An error if no governor of the run states a bound.
     Result<VerifyResult> take();

@@ -14,9 +14,12 @@ using figures::short_number;
 namespace
 {
 
+/// Of estimates: what a viewer would see counts in metres.
+std::string unit_of_estimates(const VerifiedGovernor& g) { return g.unit == "pixels" ? "m" : g.unit; }
+
 void tell_estimates(const VerifiedGovernor& g, std::vector<std::string>& out)
 {
-    const char* unit = g.unit == "rad" ? " rad" : " m";
+    const std::string unit = " " + unit_of_estimates(g);
     for (const EstimateSpread& s : spreads_of(g.estimates))
     {
         const std::string name = g.id + ", " + s.level + ": ";
@@ -84,7 +87,7 @@ std::string estimates_csv_of(const VerifyResult& r)
     for (const VerifiedGovernor& g : r.governors)
         for (const EstimateSample& s : g.estimates)
         {
-            rows.text(g.id).text(s.level).text(s.component).exact(s.begin).text(g.unit == "rad" ? "rad" : "m");
+            rows.text(g.id).text(s.level).text(s.component).exact(s.begin).text(unit_of_estimates(g));
             rows.exact(s.estimate).exact(s.error).end();
         }
     return rows.take();

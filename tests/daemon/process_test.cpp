@@ -143,6 +143,41 @@ TEST_CASE("wrong use is 2, bad scenes are 1, both with a message")
     CHECK(has(check.text, "State/Shaft"));
 }
 
+TEST_CASE("the live table of a scene with governors begins with how many have each level, what that costs and how large the error is")
+{
+    const std::string scene = temporary("levels.xml");
+    std::ofstream(scene)
+        << "<plab version=\"1\"><component id=\"ball\" type=\"Shape/Sphere\" radius=\"0.5\"/>"
+           "<component id=\"drone\" type=\"State/Kinematic\" position=\"0 -3 0\" linear_velocity=\"4 0 0\"/>"
+           "<component id=\"eye\" type=\"Viewer/Attached\" body=\"drone\"/><repeat id=\"row\" count=\"30\" step=\"2 0 0\">"
+           "<component id=\"engine\" type=\"Solver/RungeKutta4\"/><component id=\"bob\" type=\"State/RigidBody\" mass=\"1\" "
+           "shape=\"ball\" angular_velocity=\"3 2 1\" solver=\"engine\"/></repeat>"
+           "<component id=\"lod\" type=\"Governor/Distance\" watches=\"engine*\" every=\"0.1\" dwell=\"0.2\" distances=\"5 15\" "
+           "levels=\"Solver/SemiImplicitEuler; Solver/RungeKutta4; Solver/DormandPrince54\"/></plab>";
+    const Outcome run = plabd(quoted(scene) + " --until 3 --table");
+    REQUIRE_MESSAGE(run.code == 0, run.text);
+    const std::size_t last = run.text.rfind("levels of detail");
+    REQUIRE(last != std::string::npos);
+    CHECK(last < run.text.find("objects\n", last));
+    const std::string table = run.text.substr(last, run.text.find("objects\n", last) - last);
+    int components = 0;
+    for (const char* const level : {"1 of 3", "2 of 3", "3 of 3"})
+    {
+        CHECK_MESSAGE(has(table, level), table);
+        const std::string line = table.substr(table.find(level), table.find('\n', table.find(level)) - table.find(level));
+        std::istringstream words(line.substr(6));
+        double cost = 0;
+        int count = 0;
+        words >> count >> cost;
+        components += count;
+        CHECK_MESSAGE(cost > 0, line);
+    }
+    CHECK(components == 30);
+    CHECK(has(table, "unknown"));  // SemiImplicitEuler measures no error, and neither does this governor
+    CHECK(has(run.text, "level.changed engine"));
+    CHECK(has(run.text, "cost "));
+}
+
 TEST_CASE("what rules have made: explained, and frozen into a scene without rules")
 {
     const std::string scene = quoted(std::string(PLAB_SOURCE_DIR) + "/scenes/workshop.xml");

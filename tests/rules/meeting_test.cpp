@@ -123,6 +123,31 @@ TEST_CASE("matching by type, id and connector")
     CHECK(made("a_shape='Shape/Sphere'") == "nothing");
 }
 
+TEST_CASE("a connector may be looser than the rule, on either side")
+{
+    const auto scene = [](const std::string& a, const std::string& b)
+    {
+        return wheel("one", 0.1, "0 0 0") + wheel("two", 0.1, "0.02 0 0.1") +
+               "<component id='pin' type='Connector/Frame' object='one' kind='pin' " + a +
+               "/><component id='hole' type='Connector/Frame' object='two' kind='hole' " + b +
+               "/><component id='join' type='Rule/Pair' a_connector='pin' b_connector='hole' relation='coaxial' reach='0.5' tolerance='5 "
+               "mm'>"
+               "<template><component id='${rule}.${a}.${b}' type='Constraint/AngularVelocity/Graph' driver='${a}' driven='${b}' "
+               "velocity_factor='1'/></template></component>";
+    };
+    const auto joins = [&](const std::string& a, const std::string& b)
+    {
+        Scene s(scene(a, b));
+        serve(s);
+        s.step(3);
+        return exists(s, "join.one.two");
+    };
+    CHECK_FALSE(joins("", ""));
+    CHECK_FALSE(joins("tolerance='19 mm'", ""));
+    CHECK(joins("tolerance='21 mm'", ""));
+    CHECK(joins("tolerance='1 mm'", "tolerance='21 mm'"));
+}
+
 TEST_CASE("Lua says what parameters cannot, and computes values")
 {
     const std::string rule =
@@ -194,6 +219,32 @@ TEST_CASE("a condition that fails quarantines its rule, and says where")
     CHECK(s.count("rule.failed") == 1);
     CHECK_MESSAGE(message_of(s, "rule.failed").find("code:3:") != std::string::npos, message_of(s, "rule.failed"));
     CHECK(!exists(s, "one-two"));
+}
+
+TEST_CASE("a condition is sandboxed: it ends, reaches nothing outside, and remembers nothing that a snapshot would lack")
+{
+    const auto message = [](const std::string& code)
+    {
+        Scene s(
+            kTwoWheels + "<component id='r' type='Rule/Pair' reach='1'><param name='code'>" + code +
+            "</param><template><component id='${a}-${b}' type='Constraint/AngularVelocity/Graph' driver='${a}' driven='${b}'/></template>"
+            "</component>");
+        serve(s);
+        s.warnings_expected = true;
+        s.step(5);
+        CHECK(!exists(s, "one-two"));
+        CHECK(near(s.simulation().time(), 5.0 / 240, 1e-12));
+        return message_of(s, "rule.failed");
+    };
+    CHECK_MESSAGE(message("function applies() while true do end end").find("budget") != std::string::npos,
+                  message("function applies() while true do end end"));
+    CHECK(message("function applies() return io.open('/etc/passwd') ~= nil end").find("io") != std::string::npos);
+    CHECK(message("function applies() return os.time() > 0 end").find("os") != std::string::npos);
+    // A count that no snapshot holds would let a run that continues decide otherwise.
+    const std::string counts = message("count = 0\nfunction applies() count = count + 1 return count > 3 end");
+    CHECK_MESSAGE(!counts.empty(), "it counts in a global");
+    const std::string closure = message("local seen = {}\nfunction applies() seen[#seen + 1] = 1 return #seen > 3 end");
+    MESSAGE("closure: ", closure);
 }
 
 TEST_CASE("the long form has the template as an element, and gives the same rule")

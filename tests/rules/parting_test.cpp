@@ -150,3 +150,12 @@ TEST_CASE("at most so many pairs for one side")
     s.step(5);
     CHECK(makers(s) == "r.hub.p");
 }
+
+TEST_CASE("a rule that can take no more pairs leaves them to the next one, whatever its priority")
+{
+    Scene s(wheel("hub", 0.1, "0 0 0") + wheel("p", 0.1, "0.1 0 0") + wheel("q", 0.1, "0.2 0 0") +
+            near_rule("first", "a='hub' b='p q' a_most='1' priority='2'", "1") + near_rule("second", "a='hub' b='p q' priority='1'", "-1"));
+    serve(s);
+    s.step(5);
+    CHECK(makers(s) == "first.hub.p second.hub.q");
+}

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "publish/figures.h"
+#include "simulation/costs/component_costs.h"
 #include "support/scene.h"
 #include "support/text.h"
 
@@ -17,13 +18,13 @@ double cost_of(const Scene& s, const std::string& id)
 {
     const std::uint32_t i = s.simulation().world().find(id);
     REQUIRE_MESSAGE(i != kNoIndex, id);
-    return publish::Costs(s.simulation()).of(i).mean;
+    return simulation::ComponentCosts(s.simulation().world(), s.simulation().stepper().cost()).of(i).mean;
 }
 
 /// The cost of all components together, and the server's own.
 double sum_of(const Scene& s)
 {
-    const publish::Costs costs(s.simulation());
+    const simulation::ComponentCosts costs(s.simulation().world(), s.simulation().stepper().cost());
     double sum = s.simulation().stepper().cost().mean_of_host();
     for (const std::uint32_t i : s.simulation().world().in_id_order())
         if (s.simulation().world().component(i).table != kNoIndex) sum += costs.of(i).mean;
@@ -81,7 +82,7 @@ TEST_CASE("two scripts of different cost have two figures, in proportion to what
         script("short", "a", 100) + script("long", "b", 2000));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step(100);
-    const publish::Costs costs(s.simulation());
+    const simulation::ComponentCosts costs(s.simulation().world(), s.simulation().stepper().cost());
     const auto last = [&](const char* id) { return costs.of(s.simulation().world().find(id)).last; };
     CHECK(costs.of(s.simulation().world().find("short")).shared == 1);
     CHECK(last("short").median > 0);
@@ -107,7 +108,12 @@ TEST_CASE("a SoftStep among Directs has its own figure, and managers carry most 
     CHECK(soft != one);
     // The same pile with the same manager costs the same, another one a different amount. The medians cover a few milliseconds, in which
     // another program may disturb one of them, so this has to hold in one of some measurements.
-    const auto median = [&](const char* id) { return publish::Costs(s.simulation()).of(s.simulation().world().find(id)).last.median; };
+    const auto median = [&](const char* id)
+    {
+        return simulation::ComponentCosts(s.simulation().world(), s.simulation().stepper().cost())
+            .of(s.simulation().world().find(id))
+            .last.median;
+    };
     bool alike = false;
     for (int i = 0; i < 20 && !alike; ++i)
     {
@@ -142,8 +148,12 @@ TEST_CASE("trial steps of a swap are not steps of the run: neither sums nor medi
     REQUIRE(s.ask(simulation::SwapOperation{"solver", "Solver/RungeKutta4", {}}).done);
     CHECK(s.simulation().stepper().cost().steps() == steps);
     // Another algorithm begins a new account.
-    CHECK(publish::Costs(s.simulation()).of(s.simulation().world().find("solver")).last.samples == 0);
-    CHECK(publish::Costs(s.simulation()).of(s.simulation().world().find("air")).last.samples == 10);
+    CHECK(simulation::ComponentCosts(s.simulation().world(), s.simulation().stepper().cost())
+              .of(s.simulation().world().find("solver"))
+              .last.samples == 0);
+    CHECK(simulation::ComponentCosts(s.simulation().world(), s.simulation().stepper().cost())
+              .of(s.simulation().world().find("air"))
+              .last.samples == 10);
 }
 
 TEST_CASE("two medians differ where quartiles of eight samples, or all of four, do not overlap")

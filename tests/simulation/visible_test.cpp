@@ -1,5 +1,6 @@
 // Levels of detail are never seen: what is in a picture has its level already, and a change of level is less than half a pixel.
 #include <algorithm>
+#include <functional>
 
 #include "support/scene.h"
 
@@ -96,6 +97,67 @@ TEST_CASE("an object has the level that its picture asks for before it is in the
     CHECK(seen > 10000);
     CHECK(finest > 1000);
     CHECK(entered > 100);
+}
+
+namespace
+{
+
+/// A wall that ends at y = 0, and an eye close to it that flies beyond its edge: what is far behind comes out much faster than the eye
+/// moves.
+Scene behind_a_wall(const std::string& wall, const std::string& eye)
+{
+    std::string text =
+        "<component id='ball' type='Shape/Sphere' radius='0.3'/><component id='slab' type='Shape/Box' half_extents='0.1 20 20'/>"
+        "<component id='wall' shape='slab' " +
+        wall + "/><component id='drone' type='State/Kinematic' " + eye +
+        "/><component id='eye' type='Viewer/Attached' body='drone'/>"
+        "<component id='lod' type='Governor/Visibility' watches='bob.*.solver' pixels='5 10' every='0.05' dwell='0.1' look_ahead='0.2' "
+        "occluders='wall' levels='Solver/SemiImplicitEuler; Solver/RungeKutta4; Solver/DormandPrince54'/>";
+    for (int i = 0; i < 40; ++i)
+        text += "<component id='bob." + std::to_string(i) + "' type='State/RigidBody' mass='1' shape='ball' position='14 " +
+                std::to_string(0.5 * (i - 20)) + " 0' solver='Solver/RungeKutta4'/>";
+    return Scene(text, "dt='1/120'");
+}
+
+/// Of the balls that no wall hides from the eye, how many there were, and how many lacked the most exact level. The wall reaches to y =
+/// edge.
+std::pair<int, int> unhidden(Scene& s, const std::function<double()>& edge)
+{
+    int seen = 0, wrong = 0;
+    for (int k = 0; k < 240; ++k)
+    {
+        s.step();
+        const Viewpoint eye = s.simulation().viewpoints().front();
+        for (const LevelInfo& l : s.simulation().levels().levels())
+        {
+            const std::string solver = s.simulation().world().id_of(l.component), id = solver.substr(0, solver.rfind('.'));
+            const Vec3 p = position(s.simulation(), id);
+            const double share = (1.1 - eye.position.x) / (p.x - eye.position.x), y = eye.position.y + share * (p.y - eye.position.y);
+            if (y <= edge() || !is_seen(p, 0.3, eye)) continue;
+            ++seen, wrong += l.level == 2 ? 0 : 1;
+        }
+    }
+    return {seen, wrong};
+}
+
+}  // namespace
+
+TEST_CASE("what comes out from behind a wall has its level before it is seen, however near to the wall the eye is")
+{
+    Scene s = behind_a_wall("type='State/Static' position='1 -20 0'", "position='0 -1 0' linear_velocity='0 1.5 0'");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    const auto [seen, wrong] = unhidden(s, [] { return 0.0; });
+    CHECK(seen > 1000);
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("a wall that moves hides nothing")
+{
+    Scene s = behind_a_wall("type='State/Kinematic' position='1 -20 0' linear_velocity='0 -2 0'", "position='0 -1 0'");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    const auto [seen, wrong] = unhidden(s, [&] { return position(s.simulation(), "wall").y + 20; });
+    CHECK(seen > 1000);
+    CHECK(wrong == 0);
 }
 
 TEST_CASE("the jump in the picture of an object that changes its level is below half a pixel")

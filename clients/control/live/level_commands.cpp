@@ -43,6 +43,9 @@ struct LevelOf
         double error = kUnknown, cost = kUnknown;  ///< against the next finer level; s, of a trial step of what the component acts on
     };
     std::vector<Tried> tried;  ///< levels that trial steps have told about, from the cheapest on
+    /// The last change: what is known of the level before and of the one after.
+    std::string before, change_unit;  ///< of the errors
+    double cost_before = kUnknown, cost_after = kUnknown, error_before = kUnknown, error_after = kUnknown;
 };
 
 const wire::Parameter& parameter_of(const std::vector<wire::Parameter>& parameters, std::string_view name)
@@ -72,6 +75,11 @@ std::optional<LevelOf> level_of(const std::string& id, const std::vector<wire::P
     const wire::Parameter& error = parameter_of(parameters, "level_error");
     out.error = real(error.text), out.unit = error.unit;
     out.next_look = real(parameter(parameters, "level_next_look")), out.every = real(parameter(parameters, "level_every"));
+    out.before = parameter(parameters, "level_before");
+    out.cost_before = real(parameter(parameters, "level_cost_before")), out.cost_after = real(parameter(parameters, "level_cost_after"));
+    for (const auto& [name, to] : {std::pair("level_error_before", &out.error_before), std::pair("level_error_after", &out.error_after)})
+        if (const wire::Parameter& found = parameter_of(parameters, name); !found.text.empty())
+            *to = real(found.text), out.change_unit = found.unit;
     for (long k = 0; k < out.levels; ++k)
     {
         const std::string of = "." + std::to_string(k);
@@ -125,6 +133,16 @@ std::string place(const LevelOf& level)
     return level.level < 0 ? "-" : std::to_string(level.level + 1) + " of " + std::to_string(level.levels);
 }
 
+/// "cost 1.2 us -> 3.9 us, error unknown -> 0.003 m": what the last change made of both; empty: there was none.
+std::string change_text(const LevelOf& level)
+{
+    if (level.before.empty()) return {};
+    const auto cost = [](double seconds) { return std::isnan(seconds) ? "unknown" : duration_text(1e9 * seconds); };
+    const auto error = [&](double value) { return std::isnan(value) ? "unknown" : number(value) + " " + level.change_unit; };
+    return "cost " + cost(level.cost_before) + " -> " + cost(level.cost_after) + ", error " + error(level.error_before) + " -> " +
+           error(level.error_after);
+}
+
 Json json_of(double value) { return std::isnan(value) ? Json() : Json(value); }
 
 Json json_of(const std::vector<LevelOf::Tried>& tried)
@@ -152,6 +170,13 @@ Json json_of(const LevelOf& level, const link::CatalogueContents& now, const lin
             {"measured_error_unit", level.unit},
             {"until_next_look", json_of(until_next_look(level, now))},
             {"tried", json_of(level.tried)},
+            {"last_change", level.before.empty() ? Json()
+                                                 : Json{{"from", level.before},
+                                                        {"cost_before", json_of(level.cost_before)},
+                                                        {"cost_after", json_of(level.cost_after)},
+                                                        {"error_before", json_of(level.error_before)},
+                                                        {"error_after", json_of(level.error_after)},
+                                                        {"error_unit", level.change_unit}}},
             {"metrics", m != nullptr ? wire::json_of(*m) : Json()}};
 }
 
@@ -192,8 +217,9 @@ void print_levels(const Context& c, const link::CatalogueContents& now, const st
         const LevelOf& l = levels[k];
         const link::InteractionMetrics* const m = link::find_metrics(now.metrics, l.id);
         const auto [error, unit] = error_of(l, m);
+        const std::string change = change_text(l);
         table.add({l.id, place(l), l.algorithm, m ? cost_text(*m) : "", error, unit, seconds_text(until_next_look(l, now)),
-                   seconds_text(real(l.since)), l.reason});
+                   seconds_text(real(l.since)), l.reason + (change.empty() ? "" : "; " + change)});
     }
     c.console.say("");
     table.print(c.console);
@@ -262,6 +288,7 @@ Exit run_why(Context& c, const std::string& id)
     lines.add("level", place(*level) + ", counted from the cheapest");
     lines.add("why", level->reason.empty() ? "it has not been changed since the run began" : level->reason);
     if (!level->since.empty()) lines.add("since", seconds_text(real(level->since)));
+    if (!level->before.empty()) lines.add("before", level->before + "; " + change_text(*level));
     if (!std::isnan(level->error)) lines.add("measured", number(level->error) + " " + level->unit + ", against the next finer level");
     if (const double next = until_next_look(*level, now); !std::isnan(next)) lines.add("next look", "in " + seconds_text(next));
     if (m != nullptr)

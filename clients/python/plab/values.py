@@ -3,6 +3,7 @@ vectors of the body into the world. Meanings are those of idl/plab.idl."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -131,6 +132,12 @@ class Level:
     since: float  #: s; NaN: not known
     error: float  #: as the governor measured it, in ``unit``; NaN: it measures none
     unit: str
+    before: str = ""  #: the level that it had before; what follows is NaN where it is unknown
+    cost_before: float = math.nan  #: s, of a step
+    cost_after: float = math.nan
+    error_before: float = math.nan  #: in ``change_unit``
+    error_after: float = math.nan
+    change_unit: str = ""
 
     @staticmethod
     def _of(id: str, parameters: Mapping[str, Parameter]) -> Level | None:
@@ -144,9 +151,12 @@ class Level:
         if not text("governor"):
             return None
         unit = parameters["level_error"].unit if text("level_error") else ""
+        errors = [parameters[name].unit for name in ("level_error_before", "level_error_after") if text(name)]
+        change_unit = errors[0] if errors else ""
         return Level(
             id, text("governor"), int(text("level") or -1), int(text("levels") or 0), text("level_algorithm"), text("level_reason"),
-            number("level_since"), number("level_error"), unit,
+            number("level_since"), number("level_error"), unit, text("level_before"), number("level_cost_before"),
+            number("level_cost_after"), number("level_error_before"), number("level_error_after"), change_unit,
         )  # fmt: skip
 
 

@@ -21,6 +21,12 @@ function pairsOf(points, id) {
   return out;
 }
 
+// The level before, and what is known of both: cost of a step, and error.
+function lastChange(levels) {
+  const cost = (text) => (text ? duration(1e9 * Number(text)) : 'unknown'), error = (text) => (text ? number(Number(text), 3) : 'unknown');
+  return `${levels.level_before}; cost ${cost(levels.level_cost_before)} → ${cost(levels.level_cost_after)}, error ${error(levels.level_error_before)} → ${error(levels.level_error_after)}`;
+}
+
 export class Details {
   // actions: { ask(text, ...operations) -> reply, plot(name), look(id), follow() }
   constructor(model, actions) {
@@ -111,6 +117,7 @@ export class Details {
     if (levels?.level !== undefined) {
       rows.push(...this.row('level of detail', `${levelText(levels.level, levels.levels)}, chosen by ${levels.governor ?? 'a governor'}`));
       if (levels.level_reason) rows.push(...this.row('because', `${levels.level_reason}, since ${number(Number(levels.level_since))} s`));
+      if (levels.level_before) rows.push(...this.row('before', lastChange(levels)));
     }
     for (const output of outputs) if (output.kind !== 'account') rows.push(...this.row(output.name, `${shortText(output.text)} ${output.unit}`, `${thing.id}.${output.name}`));
     this.numbers.replaceChildren(...rows);

@@ -111,7 +111,7 @@ void stored_by_spring(Rows which, const SpringDamperRows& rows, const Bodies& bo
     for (const Row row : which)
     {
         const double stretch = stretch_of(rows.sides(row, bodies)).distance - rows.rest(row);
-        stored.joule += 0.5 * rows.stiffness[row] * stretch * stretch;
+        stored.add(0.5 * rows.stiffness[row] * stretch * stretch, rows.b[row], rows.a[row]);
     }
 }
 

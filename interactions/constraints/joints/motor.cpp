@@ -160,7 +160,7 @@ void stored_by_torsion(const StepContext& step, Rows which, const TorsionSpringR
     for (const Row row : which)
     {
         const double stretch = coordinate_of(rows, row, bodies, shafts, step.time).x - rows.rest[row];
-        stored.joule += 0.5 * rows.stiffness[row] * stretch * stretch;
+        stored.add(0.5 * rows.stiffness[row] * stretch * stretch, rows.b[row], rows.a[row]);
     }
 }
 

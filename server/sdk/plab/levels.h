@@ -53,7 +53,9 @@ struct LevelError
 {
     double distance = std::numeric_limits<double>::quiet_NaN();  ///< m, of a point of a body
     double angle = std::numeric_limits<double>::quiet_NaN();     ///< rad: the turn of a body, or of a shaft
-    double power = std::numeric_limits<double>::quiet_NaN();     ///< J/s, of the kinetic energy of all together
+    /// J/s: energy, kinetic and stored, that the island makes or loses with one level and not with the other, at most, divided by the
+    /// interval. Told only to a governor whose field `unit` is "W".
+    double power = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What Phase::Decide offers to governors. Each row has a ladder and a list of components, which the host derives from the fields `watches`
@@ -71,7 +73,7 @@ public:
     /// differs then is taken to add up over `interval` (s). The most exact level has no error.
     virtual LevelError error(Row row, std::size_t index, std::int32_t level, double interval) = 0;
     /// Tells observers what is known of a component: the error of the level that it is going to have, in the governor's unit, and when it
-    /// is looked at again (s). Not state: a decision cannot depend on it.
+    /// is looked at again (s). To be called after choose(). Not state: a decision cannot depend on it.
     virtual void tell(Row row, std::size_t index, double error, std::string_view unit, double next_look) = 0;
     /// Asks for another level, from the coming step on. `reason`: in words, for people.
     virtual void choose(Row row, std::size_t index, std::int32_t level, std::string reason) = 0;

@@ -48,10 +48,27 @@ private:
     T rows_;
 };
 
+/// Receives what a component stores, part by part: the energy (J) of one object, or of two that share it. `b` may be no object.
+class StoredEnergySink
+{
+public:
+    virtual ~StoredEnergySink() = default;
+    virtual void add(double joule, Ref a, Ref b) = 0;
+};
+
 /// Output of Phase::Potential: the energy that a component stores in the present state.
 struct StoredEnergy
 {
-    double joule = 0;
+    double joule = 0;                  ///< of all of it
+    StoredEnergySink* sink = nullptr;  ///< null: nobody asks whose it is
+
+    /// Energy that one object has in a field, or that two share. What is added to `joule` by other means belongs to nobody: bounds in W
+    /// cannot be checked for it (plab-study --verify-levels).
+    void add(double more, Ref a, Ref b = {})
+    {
+        joule += more;
+        if (sink) sink->add(more, a, b);
+    }
 };
 
 /// Everything that a command may ask for. The host fills what the phase provides; the rest is null.

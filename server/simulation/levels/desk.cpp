@@ -99,8 +99,8 @@ LevelError LevelBook::Desk::error(Row /*row*/, std::size_t index, std::int32_t l
     const std::uint32_t component = governor_->watched[index].component;
     constexpr std::size_t kMostMeasured = 64;
     const std::uint64_t begin = now_ns(), thread_begin = thread_ns();
-    const TrialFindings found =
-        error_({component, &levels[at], &levels[at + 1], interval, book_.enough_for(*governor_), governor_->trials < kMostMeasured});
+    const TrialFindings found = error_({component, &levels[at], &levels[at + 1], interval, book_.enough_for(*governor_),
+                                        governor_->trials < kMostMeasured, governor_->counts_energy});
     book_.note_tried(*governor_, {1e-9 * static_cast<double>(now_ns() - begin), 1e-9 * static_cast<double>(thread_ns() - thread_begin)});
     note_trial(*governor_, index, level, interval, found, book_.trials_[component]);
     return found.error;
@@ -119,10 +119,15 @@ void LevelBook::Desk::tell(Row /*row*/, std::size_t index, double error, std::st
 void LevelBook::Desk::choose(Row /*row*/, std::size_t index, std::int32_t level, std::string reason)
 {
     assert(governor_ && index < governor_->watched.size() && level >= 0 && level < levels(0));
+    // What was told of the level that it loses says nothing of the one that it gets.
+    const std::uint32_t component = governor_->watched[index].component;
+    Told& told = book_.told_[component];
+    book_.known_[component].told_before = told.by == by_ ? told.error : std::numeric_limits<double>::quiet_NaN();
+    if (told.by == by_) told.error = told.next_look = std::numeric_limits<double>::quiet_NaN();
     if (!chose_) decisions_.emplace_back().by = by_;
     chose_ = true;
     const Level& to = governor_->ladder.levels[static_cast<std::size_t>(level)];
-    decisions_.back().operations.push_back(SwapOperation{book_.world_.id_of(governor_->watched[index].component), to.type, to.values});
+    decisions_.back().operations.push_back(SwapOperation{book_.world_.id_of(component), to.type, to.values});
     decisions_.back().reasons.push_back(std::move(reason));
 }
 

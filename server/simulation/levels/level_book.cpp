@@ -94,6 +94,7 @@ void LevelBook::add_objects(std::uint32_t component, std::vector<Ref>& out, int 
 
 Result<void> LevelBook::read_governor(Governor& governor) const
 {
+    governor.counts_energy = text_of(world_, governor.component, "unit") == "W";
     std::string written = text_of(world_, governor.component, "levels");
     if (governor.written == written && !governor.ladder.levels.empty()) return {};
     auto ladder = read_ladder(written, world_.types());
@@ -145,6 +146,7 @@ Result<void> LevelBook::find_watched()
     before.swap(governors_);
     std::vector<std::uint32_t> watcher(world_.components().size(), kNoIndex);
     changes_.resize(world_.components().size()), told_.resize(world_.components().size()), trials_.resize(world_.components().size());
+    known_.resize(world_.components().size());
     for (const std::uint32_t i : stepper_.components())
     {
         const world::Component& c = world_.component(i);
@@ -205,11 +207,6 @@ GovernedComponent LevelBook::look(const Governor& governor, const Watched& watch
     out.center = 0.5 * (least + most);
     for (const Ref r : watched.objects) out.radius = std::max(out.radius, length(place(r) - out.center) + radius(r));
     return out;
-}
-
-void LevelBook::note_change(std::uint32_t component, std::string reason, double time)
-{
-    if (component < changes_.size()) changes_[component] = {world_.id_of(component), std::move(reason), time};
 }
 
 namespace
@@ -356,9 +353,9 @@ LevelInfo LevelBook::info(const Governor& g, const Watched& w) const
     LevelInfo out;
     out.component = w.component, out.governor = g.component;
     out.level = level_of(world_, w.component, g.ladder), out.levels = static_cast<std::int32_t>(g.ladder.levels.size());
-    out.text = out.level < 0 ? world_.type_of(w.component)->info.name : g.ladder.levels[static_cast<std::size_t>(out.level)].text;
+    out.text = text_of_level(g, w.component, out.level);
     const Change& change = changes_[w.component];
-    if (change.id == world_.id_of(w.component)) out.reason = change.reason, out.since = change.since;
+    if (change.id == world_.id_of(w.component)) out.reason = change.reason, out.since = change.since, out.last = change.what;
     out.every = real_of(world_, g.component, "every");
     const Told& told = told_[w.component];
     if (told.by == g.component) out.error = told.error, out.error_unit = told.unit, out.next_look = told.next_look;

@@ -15,11 +15,14 @@
 #include <vector>
 
 #include "simulation/levels/ladder.h"
+#include "simulation/levels/level_change.h"
 #include "simulation/levels/step_times.h"
 #include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {
+
+class ComponentCosts;
 
 /// What a component asked for in Phase::Decide: one transaction.
 struct Decision
@@ -37,9 +40,10 @@ struct LevelQuestion
 {
     std::uint32_t component = kNoIndex;
     const Level *level = nullptr, *finer = nullptr;
-    double interval = 0;  ///< s
+    double interval = 0;  ///< s, within which the error is counted
     LevelError enough;
     bool with_cost = false;  ///< also what the steps cost, for which they have to be repeated
+    bool energy = false;     ///< LevelError::power, for which energies are summed up after each step
 };
 
 /// What trial steps with a level and with the next finer one showed.
@@ -58,6 +62,8 @@ struct LevelTrial
     double interval = 0;  ///< s
     double seconds = 0;   ///< of the step; 0: not measured
 };
+/// In the unit in which a governor counts, as far as trial steps tell it; pixels depend on the viewer, so metres stand for them.
+std::pair<double, const char*> error_of_trial(const LevelTrial& trial, const std::string& unit);
 
 /// What was decided before a step: how many trials of levels (each beside the next finer one) and exchanges, and what both cost.
 struct DecisionCost
@@ -76,6 +82,7 @@ struct LevelInfo
     std::string text;                                             ///< of the level
     std::string reason;                                           ///< of the last change; empty: it has not been changed in this run
     double since = 0;                                             ///< s, of that change
+    LevelChange last;                                             ///< what it was, with the figures of both levels
     double error = std::numeric_limits<double>::quiet_NaN();      ///< as its governor measured it last; NaN: it measures none
     double next_look = std::numeric_limits<double>::quiet_NaN();  ///< s: when its governor measures it again; NaN: at its next look
     double every = 0;                                             ///< s, from one look of its governor to the next
@@ -102,8 +109,10 @@ public:
     std::vector<Decision> decide(Tick tick, double time, double dt, const MeasureError& error, EventSink& events);
     /// From where the viewers of the scene look at this boundary.
     std::vector<Viewpoint> viewpoints(Tick tick, double time, double dt);
-    /// What was carried out, for observers.
-    void note_change(std::uint32_t component, std::string reason, double time);
+    /// What is known of the levels that these exchanges take away, one for each operation; to be handed to after_exchange().
+    std::vector<LevelChange> before_exchange(const std::vector<Operation>& operations);
+    /// What was carried out, for observers. Returns it with what is known of both levels.
+    const LevelChange& after_exchange(std::uint32_t component, std::string reason, double time, LevelChange change);
 
     /// Of the last boundary.
     const DecisionCost& decision_cost() const { return decided_; }
@@ -142,6 +151,7 @@ private:
         std::string watches, written;  ///< the texts from which the rest was derived
         Ladder ladder;
         std::vector<Watched> watched;  ///< in id order
+        bool counts_energy = false;    ///< its bound is in W
         // Measured since the last input of that kind.
         std::vector<std::vector<double>> trial_seconds;  ///< for each object, by level
         std::size_t trials = 0;                          ///< whose cost was measured: after some of them, steps tell it better
@@ -155,6 +165,17 @@ private:
     {
         std::string id, reason;
         double since = 0;
+        LevelChange what;
+    };
+    /// Of one component: what is remembered for the figures of the next change.
+    struct Known
+    {
+        struct Had
+        {
+            double cost = std::numeric_limits<double>::quiet_NaN(), error = std::numeric_limits<double>::quiet_NaN();
+        };
+        std::vector<Had> had;                                           ///< by level: its accounts when it had the level last
+        double told_before = std::numeric_limits<double>::quiet_NaN();  ///< by the governor, of the level before the present look
     };
     /// What a governor told of a component that it watches.
     struct Told
@@ -169,6 +190,10 @@ private:
     LevelError enough_for(const Governor& governor) const;
     bool is_due(const Governor& governor, double time, double dt, const StepTimes& steps) const;
     void note_tried(Governor& governor, const StepCost& cost);
+    FigurePair own_error(std::uint32_t component) const;
+    std::vector<double> costs_of_levels(const Governor& governor, const ComponentCosts& costs) const;
+    const Governor* governor_of(std::uint32_t component) const;
+    std::string text_of_level(const Governor& governor, std::uint32_t component, std::int32_t level) const;
     static void note_trial(Governor& governor, std::size_t index, std::int32_t level, double interval, const TrialFindings& found,
                            std::vector<LevelTrial>& known);
     const Watched* find_watched(const Governor& governor, std::uint32_t component) const;
@@ -187,6 +212,8 @@ private:
     std::vector<Governor> governors_;              ///< in id order
     std::vector<Change> changes_;                  ///< by directory index
     std::vector<Told> told_;                       ///< by directory index
+    std::vector<Known> known_;                     ///< by directory index
+    std::vector<double> cost_of_level_;            ///< s, at the last before_exchange(); NaN: unknown
     std::vector<std::vector<LevelTrial>> trials_;  ///< by directory index
     /// By directory index: what the world returns is not valid any more after a trial, which may copy the directory that a snapshot shares.
     std::vector<std::string> ids_;

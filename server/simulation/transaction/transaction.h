@@ -29,7 +29,7 @@ public:
 struct FirstStep
 {
     std::vector<std::vector<ObjectMotion>> course;  ///< after each step: bodies first, each in the order of host rows
-    double energy = 0;                              ///< J, kinetic and stored
+    std::vector<double> energies;                   ///< J, kinetic and stored, after each step, if asked for
     double seconds = 0;                             ///< that one step takes, the median of some; 0: not measured
 };
 
@@ -37,6 +37,7 @@ struct FirstStep
 struct FirstStepChoice
 {
     int steps = 1;
+    bool energies = false;
     const CourseEnd* end = nullptr;  ///< null: all steps are made
     std::uint64_t measure_ns = 0;    ///< time for which the first step may be repeated to measure what it costs; 0: it is not measured
 };

@@ -195,13 +195,14 @@ Result<FirstStep> Transaction::first_step(const FirstStepChoice& choice)
         if (request_->trial.budget == TrialChoice::Budget::Given)
             deadline.ask(std::chrono::nanoseconds(static_cast<std::int64_t>(budget_ns())));
         TrialStep step = next_step();
-        step.count = choice.steps, step.course = true, step.end = choice.end, step.measure_ns = choice.measure_ns;
+        step.count = choice.steps, step.course = true, step.energies = choice.energies, step.end = choice.end,
+        step.measure_ns = choice.measure_ns;
         // The scene's stepper is not rebuilt, so what depends on the structure, such as the anchors of coupled shafts, is the trial's own.
         step.derives = !run_->world().revisions().only_solvers_since(revisions_before_);
         TrialResult result = Trial(run_->world(), run_->stepper(), step).run(scope, {}, deadline, context_->progress, 0);
         if (result.given_up) reply_.errors = {reason("the trial was interrupted")};
         if (!result.failure.empty()) reply_.errors = {reason(result.failure)};
-        out.course = std::move(result.course), out.energy = result.outcome.energy;
+        out.course = std::move(result.course), out.energies = std::move(result.energies);
         if (result.cost.is_known()) out.seconds = 1e-9 * result.cost.median;
     }
     saved_.restore_world(prepared_);

@@ -237,14 +237,21 @@ TrialResult Trial::once(Stepper& part, const TrialScope& scope, const std::vecto
     first_ns_ = now_ns() - begin;
     out.given_up = deadline.has_interrupted();
     out.failure = failure_in(part.events());
-    if (step_.course) out.course.push_back(motion_in(scope));
+    const auto note = [&](int steps)
+    {
+        if (step_.course) out.course.push_back(motion_in(scope));
+        if (!step_.energies) return;
+        const Energies now = energies_of(world_, part, step_.start + steps * step_.h, step_.tick + steps);
+        out.energies.push_back(now.kinetic + now.stored);
+    };
+    note(1);
     const auto is_enough = [&] { return step_.end && (*step_.end)(out.course); };
     int made = 1;
     for (; made < step_.count && !out.given_up && out.failure.empty() && !is_enough(); ++made)
     {
         part.step(step_.tick + made, step_.start + made * step_.h, step_.h);
         out.given_up = deadline.has_interrupted(), out.failure = failure_in(part.events());
-        if (step_.course) out.course.push_back(motion_in(scope));
+        note(made + 1);
     }
     const Totals then = totals_of(world_, part, step_.start + made * step_.h, step_.tick + made);
     out.kinetic_after = then.kinetic;

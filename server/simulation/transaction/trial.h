@@ -22,6 +22,7 @@ struct TrialStep
     double start = 0, h = 0;         ///< s
     int count = 1;                   ///< steps in a row; objects that others touch before the last one are not noticed
     bool course = false;             ///< also the motion after each of them
+    bool energies = false;           ///< also the energy after each of them
     const CourseEnd* end = nullptr;  ///< of a trial with `course`; null: all steps are made
     std::uint64_t measure_ns = 0;    ///< time for which the first step is repeated after the trial, in place of a time until which
     bool derives = false;  ///< the scene's stepper has not been rebuilt for the present structure: the trial's own one derives from it
@@ -51,6 +52,7 @@ struct TrialResult
     std::vector<double> errors;                     ///< of the components that were given
     std::vector<ObjectMotion> motion;               ///< of the objects in the scope, bodies first, each in the order of host rows
     std::vector<std::vector<ObjectMotion>> course;  ///< after each step, if that was asked for
+    std::vector<double> energies;                   ///< J, kinetic and stored, of the objects in the scope; after each step, if asked for
 };
 
 /// A trial uses a stepper of its own for the objects in the scope, starting from the present state of the world. All other objects are

@@ -151,13 +151,16 @@ void FakeServer::publish_catalogue()
     contact.component_id = contact.name = text("contact"), contact.type_name = text("CDetection/ODE"), contact.family = text("CDetection");
     contact.run = 1, contact.roles = sequence<dds_sequence_plab_v2_Participants>(roles);
     std::vector<plab_v2_Parameter> levels;
-    for (const auto& [name, value, unit] : {std::tuple("governor", "lod", ""), std::tuple("level", "1", ""), std::tuple("levels", "4", ""),
-                                            std::tuple("level_algorithm", "CDetection/ODE", ""), std::tuple("level_every", "0.5", "s"),
-                                            std::tuple("level_reason", "there is room", ""), std::tuple("level_since", "2", "s"),
-                                            std::tuple("level_name.0", "CDetection/Coarse", ""), std::tuple("level_error.0", "0.25", "m"),
-                                            std::tuple("level_cost.0", "2e-06", "s"), std::tuple("level_name.1", "CDetection/ODE", ""),
-                                            std::tuple("level_error.1", "0.003", "m"), std::tuple("level_name.2", "CDetection/Fine", ""),
-                                            std::tuple("level_cost.2", "5e-05", "s"), std::tuple("level_name.3", "CDetection/Finest", "")})
+    for (const auto& [name, value, unit] :
+         {std::tuple("governor", "lod", ""), std::tuple("level", "1", ""), std::tuple("levels", "4", ""),
+          std::tuple("level_algorithm", "CDetection/ODE", ""), std::tuple("level_every", "0.5", "s"),
+          std::tuple("level_reason", "there is room", ""), std::tuple("level_since", "2", "s"),
+          std::tuple("level_before", "CDetection/Coarse", ""), std::tuple("level_cost_before", "2e-06", "s"),
+          std::tuple("level_cost_after", "8e-06", "s"), std::tuple("level_error_after", "0.003", "m"),
+          std::tuple("level_name.0", "CDetection/Coarse", ""), std::tuple("level_error.0", "0.25", "m"),
+          std::tuple("level_cost.0", "2e-06", "s"), std::tuple("level_name.1", "CDetection/ODE", ""),
+          std::tuple("level_error.1", "0.003", "m"), std::tuple("level_name.2", "CDetection/Fine", ""),
+          std::tuple("level_cost.2", "5e-05", "s"), std::tuple("level_name.3", "CDetection/Finest", "")})
         levels.push_back(parameter(name, value, unit, "level"));
     contact.parameters = sequence<dds_sequence_plab_v2_Parameter>(levels);
     (void)ends_->interactions.write(contact);

@@ -207,8 +207,14 @@ TEST_CASE("why a component has its level: with the cost and the error of the lev
     CHECK(has(why.out, "CDetection/ODE: error 0.003 m against the next finer level"));
     CHECK(has(why.out, "CDetection/Fine: error not known, 50.0 us for a step of it alone"));
     CHECK_FALSE(has(why.out, "CDetection/Finest"));  // two levels away
+    const std::string change = "cost 2.0 us -> 8.0 us, error unknown -> 0.003 m";
+    CHECK(has(why.out, "CDetection/Coarse; " + change));
+    CHECK(has(plabctl("levels contact").out, "there is room; " + change));
     const auto json = plabctl("why contact --json").json();
     REQUIRE(json["tried"].size() == 4);
+    CHECK(json["last_change"]["from"] == "CDetection/Coarse");
+    CHECK(json["last_change"]["cost_after"] == 8e-6);
+    CHECK(json["last_change"]["error_before"].is_null());
     CHECK(json["tried"][0]["cost"] == 2e-6);
     CHECK(json["tried"][1]["cost"].is_null());
     CHECK(json["tried"][1]["error"] == 0.003);

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <numeric>
 #include <thread>
 
 #include "publish/figures.h"
 #include "publish/pace.h"
+#include "simulation/costs/component_costs.h"
 #include "support/allocation_counter.h"
 #include "watcher.h"
 
@@ -298,7 +298,7 @@ TEST_CASE("cheap rows of one type share its cost, and this is stated")
     Scene scene(R"(<component id="a" type="State/Shaft" inertia="1"/><component id="b" type="State/Shaft" inertia="1"/>
       <component id="x" type="Field/Drag" between="a" rotational="1"/><component id="y" type="Field/Drag" between="b" rotational="1"/>)");
     const auto& s = scene.simulation();
-    const auto cost_of = [&](const char* id) { return publish::Costs(s).of(s.world().find(id)); };
+    const auto cost_of = [&](const char* id) { return simulation::ComponentCosts(s.world(), s.stepper().cost()).of(s.world().find(id)); };
     CHECK(cost_of("x").last.samples == 0);
     CHECK(cost_of("solver").last.samples == 0);
     scene.step(100);

@@ -153,6 +153,7 @@ void add_levels(Page& page, const Log& log, const TimeLine& line)
     page.heading("Levels of detail");
     page.figure(draw(chart_of("Levels of detail", std::move(levels), {{}, line.span})),
                 "How many components each governor had at each level of its ladder. The reasons are in the events `level.changed`.");
+    add_level_changes(page, log);
 }
 
 void add_pace(Page& page, const Log& log, const TimeLine& line)

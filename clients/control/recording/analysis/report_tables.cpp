@@ -107,6 +107,60 @@ void add_segments(Page& page, const std::vector<Segment>& segments)
               rows, segments.size());
 }
 
+namespace
+{
+
+/// All changes from one level to another.
+struct LevelChanges
+{
+    std::string what;  ///< "Solver/RungeKutta4 -> Solver/Exact"
+    std::uint64_t count = 0;
+    std::array<std::vector<double>, 4> figures;  ///< cost before and after, s; error before and after; those that are known
+
+    /// The median; unknown if there is none.
+    PageCell cell(std::size_t k, double scale)
+    {
+        std::vector<double>& known = figures[k];
+        if (known.empty()) return text_cell("unknown");
+        const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+        std::nth_element(known.begin(), middle, known.end());
+        return number_cell(scale * *middle);
+    }
+};
+
+}  // namespace
+
+void add_level_changes(Page& page, const Log& log)
+{
+    std::vector<LevelChanges> all;
+    Stream stream = log.stream({"plab/events"});
+    while (const Entry* entry = stream.next())
+    {
+        const auto* events = entry->as<plab_v2_Events>();
+        for (std::uint32_t i = 0; events != nullptr && i < events->entries._length; ++i)
+        {
+            const plab_v2_EventInfo& e = events->entries._buffer[i];
+            if (std::string_view(e.kind) != "level.changed") continue;
+            const std::string_view message = e.message;
+            const std::string what(message.substr(0, message.find(": ")));
+            auto found = std::find_if(all.begin(), all.end(), [&](const LevelChanges& c) { return c.what == what; });
+            if (found == all.end()) found = all.insert(all.end(), LevelChanges{what, 0, {}});
+            ++found->count;
+            for (std::uint32_t k = 0; k < std::min<std::uint32_t>(4, e.values._length); ++k)
+                if (std::isfinite(e.values._buffer[k])) found->figures[k].push_back(e.values._buffer[k]);
+        }
+    }
+    if (all.empty()) return;
+    std::vector<Row> rows;
+    for (LevelChanges& c : all)
+        rows.push_back({text_cell(c.what), whole_cell(static_cast<std::int64_t>(c.count)), c.cell(0, 1e6), c.cell(1, 1e6), c.cell(2, 1),
+                        c.cell(3, 1)});
+    page.paragraph(
+        "What was exchanged for what. Costs and errors are medians of those that were known at the exchange; the unit of an error is in "
+        "the event.");
+    add_table(page, text_cells({"levels", "changes", "cost before, µs/step", "after", "error before", "after"}), rows, rows.size());
+}
+
 void add_requests(Page& page, const Log& log)
 {
     std::vector<Row> rows;

@@ -28,6 +28,8 @@ std::vector<Segment> segments_of(const Log& log);
 
 // The tables. Empty ones are left out.
 void add_segments(figures::Page& page, const std::vector<Segment>& segments);
+/// What governors exchanged for what, how often, and what both levels cost and err, as the events `level.changed` tell it.
+void add_level_changes(figures::Page& page, const Log& log);
 void add_requests(figures::Page& page, const Log& log);
 void add_events(figures::Page& page, const Log& log, const Summary& summary);
 void add_runs(figures::Page& page, const Summary& summary);
