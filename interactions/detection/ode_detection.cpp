@@ -23,7 +23,7 @@ void report_complaints(const StepContext& context, Row row, const OdeScene& scen
 
 void OdeRows::describe(Schema& s)
 {
-    s.role(between, "between", {Facet::Body}, "bodies that collide with one another").optional().writes().independent();
+    s.role(between, "between", {Facet::Body}, "bodies that collide with one another").writes().independent();
     s.role(against, "against", {Facet::Body}, "bodies that collide with those in `between`, not with one another")
         .optional()
         .writes()

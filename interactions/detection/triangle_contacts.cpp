@@ -290,7 +290,7 @@ private:
         }
         if (beyond_limit(a, b)) return;
         const Solid rod = Solid::rod(a, b);
-        const Separation s = separation_of(K_, rod);
+        const Separation s = separation_of(K_, rod, out_.limit());
         if (!(s.gap < out_.limit()) || !leads_away(e, -s.normal, s.point_b)) return;
         ContactPoints contact_points(std::isfinite(out_.limit()) ? out_.limit() : 0);
         add_manifold(K_, rod, s, contact_points);

@@ -57,9 +57,20 @@ Verdict SoftIsland<W>::run()
         for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
     }
     give_back();
+    const bool holds = has_joints(island_) && !island_.interrupted();
+    if (holds) hold_joints();
     problem_.refresh_spins(bodies_);
     finish(out);
+    if (holds) close_joints(problem_, island_, bodies_, shafts_, memory_.newton);
     return out;
+}
+
+/// Sweeps leave the joints with speeds, and so with errors. They are held exactly at the end of the step (joint_hold.h).
+template <int W>
+void SoftIsland<W>::hold_joints()
+{
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;  // that of restitution
+    hold_joint_speeds(problem_, island_, bodies_, shafts_, memory_.newton);
 }
 
 template <int W>
@@ -385,7 +396,7 @@ void SoftIsland<W>::finish(Verdict& out)
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
         const Line& line = problem_.lines[i];
-        island_.rows[line.row].impulse = memory_.line_sum[i] + line.impulse;  // line.impulse is that of restitution
+        island_.rows[line.row].impulse = memory_.line_sum[i] + line.impulse;  // that of restitution, or of joints that are held
         if (line.count > 0 && island_.rows[line.row].kind != RowKind::OneSided)
             out.residual = std::max(out.residual, std::fabs(problem_.rate(line) - island_.rows[line.row].rate));
     }

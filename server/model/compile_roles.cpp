@@ -80,7 +80,8 @@ void check_count(Compilation& c, std::size_t i, const Role& role, GivenRole& giv
     if (has > role.max) return refuse(c, i, given, given.where, "role " + role.name + " takes one participant, has " + std::to_string(has));
     // Objects that "*" denotes may be added later.
     if (given.everyone || has >= role.min) return;
-    if (!given.given) return refuse(c, i, given, c.draft(i).where, role.name + " is missing: name " + wanted);
+    const char* const further = role.many ? ", several, or '*' for all that fit" : "";
+    if (!given.given) return refuse(c, i, given, c.draft(i).where, role.name + " is missing: name " + wanted + further);
     refuse(c, i, given, given.where,
            "role " + role.name + " needs at least " + std::to_string(role.min) + " participants, has " + std::to_string(has));
 }

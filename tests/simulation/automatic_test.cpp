@@ -93,6 +93,54 @@ TEST_CASE("what joints hold together counts as an island as soon as a part of it
     }
 }
 
+TEST_CASE("thin dominoes topple one after the other, and hardly overlap")
+{
+    constexpr int kCount = 40;
+    constexpr double kThick = 0.006, kApart = 0.03;
+    std::string row;
+    for (int k = 0; k < kCount; ++k)
+    {
+        const std::string pushed = k == 0 ? " angular_velocity=\"0 3 0\"" : "";
+        row += box("d" + std::to_string(100 + k), {0.5 * kThick, 0.025, 0.05}, at({kApart * k, 0, 0.05}, {}, 0.02) + pushed);
+    }
+    Scene s(row + std::string(kGround) + gravity("*") +
+            "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" response.friction=\"0.4\"/>");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    double before = energy(s), worst = 0;
+    const double all = before;
+    while (s.simulation().time() < 2)
+    {
+        s.step();  // no contact.deep
+        worst = std::max(worst, s.simulation().stepper().report().deepest);
+        const double now = energy(s);
+        CHECK(now <= before + 1e-3 * all);
+        before = now;
+    }
+    CHECK(worst < 0.25 * kThick);
+    // The last one lies on the ground, the others on their neighbours.
+    for (int k = 0; k < kCount; ++k) CHECK(s.vec("d" + std::to_string(100 + k), "position").z < 0.02);
+    CHECK(s.simulation().stepper().report().deepest < 0.05 * kThick);
+}
+
+TEST_CASE("bodies that a joint holds inside one another collide, and a warning says what to do about it")
+{
+    const auto leg = [](const std::string& more)
+    {
+        Scene s(box("upper", {0.1, 0.1, 0.5}, at({0, 0, 2})) + box("lower", {0.1, 0.1, 0.5}, at({0, 0, 1.1})) +
+                "<component id=\"knee\" type=\"Constraint/Hinge\" a=\"upper\" b=\"lower\" anchor=\"0 0 1.55\" axis=\"0 1 0\"/>" +
+                gravity("*") + kContact + more);
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.warnings_expected = s.keep_events = true;
+        s.step(20);
+        return events_of(s, "contact.joined");
+    };
+    const std::vector<Event> warned = leg("");
+    REQUIRE(warned.size() == 1);
+    CHECK(warned[0].message.find("lower and upper collide and overlap, while knee holds them there") == 0);
+    CHECK(warned[0].message.find("<component type=\"Collision/Exclude\" a=\"lower\" b=\"upper\"/>") != std::string::npos);
+    CHECK(leg("<component id=\"apart\" type=\"Collision/Exclude\" a=\"lower\" b=\"upper\"/>").empty());
+}
+
 TEST_CASE("a fast body among many does not pass through a thin wall")
 {
     std::string still;
@@ -204,4 +252,29 @@ TEST_CASE("where it cannot be found out whether an island rests, the try leaves 
         hash[most == 0 ? 0 : 1] = s.hash();
     }
     CHECK(hash[0] == hash[1]);
+}
+
+TEST_CASE("a rope that is as long as its span begins with steps of bounded work")
+{
+    // Its joints leave it just no room to move: the solver needs very short internal steps, which locating an impact would repeat.
+    std::string rope;
+    constexpr int kLinks = 30;
+    for (int i = 0; i < kLinks; ++i)
+        rope += "<component id=\"r" + std::to_string(i) + "\" type=\"State/RigidBody\" mass=\"0.2\" position=\"" +
+                text(Vec3{0.2 * i + 0.1, 0, 0}) +
+                "\" orientation=\"axis 0 1 0 90 deg\" shape=\"Shape/Capsule\" shape.radius=\"0.05\" shape.length=\"0.1\"/>";
+    for (int i = 0; i <= kLinks; ++i)
+        rope += "<component id=\"j" + std::to_string(i) + "\" type=\"Constraint/Ball\" b=\"r" + std::to_string(std::min(i, kLinks - 1)) +
+                "\" anchor=\"" + text(Vec3{0.2 * i, 0, 0}) + "\"" + (i > 0 && i < kLinks ? " a=\"r" + std::to_string(i - 1) + "\"" : "") +
+                "/>";
+    Scene s(rope + gravity("*") + kContact);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = true;
+    std::uint64_t most = 0;
+    for (int n = 0; n < 3; ++n)
+    {
+        s.step();
+        most = std::max(most, s.simulation().stepper().report().evaluations);
+    }
+    CHECK(most < 60000);
 }

@@ -32,6 +32,9 @@ constexpr std::int64_t kMaxSubsteps = 20000;
 /// Of large groups: after so many internal steps the rest of the step is made without control of its error. A bridge whose planks are as
 /// long as its span has no smooth motion at all.
 constexpr std::int64_t kMostOfLarge = 1000;
+/// After so many, as a trial: if these have not come as far as 4 times kMostOfLarge of them would have to, the others are not made.
+constexpr std::int64_t kTrialOfLarge = 100;
+constexpr double kHopeless = static_cast<double>(kTrialOfLarge) / (4.0 * static_cast<double>(kMostOfLarge));
 
 /// In order of increasing cost.
 enum class Method : std::size_t
@@ -169,7 +172,14 @@ private:
     void advance_explicitly(double from)
     {
         say(Method::DormandPrince54);
-        const DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kMostOfLarge, m_.dormand, system_, from);
+        DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kTrialOfLarge, m_.dormand, system_, from);
+        if (counts.reached < h_ && counts.reached - from > kHopeless * (h_ - from) && !system_.interrupted())
+        {
+            const DormandPrinceCounts more =
+                advance_by_dormand_prince(h_, kTolerance, kMostOfLarge - kTrialOfLarge, m_.dormand, system_, counts.reached);
+            counts.accepted += more.accepted, counts.refused += more.refused, counts.evaluations += more.evaluations;
+            counts.reached = more.reached;
+        }
         if (!(counts.reached < h_) || system_.interrupted()) return;
         if (!trial_)
             report_gave_up(start_, row_, counts,

@@ -146,7 +146,15 @@ std::uint64_t BatchedAdvance::take_evaluations()
 {
     std::uint64_t sum = 0;
     for (Batch& batch : batches_)
-        if (batch.scratch) sum += std::exchange(batch.scratch->evaluations, 0);
+        if (batch.scratch) sum += std::exchange(batch.scratch->evaluations, 0), batch.scratch->held_bodies = 0;
+    return sum;
+}
+
+std::uint64_t BatchedAdvance::held_bodies() const
+{
+    std::uint64_t sum = 0;
+    for (const Batch& batch : batches_)
+        if (batch.scratch) sum += batch.scratch->held_bodies;
     return sum;
 }
 

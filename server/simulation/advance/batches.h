@@ -54,6 +54,8 @@ public:
     void advance();
     /// Number of force evaluations since the last call.
     std::uint64_t take_evaluations();
+    /// StageScratch::held_bodies of all batches since take_evaluations().
+    std::uint64_t held_bodies() const;
 
     /// By cluster: 0, or the part that it went to when its solver refused to advance it with others. Which clusters share a system affects
     /// the last digits of the energy ledger, so a snapshot keeps it.

@@ -193,6 +193,7 @@ private:
     std::vector<FoundRun> runs_;                ///< of found_
     std::vector<Vec3> extents_of_body_;         ///< m, about C along the axes of B: no point is further; infinite where they are not known
     std::vector<double> radius_of_body_;        ///< m, about C; infinite for planes
+    std::vector<double> thickness_of_body_;     ///< m, half of the smallest width of its shapes; infinite for planes
     std::vector<double> curve_radius_of_body_;  ///< m, of the most strongly curved shape; negative inside, infinite if there is none
     std::vector<Event> releases_;               ///< noted in this step, emitted when it is over
 

@@ -5,6 +5,7 @@
 #include "plab/surface.h"
 #include "simulation/contacts/contact_book.h"
 #include "simulation/contacts/paradox.h"
+#include "simulation/contacts/shape_width.h"
 #include "world/bounding_radius.h"
 
 namespace plab::simulation
@@ -32,6 +33,17 @@ double curve_radius(const Shapes& shapes, std::uint32_t shape)
     return least;
 }
 
+/// m: half of the smallest width of a shape, of a compound that of its thinnest part; infinite for planes and surfaces.
+double half_thickness(const Shapes& shapes, std::uint32_t shape)
+{
+    const auto of = [](const Geometry& g) {
+        return std::min({half_width_along(g, {1, 0, 0}), half_width_along(g, {0, 1, 0}), half_width_along(g, {0, 0, 1})});
+    };
+    double least = of(shapes.geometry[shape]);
+    for (const std::uint32_t part : shapes.geometry[shape].parts) least = std::min(least, of(shapes.geometry[part]));
+    return least;
+}
+
 /// m: half the size along the axes of the shape's frame; infinite for shapes that it does not know.
 Vec3 extents_of(const Geometry& g)
 {
@@ -52,13 +64,17 @@ void ContactBook::measure_bodies()
     std::vector<double> curves(host.shapes.size()), radii(host.shapes.size());
     for (std::uint32_t k = 0; k < curves.size(); ++k)
         curves[k] = curve_radius(host.shapes, k), radii[k] = world::bounding_radius(host.shapes.geometry[k]);
+    std::vector<double> thin(host.shapes.size());
+    for (std::uint32_t k = 0; k < thin.size(); ++k) thin[k] = half_thickness(host.shapes, k);
     curve_radius_of_body_.assign(bodies.size(), HUGE_VAL), radius_of_body_.assign(bodies.size(), 0.0);
+    thickness_of_body_.assign(bodies.size(), HUGE_VAL);
     extents_of_body_.assign(bodies.size(), {});
     for (std::size_t b = 0; b < bodies.size(); ++b)
         for (const Ref shape : bodies.shapes[b])
         {
             double& curve = curve_radius_of_body_[b];
             if (std::fabs(curves[shape.index]) < std::fabs(curve)) curve = curves[shape.index];
+            thickness_of_body_[b] = std::min(thickness_of_body_[b], thin[shape.index]);
             const Geometry& g = host.shapes.geometry[shape.index];
             const Vec3 p_CS = g.pose.p - bodies.center_B[b], half = extents_of(g);
             radius_of_body_[b] = std::max(radius_of_body_[b], length(p_CS) + radii[shape.index]);
@@ -80,7 +96,7 @@ void ContactBook::take_sizes(const ContactBook& whole)
     const world::Revisions now = step_.world.revisions();
     if (!whole.has_sizes_ || !whole.built_from_ || !now.keeps_bodies_since(*whole.built_from_)) return;
     extents_of_body_ = whole.extents_of_body_, radius_of_body_ = whole.radius_of_body_;
-    curve_radius_of_body_ = whole.curve_radius_of_body_;
+    curve_radius_of_body_ = whole.curve_radius_of_body_, thickness_of_body_ = whole.thickness_of_body_;
     built_from_ = now, has_sizes_ = true;
 }
 

@@ -15,13 +15,19 @@ namespace plab::simulation
 namespace
 {
 
-/// The largest distance that a dynamic body moves within the step at its present speed, in units of its radius.
-double largest_travel(const Bodies& bodies, std::span<const double> radius_of_body, double h)
+/// The largest distance that a point of a dynamic body moves within the step at its present velocity, in units of half the body's
+/// thickness: a plate that falls over is fast for its edge. Of a body that is round, the thickness reaches as far as its points.
+double largest_travel(const Bodies& bodies, std::span<const double> radius_of_body, std::span<const double> thickness_of_body, double h)
 {
     double most = 0;
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
-        if (const double radius = radius_of_body[b]; bodies.dynamic(b) && radius > 0 && std::isfinite(radius))
-            most = std::max(most, length(bodies.velocity[b]) * h / radius);
+    {
+        const double radius = radius_of_body[b];
+        if (!bodies.dynamic(b) || !(radius > 0) || !std::isfinite(radius)) continue;
+        const double thickness = thickness_of_body[b] > 0 ? std::min(thickness_of_body[b], radius) : radius;
+        const double speed = length(bodies.velocity[b]) + length(bodies.angular_velocity[b]) * (radius - thickness);
+        most = std::max(most, speed * h / thickness);
+    }
     return most;
 }
 
@@ -107,7 +113,7 @@ void ContactBook::ask_search(std::span<const PairState> pairs, std::vector<Impac
         load.island_bodies = std::max(load.island_bodies, static_cast<std::uint32_t>(island->bodies.size()));
         load.island_points = std::max(load.island_points, island->points);
     }
-    load.travel = largest_travel(step_.world.host().bodies, radius_of_body_, step_.frame.step);
+    load.travel = largest_travel(step_.world.host().bodies, radius_of_body_, thickness_of_body_, step_.frame.step);
     out.clear();
     for (const Detector& d : detectors_)
     {

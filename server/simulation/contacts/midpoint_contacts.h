@@ -13,6 +13,8 @@
 ///   n . u1 >= -4 c / h                          requires the velocity u1 at the end of the step to be tangential to the curve there
 ///                                               (Contact::turning).
 ///
+/// It requires no more than the speed at which the bodies close along n in the beginning: where a surface has a fold instead of a curve,
+/// the body would be thrown off otherwise.
 /// So a body that starts along the curve ends along it and keeps its speed and its gap, with an error of third order in h per step: the
 /// midpoint rule on the curve, of order 2. If the condition would need a pulling impulse, the impulse is zero: the body leaves the curve,
 /// at a time that is correct to order 2.

@@ -310,17 +310,27 @@ void EventLocator::detect_again(std::vector<FoundContact>& found)
     collect(found);
 }
 
-/// What responses, managers and distance queries have cost in this step so far, in units of the budget.
+/// What responses, managers, joints and distance queries have cost in this step so far, in units of the budget.
 double EventLocator::sweeps_and_queries() const
 {
-    return WorkBudget::kSweptRow * static_cast<double>(step_.report.swept_rows) + WorkBudget::kFurtherPair * step_.report.further_pairs;
+    return WorkBudget::kSweptRow * static_cast<double>(step_.report.swept_rows) + WorkBudget::kFurtherPair * step_.report.further_pairs +
+           held_bodies();
+}
+
+double EventLocator::held_bodies() const
+{
+    return WorkBudget::kHeldBody * static_cast<double>(motion_.scratch().held_bodies + advance_.batches().held_bodies());
 }
 
 /// Sets the budget to a multiple of what the step costs without event location: its groups, its known pairs, and the rows and queries
-/// so far.
+/// so far. Of the joints no more counts than most steps spend on them: where the equations of motion are so stiff that the step is dear
+/// already, each trial would be as dear again.
 void EventLocator::begin_budget()
 {
-    const double plain = static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()) + sweeps_and_queries();
+    constexpr double kMostHeld = 10'000;
+    const double held = held_bodies();
+    const double plain = static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()) + sweeps_and_queries() -
+                         std::max(0.0, held - kMostHeld);
     double multiple = 0, base = 0;
     for (const Detector& d : contacts_.detectors())
         if (d.locates)

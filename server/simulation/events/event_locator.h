@@ -152,6 +152,7 @@ private:
     void note_resting_groups();
     void begin_budget();
     double sweeps_and_queries() const;
+    double held_bodies() const;
     void answer_the_rest(std::size_t left, std::vector<FoundContact>& found);
     void report_too_many(std::size_t left);
     double overlap_tolerance(Ref a, Ref b) const;

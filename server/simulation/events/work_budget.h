@@ -18,6 +18,8 @@ public:
     static constexpr double kMultiple = 20;
     /// Cost in units of one sweep over one row of a contact or joint, and of one pair that the broad phase lists.
     static constexpr double kSweptRow = 1.0 / 32, kListedPair = 1.0 / 16;
+    /// Cost in units of a body with its joints in one evaluation of the equations of motion: a stiff group takes hundreds of these.
+    static constexpr double kHeldBody = 1.0;
     /// Cost in units of visiting one group or known pair of the scene to find out what rests on what.
     static constexpr double kGoneThrough = 1.0 / 64;
 

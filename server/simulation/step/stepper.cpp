@@ -21,6 +21,7 @@ void Stepper::run_blocks(Phase phase, world::CommandCall& call)
 void Stepper::collect_cost()
 {
     step_.report.evaluations += std::exchange(motion_.scratch().evaluations, 0) + advance_.batches().take_evaluations();
+    motion_.scratch().held_bodies = 0;
     step_.meter.stop();
     // Of a part of the scene nobody asks; the accounts are those of the whole scene, and booking them would cost more than a small part does.
     if (!part_) cost_.book(step_.meter.accounts());

@@ -249,6 +249,7 @@ void GroupSystem::evaluate(double t, double weight)
     run_forces(weight);
     if (rows_ && !rows_held_ && !minimal_)
     {
+        scratch_->held_bodies += bodies_.size();
         const CostScope scope(scratch_->meter(), scratch_->rows_ns);
         (void)rows_->react(call_.context, scratch_->wrenches);  // non-finite results are detected at the end of the advance
         if (book_.work && weight != 0) rows_->account(row_book(), weight * call_.context.dt);

@@ -35,6 +35,7 @@ public:
     std::vector<double> power;   ///< W by component; all zero between uses
     std::vector<std::uint8_t> active_bodies, active_shafts, accounted_bodies, accounted_shafts;
     std::uint64_t evaluations = 0;  ///< of forces, in this step
+    std::uint64_t held_bodies = 0;  ///< bodies that joints held in an evaluation, summed over these, in this step
     std::int64_t rows_ns = 0;       ///< ns of the present advance that its joints took, until divided among them
 
     /// The meter of the thread that uses these arrays.

@@ -1,0 +1,210 @@
+// Manager/Automatic: which method advances an island, and why.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "advance_island.h"
+#include "manager_rows.h"
+#include "plab/number_text.h"
+#include "soft_step.h"
+#include "solve_islands.h"
+
+namespace plab::managers
+{
+
+void AutomaticRows::describe(Schema& s)
+{
+    // What Direct holds still moves by rounding alone, some 1e-13 m/s: it may sleep without a loss of digits. What SoftStep holds sways.
+    constexpr double kRestsAfter = 0.5, kRestSpeed = 1e-9;  // s, m/s
+
+    s.param(max_points, "max_points", unit::one,
+            "an island of at most so many contact points and rows is solved exactly; up to 16 times as many if rows of joints are twice as "
+            "many as contact points or close a loop, as sweeps would let them stretch")
+        .or_else(80)
+        .not_negative()
+        .at_most(20000);
+    s.param(max_resting, "max_resting", unit::one,
+            "an island of at most so many contact points and rows that hardly moves is solved exactly too, if Newton's method soon finds "
+            "that it rests")
+        .or_else(12000)
+        .not_negative()
+        .at_most(20000);
+    s.param(
+         heavy, "heavy", unit::one,
+         "ratio of the heaviest to the lightest body above which sweeps would let bodies sink: such an island is solved exactly up to 16 "
+         "times as many points")
+        .or_else(20)
+        .at_least(1);
+    s.param(tolerance, "tolerance", unit::metre_per_second,
+            "largest remaining violation; with a larger one the step counts as not converged")
+        .or_else(0.1)
+        .positive();
+    s.output(resolved, "resolved", unit::one, "the methods that advanced the islands of the last step");
+    s.output(reason, "reason", unit::one, "why the larger of its islands were advanced so");
+    s.output(direct_islands, "direct_islands", unit::one, "islands that were solved exactly in the last step");
+    s.output(soft_islands, "soft_islands", unit::one, "islands that were advanced by SoftStep in the last step");
+    account.describe(s), sleep.describe(s, kRestsAfter, kRestSpeed);
+    s.scratch(memory, "memory", "working memory");
+    s.scratch(choices, "choices", "working memory");
+    s.scratch(sets, "sets", "working memory");
+}
+
+namespace
+{
+
+constexpr std::size_t kHeavyPoints = 16;  // times max_points
+/// An island at rest, or nearly so, is solved within these Newton steps. One that tumbles costs no more than they do: sweeps finish.
+constexpr Solving kAffordable{1e-12, 12, 20, 1e-12};
+/// Ends of sliding are located for a body that slides alone.
+constexpr std::size_t kSlipEnds = 4;
+/// Heaps overlap a quarter as much as with SoftStep's own default, and sway less; a row of bodies that moves comes to rest more slowly.
+constexpr double kSoftDamping = 3;
+
+/// The ratio of the heaviest to the lightest body of an island.
+double mass_ratio(const Island& island, const Bodies& bodies)
+{
+    double least = HUGE_VAL, most = 0;
+    for (const std::uint32_t b : island.bodies) least = std::min(least, bodies.mass[b]), most = std::max(most, bodies.mass[b]);
+    return most > 0 ? most / least : 1.0;
+}
+
+/// Keeps `resolved` and `reason` of the step. `context.events` is null in trials, which leave nothing behind.
+void note_method(const StepContext& context, Row row, AutomaticRows& rows, const AutomaticRows::Choice& chosen)
+{
+    if (!context.events) return;
+    if (rows.account.step[row] != context.tick) rows.direct_islands[row] = rows.soft_islands[row] = 0;
+    ++(chosen.direct ? rows.direct_islands : rows.soft_islands)[row];
+    const std::string_view used = rows.soft_islands[row] == 0 ? "Direct" : rows.direct_islands[row] == 0 ? "SoftStep" : "Direct, SoftStep";
+    if (rows.resolved[row] == used) return;
+    rows.resolved[row] = used;
+    if (chosen.direct && rows.soft_islands[row] != 0) return;
+    rows.reason[row] = std::string(chosen.direct ? "Direct: " : "SoftStep: ") + "an island has " + std::to_string(chosen.points) +
+                       " contact points and rows" + (chosen.joints > 0 ? ", " + std::to_string(chosen.joints) + " rows of joints" : "") +
+                       ", and masses up to " + rounded_text(chosen.ratio, 2) + " to 1";
+}
+
+/// Whether joints close a loop, of bodies or with the world: a rope or a bridge that is held at both ends. Rows of pure turning (gears)
+/// hold no points together. `sets`: by host row, working memory.
+bool has_loops(const Island& island, const Bodies& bodies, std::vector<std::uint32_t>& sets)
+{
+    const auto world = static_cast<std::uint32_t>(bodies.size());
+    sets.resize(bodies.size() + 1);
+    sets[world] = world;
+    for (const std::uint32_t b : island.bodies) sets[b] = b;
+    const auto root = [&](std::uint32_t i)
+    {
+        while (sets[i] != i) i = sets[i] = sets[sets[i]];
+        return i;
+    };
+    const auto place = [&](const RowBlock& block)
+    { return block.participant.facet == Facet::Body && bodies.dynamic(block.participant.index) ? block.participant.index : world; };
+    std::uint32_t joint = kNoIndex;
+    for (const ConstraintRow& row : island.rows)
+    {
+        if (row.kind != RowKind::Equality || row.count == 0 || row.count > 2 || row.component == joint || turns_only(row)) continue;
+        joint = row.component;
+        const std::uint32_t a = root(place(row.blocks[0])), b = root(row.count > 1 ? place(row.blocks[1]) : world);
+        if (a == b) return true;
+        sets[a] = b;
+    }
+    return false;
+}
+
+/// How far a body of the island moves in a step at its present speed, in units of the island's size.
+double travel_of(const Island& island, const Bodies& bodies)
+{
+    double most = 0;
+    for (const std::uint32_t b : island.bodies)
+        most = std::max(most, length(bodies.velocity[b]) + island.size * length(bodies.angular_velocity[b]));
+    return most * island.h / island.size;
+}
+
+/// What to spend on the question whether an island stays where it is, in products of blocks. One that does not move has been solved exactly
+/// in the last step, which takes few Newton steps again, or has been put there. One that SoftStep holds sways; it may be in equilibrium all
+/// the same, which is worth a small try now and then. The state alone tells when, so that a run that is rewound or restored tries in the
+/// same steps.
+std::size_t worth_of_rest(const Island& island, const Bodies& bodies, Tick tick)
+{
+    constexpr double kStill = 1e-9, kSlow = 0x1p-8;
+    constexpr std::size_t kEvery = 64, kOfStill = 12'000'000, kOfSlow = 400'000;  // about 1 s and 30 ms at most
+    if (island.bodies.empty()) return 0;
+    const double travel = travel_of(island, bodies);
+    if (travel <= kStill) return kOfStill;
+    const bool due = (static_cast<std::size_t>(tick) + island.contacts.size() + island.bodies.size()) % kEvery == 0;
+    return travel <= kSlow && due ? kOfSlow : 0;
+}
+
+AutomaticRows::Choice choose_method(const StepContext& context, const Island& island, const Bodies& bodies, AutomaticRows& rows, Row row)
+{
+    const auto most = static_cast<std::size_t>(rows.max_points[row]), resting = static_cast<std::size_t>(rows.max_resting[row]);
+    const auto joints = static_cast<std::size_t>(std::ranges::count(island.rows, RowKind::Equality, &ConstraintRow::kind));
+    const std::size_t points = island.contacts.size() + island.rows.size() - joints;
+    const double ratio = mass_ratio(island, bodies);
+    // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time. Where
+    // contact points prevail, as in a heap of jointed bodies, each of them may change its state in each iteration, which costs far more.
+    // A chain that is held at both ends carries its load by tension in all of its joints at once, whatever lies on it.
+    const bool small = points + joints <= most, affordable = points <= kHeavyPoints * most;
+    const bool yields = !small && affordable &&
+                        (ratio >= rows.heavy[row] || 2 * points <= joints || (joints > 0 && has_loops(island, bodies, rows.sets[row])));
+    const bool direct = small || yields, asks = !direct && points + joints <= resting;
+    return {direct, asks ? worth_of_rest(island, bodies, context.tick) : 0, points, joints, ratio};
+}
+
+/// Solves an island exactly if that shows within `products` that it rests; otherwise nothing has been done, and the result is false.
+bool holds_at_rest(std::size_t products, Island& island, Bodies& bodies, Shafts& shafts, AutomaticRows::Memory& memory)
+{
+    const Solving how{.tolerance = 1e-12, .most_steps = 30, .most_sweeps = 0, .rounds = 0, .most_products = products};
+    StepChoices choices;
+    choices.or_nothing = true;
+    choices.correction_share = 0.2;  // what SoftStep has let sink is lifted slowly
+    Exactly method(memory.direct.newton, how);
+    const Verdict verdict = advance_island(island, bodies, shafts, method, choices, memory.direct.step);
+    if (verdict.put_back) return false;
+    report(island, verdict);
+    return true;
+}
+
+/// Advances an island; `choice` becomes what has been done.
+void advance_by_choice(AutomaticRows::Choice& choice, Island& island, Bodies& bodies, Shafts& shafts, AutomaticRows::Memory& memory,
+                       Workers* workers)
+{
+    memory.direct.step.problem.workers = memory.soft.step.problem.workers = workers;
+    if (choice.tries > 0 && holds_at_rest(choice.tries, island, bodies, shafts, memory))
+    {
+        choice.direct = true;
+        return;
+    }
+    if (!choice.direct)
+    {
+        SoftChoices choices;
+        choices.damping_ratio = kSoftDamping;
+        return report(island, advance_softly(island, bodies, shafts, choices, memory.soft));
+    }
+    Exactly method(memory.direct.newton, kAffordable);
+    StepChoices choices;
+    choices.slip_ends_up_to = kSlipEnds;
+    report(island, advance_island(island, bodies, shafts, method, choices, memory.direct.step));
+}
+
+}  // namespace
+
+void solve_all_automatically(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Shafts& shafts,
+                             std::span<Island> islands)
+{
+    std::vector<AutomaticRows::Choice>& choices = rows.choices[row];
+    choices.clear();
+    for (const Island& island : islands) choices.push_back(choose_method(context, island, bodies, rows, row));
+    solve_all(
+        context, bodies, shafts, islands, rows.memory[row], [&](std::size_t i) { return !choices[i].direct; },
+        [&](std::size_t i, Island& island, AutomaticRows::Memory& memory)
+        { advance_by_choice(choices[i], island, bodies, shafts, memory, context.workers); });
+    for (std::size_t i = 0; i < islands.size(); ++i)
+    {
+        note_method(context, row, rows, choices[i]);
+        islands[i].converged = islands[i].residual <= rows.tolerance[row];
+        rows.account.add(context, row, islands[i], rows.tolerance[row]);
+    }
+}
+
+}  // namespace plab::managers

@@ -1,0 +1,53 @@
+/// What the managers do with the islands of a call, each by its method.
+#pragma once
+
+#include <span>
+
+#include "island_team.h"
+#include "newton.h"
+#include "stepping.h"
+
+namespace plab::managers
+{
+
+/// Finds impulses by Newton's method.
+class Exactly final : public Method
+{
+public:
+    Exactly(NewtonSolver& newton, const Solving& how) : newton_(newton), how_(how) {}
+    Verdict find_impulses(Problem& problem) override { return verdict(newton_.solve(problem, how_)); }
+    Verdict find_displacements(Problem& problem, double tolerance) override
+    {
+        Solving how = how_;
+        how.tolerance = 0.1 * tolerance;
+        return verdict(newton_.solve(problem, how));
+    }
+
+private:
+    static Verdict verdict(const Solved& s) { return {s.steps + s.sweeps, s.residual, s.converged, s.fell_back}; }
+
+    NewtonSolver& newton_;
+    Solving how_;
+};
+
+inline void report(Island& island, const Verdict& verdict)
+{
+    island.iterations = verdict.iterations, island.residual = verdict.residual;
+    island.converged = verdict.converged, island.fell_back = verdict.fell_back;
+}
+
+/// Calls solve(number, island, memory) for each island (island_team.h). An interrupted solve leaves its memory in an undefined state, so it
+/// is cleared.
+template <class Memory, class Divides, class Solve>
+void solve_all(const StepContext& context, const Bodies& bodies, const Shafts& shafts, std::span<Island> islands, IslandTeam<Memory>& team,
+               const Divides& divides, const Solve& solve)
+{
+    team.advance(islands, {.bodies = bodies.size(), .shafts = shafts.size()}, context.workers, divides,
+                 [&](std::size_t i, Memory& memory)
+                 {
+                     if (!islands[i].interrupted()) solve(i, islands[i], memory);
+                 });
+    if (context.interrupted()) team.clear();
+}
+
+}  // namespace plab::managers
