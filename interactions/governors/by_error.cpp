@@ -120,12 +120,6 @@ double steps_of_trial(const StepContext& context, Row row, const ErrorRows& gove
     return std::min(kMost, goes_on ? std::min(whole, std::max(kFewest, std::ceil(whole / 4))) : whole);
 }
 
-/// Of a trial, in steps of the finer level: to set it up, and the course of the cheaper one, take about as long as four of them.
-double cost_of_trial(const StepContext& context, Row row, const ErrorRows& governors)
-{
-    return steps_of_trial(context, row, governors) + 4;
-}
-
 /// Promises that were judged in one look, and those of them that were broken.
 struct Judged
 {
@@ -193,8 +187,7 @@ void measure(const StepContext& context, Row row, std::size_t k, double scale, L
     const double likely = error * governors.safety[row];
     const double longest = answers_contacts(governors.watch.levels[row]) ? 1.0 : governors.patience[row];
     double longer = likely > 0 ? std::clamp(std::sqrt(bound / likely), 1.0, longest) : std::isnan(likely) ? 1 : longest;
-    governors.spent_steps[row] += static_cast<double>(of.tried()) * cost_of_trial(context, row, governors);
-    if (level == look.finest()) longer = std::max(longer, kIdle * std::clamp(std::sqrt(excess), 1.0, kSeldom) * governors.reluctance[row]);
+    if (level == look.finest()) longer = std::max(longer, kIdle * std::clamp(std::sqrt(excess), 1.0, kSeldom));
     const double then = context.time + every * (waits ? 1 : longer);
     entry = place_of(next, id);
     if (entry != next.end() && entry->name == id)
@@ -222,22 +215,6 @@ void allow_trials(const StepContext& context, Row row, const Look& look, ErrorRo
     const double steps = std::max(1.0, period_of(row, governors) / context.dt);
     const double more = governors.share[row] * steps * static_cast<double>(look.watched().size());
     governors.allowance[row] = std::min(governors.allowance[row] + more, 2 * more);
-}
-
-/// Trials have to pay: what they cost, in steps of a component with a finer level, is to be less than what the levels save that they
-/// allow. Where it is not, measuring becomes rare, by a factor of up to kMostReluctant. `promised`: components with a cheaper level than
-/// the most exact one, by a measurement.
-void weigh_trials(const StepContext& context, Row row, std::size_t promised, std::size_t watched, ErrorRows& governors)
-{
-    constexpr double kSaves = 0.7;  // of a step with a finer level
-    constexpr double kFades = 1.0 / 16, kMostReluctant = 16, kChange = 1.5;
-    double &spent = governors.spent_steps[row], &saved = governors.saved_steps[row];
-    constexpr double kCredit = 0.5;  // of all components, which may be tried before anything is saved
-    if (saved == 0) saved = kCredit * static_cast<double>(watched) * cost_of_trial(context, row, governors);
-    saved += static_cast<double>(promised) * std::max(1.0, period_of(row, governors) / context.dt);
-    double& reluctance = governors.reluctance[row];
-    reluctance = std::clamp(kSaves * saved < spent ? reluctance * kChange : reluctance / kChange, 1.0, kMostReluctant);
-    spent -= kFades * spent, saved -= kFades * saved;
 }
 
 /// What is not in the sample.
@@ -294,8 +271,6 @@ public:
 
 private:
     Due those_in_sight();
-    double put_off(Entries::iterator place, std::size_t k);
-    bool is_reluctant() const { return !samples_ && g_.reluctance[row_] >= 2; }
     void pass_over(const std::pair<double, std::size_t>& waits);
     void doubt_all(const Due& waiting, std::size_t from);
     double scale_of(std::size_t k) const
@@ -326,24 +301,9 @@ Due ErrorLook::those_in_sight()
         const std::string_view id = control_.id_of(look_.watched()[k].component);
         const auto entry = place_of(g_.next[row_], id);
         const bool known = entry != g_.next[row_].end() && entry->name == id;
-        out.emplace_back(known ? std::get<double>(entry->value) : is_reluctant() ? put_off(entry, k) : -1.0, k);
+        out.emplace_back(known ? std::get<double>(entry->value) : -1, k);
     }
     return out;
-}
-
-/// Where trials do not pay, a component gets the most exact level instead, and is measured later, one after the other. When (s).
-double ErrorLook::put_off(Entries::iterator place, std::size_t k)
-{
-    constexpr std::size_t kParts = 8;
-    const double part = static_cast<double>(k % kParts + 1) / kParts;
-    const double then = context_.time + kIdle * g_.watch.every[row_] * g_.reluctance[row_] * part;
-    const std::string_view id = control_.id_of(look_.watched()[k].component);
-    if (place != g_.next[row_].end() && place->name == id)
-        place->value = then;
-    else
-        g_.next[row_].insert(place, {std::string(id), then});
-    if (look_.may_choose(k, look_.finest())) (void)look_.choose(k, look_.finest(), "to measure errors does not pay at present");
-    return then;
 }
 
 /// What is not measured in this look.
@@ -352,7 +312,6 @@ void ErrorLook::pass_over(const std::pair<double, std::size_t>& waits)
     const auto [at, k] = waits;
     if (at > now_) return;
     if (samples_) return follow_sample(row_, k, sample_, look_, g_);
-    if (is_reluctant()) return (void)put_off(place_of(g_.next[row_], control_.id_of(look_.watched()[k].component)), k);
     const bool too_long = at < 0 || at < context_.time - 2 * g_.watch.every[row_];
     if (too_long && look_.may_choose(k, look_.finest())) (void)look_.choose(k, look_.finest(), why_unmeasured(at >= 0, by_sight_));
 }
@@ -377,13 +336,10 @@ void ErrorLook::run()
     g_.confidence[row_] = confidence_of(g_.held[row_], g_.judged[row_]);
     Due waiting = those_in_sight();
     if (waiting.empty()) return;
-    std::size_t measured = put_in_order(waiting, static_cast<std::size_t>(g_.looks[row_]), now_);
-    if (is_reluctant()) measured = static_cast<std::size_t>(std::ceil(static_cast<double>(measured) / g_.reluctance[row_]));
+    const std::size_t measured = put_in_order(waiting, static_cast<std::size_t>(g_.looks[row_]), now_);
     if (measured > 0) g_.worst[row_] = 0;
     if (samples_) allow_trials(context_, row_, look_, g_);
     Judged judged;
-    const auto is_promised = [&](const auto& w) { return w.first >= 0 && look_.watched()[w.second].level < look_.finest(); };
-    const auto promised = static_cast<std::size_t>(std::count_if(waiting.begin(), waiting.end(), is_promised));
     for (std::size_t n = 0; n < waiting.size(); ++n)
     {
         const std::size_t k = waiting[n].second;
@@ -393,7 +349,6 @@ void ErrorLook::run()
             pass_over(waiting[n]);
     }
     learn(judged, row_, g_);
-    if (!samples_) weigh_trials(context_, row_, promised, look_.watched().size(), g_);
     if (!samples_ && judged.is_burst(g_.target[row_])) doubt_all(waiting, measured);
 }
 

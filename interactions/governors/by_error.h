@@ -14,17 +14,15 @@ struct ErrorRows
     Column<std::string> unit;  ///< of the bound: m, rad, W, pixels
     Column<double> interval, target;
     Column<std::int64_t> looks;
-    Column<double> share;                     ///< trial steps for each step that watched components make; 0: no limit
-    Column<double> look_ahead, margin;        ///< s, rad: of pixels, as those of Governor/Visibility
-    Column<Entries> next;                     ///< s: when a component is measured again, by id
-    Column<double> safety;                    ///< factor
-    Column<double> patience;                  ///< factor of `every`: what is far below the bound is measured again after at most this
-    Column<std::int64_t> judged, held;        ///< promises: see keep_error()
-    Column<double> allowance;                 ///< trial steps that may be made yet
-    Column<double> spent_steps, saved_steps;  ///< by trials; by cheaper levels that these allowed; older ones fade
-    Column<double> reluctance;                ///< factor: how much more rarely it measures, because trials do not pay
-    Column<double> enough;                    ///< for the host: see LevelBook (0: no limit)
-    Column<Reals> sampled, sampled_held;      ///< by level: components that were sampled, and those that kept the bound; older ones fade
+    Column<double> share;                 ///< trial steps for each step that watched components make; 0: no limit
+    Column<double> look_ahead, margin;    ///< s, rad: of pixels, as those of Governor/Visibility
+    Column<Entries> next;                 ///< s: when a component is measured again, by id
+    Column<double> safety;                ///< factor
+    Column<double> patience;              ///< factor of `every`: what is far below the bound is measured again after at most this
+    Column<std::int64_t> judged, held;    ///< promises: see keep_error()
+    Column<double> allowance;             ///< trial steps that may be made yet
+    Column<double> enough;                ///< for the host: see LevelBook (0: no limit)
+    Column<Reals> sampled, sampled_held;  ///< by level: components that were sampled, and those that kept the bound; older ones fade
     Column<double> confidence, worst;
     Column<std::int64_t> measured, unknown;
 

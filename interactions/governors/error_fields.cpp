@@ -40,12 +40,6 @@ void ErrorRows::describe(Schema& schema)
         .initially(3);
     schema.state(judged, "judged", unit::one, "measurements of a level that was measured before");
     schema.state(held, "held", unit::one, "those of them that found the error still below the bound");
-    schema.state(spent_steps, "spent_steps", unit::one, "steps of trials, of the finer level; older ones fade");
-    schema.state(saved_steps, "saved_steps", unit::one, "steps with cheaper levels that trials allowed; older ones fade");
-    schema
-        .state(reluctance, "reluctance", unit::one,
-               "factor by which what has the most exact level is measured more rarely, because trials cost more than they save")
-        .initially(1);
     schema.state(allowance, "allowance", unit::one, "trial steps that may be made within `share`");
     schema.state(sampled, "sampled", unit::one, "with `share`: components that were sampled, by level; older ones fade");
     schema.state(sampled_held, "sampled_held", unit::one, "those of them whose error was below the bound");

@@ -8,7 +8,7 @@ namespace plab::governors
 namespace
 {
 
-constexpr double kMemory = 8;           ///< trials: older ones fade, because the motion of all changes with time
+constexpr double kMemory = 12;          ///< trials: older ones fade, because the motion of all changes with time
 constexpr std::size_t kMostKinds = 64;  ///< further ones count as the last one
 constexpr double kHearsay = 0.5;        ///< trials, that the first one of another level counts
 constexpr double kLeast = 1e-12;        ///< m, by which a finer level is at least taken to be better

@@ -57,6 +57,8 @@ Verdict SoftIsland<W>::run()
         for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
     }
     give_back();
+    if (bounces_)
+        for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
     const bool holds = has_joints(island_) && !island_.interrupted();
     if (holds) hold_joints();
     problem_.refresh_spins(bodies_);
@@ -69,8 +71,8 @@ Verdict SoftIsland<W>::run()
 template <int W>
 void SoftIsland<W>::hold_joints()
 {
-    for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;  // that of restitution
     hold_joint_speeds(problem_, island_, bodies_, shafts_, memory_.newton);
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
 }
 
 template <int W>
@@ -396,7 +398,7 @@ void SoftIsland<W>::finish(Verdict& out)
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
         const Line& line = problem_.lines[i];
-        island_.rows[line.row].impulse = memory_.line_sum[i] + line.impulse;  // that of restitution, or of joints that are held
+        island_.rows[line.row].impulse = memory_.line_sum[i];
         if (line.count > 0 && island_.rows[line.row].kind != RowKind::OneSided)
             out.residual = std::max(out.residual, std::fabs(problem_.rate(line) - island_.rows[line.row].rate));
     }

@@ -71,7 +71,7 @@ TEST_CASE("by distance: before anything has run nothing is known, and later what
     CHECK(has(changes[0].message, "; cost unknown -> unknown, error unknown -> unknown"));
     s.run(0.5);
     move_eye(s, 10);
-    s.run(0.5);
+    s.run(1);
     changes = changes_of(s, "near.solver");
     REQUIRE(changes.size() == 2);
     // The other one has had the cheapest level in the meantime, so the account of its type tells the cost.
@@ -91,9 +91,9 @@ TEST_CASE("by sight: what the type accounts for as its error is told for the lev
     Scene s(scene);
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = true;
-    s.step();
     s.run(0.3);
-    for (const double x : {100.0, 0.0, 100.0}) move_eye(s, x), s.run(0.5);
+    double until = 0.3;
+    for (const double x : {100.0, 0.0, 100.0}) move_eye(s, x), s.run(until += 0.3);
     const std::vector<Event> changes = changes_of(s, "near.solver");
     REQUIRE(changes.size() == 4);
     CHECK(changes[3].values[kCostBefore] > 0);

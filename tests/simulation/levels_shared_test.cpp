@@ -1,6 +1,4 @@
 // What several governors do at the same boundary, and how a budget spreads what it exchanges.
-#include <memory>
-
 #include "simulation/governed.h"
 #include "support/text.h"
 
@@ -93,41 +91,6 @@ TEST_CASE("a budget: as long as it is not known what an exchange costs, a few te
     CHECK(count_at(s, 1) == 40);
 }
 
-TEST_CASE("an error: where trials cost more than what they allow saves, they become rare; where they pay they do not")
-{
-    const auto run = [](const char* bound)
-    {
-        std::string scene = springs_under_budget(12, "");
-        scene = scene.substr(0, scene.rfind("<component id=\"lod\"")) +
-                "<component id=\"lod\" type=\"Governor/Error\" watches=\"*.solver\" levels=\"" + kLadder + "\" bound=\"" + bound +
-                "\" looks=\"12\" every=\"0.05\" interval=\"0.25\" dwell=\"0\"/>";
-        auto s = std::make_unique<Scene>(scene);
-        REQUIRE_MESSAGE(s->loaded(), s->error());
-        s->run(2);
-        return s;
-    };
-    const auto tight = run("1e-13"), loose = run("10");
-    CHECK(count_at(*tight, 2) == 12);
-    CHECK(tight->real("lod", "reluctance") == 16);
-    CHECK(count_at(*loose, 0) == 12);
-    CHECK(loose->real("lod", "reluctance") == 1);
-    const auto measured = [&] { return std::get<std::int64_t>(tight->get("lod", "measured")); };
-    const std::int64_t before = measured();
-    tight->run(8);
-    CHECK(measured() - before <= 3 * 12);  // each once at most: 12.8 s are between two measurements
-    // What comes under the governor then waits, with the most exact level.
-    const auto more = test::compile_text(
-        test::whole_scene("<component id=\"guest\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" position=\"0 50 0\" "
-                          "solver=\"Solver/SemiImplicitEuler\"/>"),
-        "request.xml", &tight->simulation().world().scene());
-    REQUIRE(more.ok());
-    REQUIRE(tight->ask(AddOperation{*more}).done);
-    tight->run(8.2);
-    const LevelInfo told = level(tight->simulation().levels().levels(), *tight, "guest.solver");
-    CHECK(told.level == 2);
-    CHECK(told.reason == "to measure errors does not pay at present");
-}
-
 TEST_CASE("what was exact until now is far more wrong with a cheap level than what had it all along, because that damps stiff springs")
 {
     // A lamp of scenes/city.xml.
@@ -152,6 +115,6 @@ TEST_CASE("what was exact until now is far more wrong with a cheap level than wh
     {
         exact.run(time), cheap.run(time);
         CHECK_MESSAGE(error(exact) > 0.3, time);  // m, in 0.25 s
-        CHECK_MESSAGE(error(cheap) < 0.1 * error(exact), time);
+        CHECK_MESSAGE(error(cheap) < 0.15 * error(exact), time);
     }
 }

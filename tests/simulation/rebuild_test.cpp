@@ -250,7 +250,7 @@ TEST_CASE("an exchange of solvers or answers leaves the locator of events as it 
         kept.step(17), derived.step(17);
         REQUIRE(difference(kept.simulation(), derived.simulation()) == "");
     }
-    CHECK(kept.vec("ball0", "position").x > 0.3);
+    CHECK(kept.vec("ball0", "position").x > 0.15);  // it rolls from 0.05 m, and bounces
     CHECK(kept.vec("ball0", "position").z < 0.35);
 }
 

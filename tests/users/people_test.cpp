@@ -19,7 +19,11 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 class Device
 {
 public:
-    explicit Device(Scene& scene) : scene_(scene), people_(scene.simulation()) { client_[0] = 7; }
+    explicit Device(Scene& scene) : scene_(scene), people_(scene.simulation())
+    {
+        client_[0] = 7;
+        REQUIRE(scene.ask(simulation::RateOperation{1}).done);  // simulated time is real time
+    }
     /// Times in ms; `stamp` by a clock of its own.
     void send(std::uint64_t number, double stamp, double arrived, double now)
     {
