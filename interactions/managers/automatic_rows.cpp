@@ -20,7 +20,7 @@ void AutomaticRows::describe(Schema& s)
 
     s.param(max_points, "max_points", unit::one,
             "an island of at most so many contact points and rows is solved exactly; up to 16 times as many if rows of joints are twice as "
-            "many as contact points or close a loop, as sweeps would let them stretch")
+            "many as contact points, as sweeps would let them stretch")
         .or_else(80)
         .not_negative()
         .at_most(20000);
@@ -47,7 +47,6 @@ void AutomaticRows::describe(Schema& s)
     account.describe(s), sleep.describe(s, kRestsAfter, kRestSpeed);
     s.scratch(memory, "memory", "working memory");
     s.scratch(choices, "choices", "working memory");
-    s.scratch(sets, "sets", "working memory");
 }
 
 namespace
@@ -84,33 +83,6 @@ void note_method(const StepContext& context, Row row, AutomaticRows& rows, const
                        ", and masses up to " + rounded_text(chosen.ratio, 2) + " to 1";
 }
 
-/// Whether joints close a loop, of bodies or with the world: a rope or a bridge that is held at both ends. Rows of pure turning (gears)
-/// hold no points together. `sets`: by host row, working memory.
-bool has_loops(const Island& island, const Bodies& bodies, std::vector<std::uint32_t>& sets)
-{
-    const auto world = static_cast<std::uint32_t>(bodies.size());
-    sets.resize(bodies.size() + 1);
-    sets[world] = world;
-    for (const std::uint32_t b : island.bodies) sets[b] = b;
-    const auto root = [&](std::uint32_t i)
-    {
-        while (sets[i] != i) i = sets[i] = sets[sets[i]];
-        return i;
-    };
-    const auto place = [&](const RowBlock& block)
-    { return block.participant.facet == Facet::Body && bodies.dynamic(block.participant.index) ? block.participant.index : world; };
-    std::uint32_t joint = kNoIndex;
-    for (const ConstraintRow& row : island.rows)
-    {
-        if (row.kind != RowKind::Equality || row.count == 0 || row.count > 2 || row.component == joint || turns_only(row)) continue;
-        joint = row.component;
-        const std::uint32_t a = root(place(row.blocks[0])), b = root(row.count > 1 ? place(row.blocks[1]) : world);
-        if (a == b) return true;
-        sets[a] = b;
-    }
-    return false;
-}
-
 /// How far a body of the island moves in a step at its present speed, in units of the island's size.
 double travel_of(const Island& island, const Bodies& bodies)
 {
@@ -135,7 +107,8 @@ std::size_t worth_of_rest(const Island& island, const Bodies& bodies, Tick tick)
     return travel <= kSlow && due ? kOfSlow : 0;
 }
 
-AutomaticRows::Choice choose_method(const StepContext& context, const Island& island, const Bodies& bodies, AutomaticRows& rows, Row row)
+AutomaticRows::Choice choose_method(const StepContext& context, const Island& island, const Bodies& bodies, const AutomaticRows& rows,
+                                    Row row)
 {
     const auto most = static_cast<std::size_t>(rows.max_points[row]), resting = static_cast<std::size_t>(rows.max_resting[row]);
     const auto joints = static_cast<std::size_t>(std::ranges::count(island.rows, RowKind::Equality, &ConstraintRow::kind));
@@ -143,11 +116,8 @@ AutomaticRows::Choice choose_method(const StepContext& context, const Island& is
     const double ratio = mass_ratio(island, bodies);
     // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time. Where
     // contact points prevail, as in a heap of jointed bodies, each of them may change its state in each iteration, which costs far more.
-    // A chain that is held at both ends carries its load by tension in all of its joints at once, whatever lies on it.
-    const bool small = points + joints <= most, affordable = points <= kHeavyPoints * most;
-    const bool yields = !small && affordable &&
-                        (ratio >= rows.heavy[row] || 2 * points <= joints || (joints > 0 && has_loops(island, bodies, rows.sets[row])));
-    const bool direct = small || yields, asks = !direct && points + joints <= resting;
+    const bool yields = ratio >= rows.heavy[row] || 2 * points <= joints;
+    const bool direct = points + joints <= most || (yields && points <= kHeavyPoints * most), asks = !direct && points + joints <= resting;
     return {direct, asks ? worth_of_rest(island, bodies, context.tick) : 0, points, joints, ratio};
 }
 

@@ -87,7 +87,7 @@ void solve_all_softly(const StepContext& context, Row row, SoftStepRows& rows, B
 ///
 ///   an island of at most `max_points` contact points and rows                     Direct
 ///   with bodies that are `heavy` times heavier than others, at most 16 x as many  Direct      (sweeps would let them sink)
-///   with rows of joints twice as many as contact points, or that close a loop     Direct      (sweeps would let them stretch)
+///   with rows of joints twice as many as contact points                           Direct      (sweeps would let them stretch)
 ///   that rests, of at most `max_resting`, as Newton's method soon finds           Direct
 ///   otherwise                                                                     SoftStep    (8 sub-steps)
 ///
@@ -116,7 +116,6 @@ struct AutomaticRows
     };
     Column<IslandTeam<Memory>> memory;
     Column<std::vector<Choice>> choices;  ///< by island
-    Column<std::vector<std::uint32_t>> sets;
 
     void describe(Schema& schema);
 };

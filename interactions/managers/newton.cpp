@@ -262,12 +262,6 @@ void NewtonSolver::hold_joints(Problem& problem, double tolerance)
     }
 }
 
-void NewtonSolver::solve_joints(Problem& problem, double tolerance)
-{
-    matrix_.shape(problem);
-    hold_joints(problem, tolerance);
-}
-
 /// Joints that hold remove energy from what the other impulses leave, but these were found for joints that yield. If more energy results
 /// than there was, they are halved, and dropped in the end.
 void NewtonSolver::hold_joints_without_gain(Problem& problem, double tolerance)

@@ -56,9 +56,6 @@ public:
     /// Changes the present impulses to those of the contact law. The velocities of the movers agree with the impulses before and
     /// afterwards.
     Solved solve(Problem& problem, const Solving& how);
-    /// Sets the impulses of the joints so that these hold to `tolerance`, with the impulses of all others as they are. One factorisation of
-    /// the matrix of the joints, which takes a time linear in their number where they form trees.
-    void solve_joints(Problem& problem, double tolerance);
 
 private:
     struct Law

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "joint_hold.h"
+#include "stepping.h"
 
 namespace plab::managers
 {
@@ -21,7 +21,6 @@ struct SoftChoices
 struct SoftMemory
 {
     StepMemory step;
-    NewtonSolver newton;               ///< of the joints alone
     std::vector<SoftPoint<1>> single;  ///< parallel to the points of Problem::single
     std::vector<SoftPoint<4>> fours;
     /// What is special about each contact.
@@ -90,7 +89,6 @@ private:
     double bounce(double share);
     void bounce_with_limits(double share);
     void give_back();
-    void hold_joints();
     void finish(Verdict& out);
 
     Island& island_;

@@ -59,20 +59,9 @@ Verdict SoftIsland<W>::run()
     give_back();
     if (bounces_)
         for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
-    const bool holds = has_joints(island_) && !island_.interrupted();
-    if (holds) hold_joints();
     problem_.refresh_spins(bodies_);
     finish(out);
-    if (holds) close_joints(problem_, island_, bodies_, shafts_, memory_.newton);
     return out;
-}
-
-/// Sweeps leave the joints with speeds, and so with errors. They are held exactly at the end of the step (joint_hold.h).
-template <int W>
-void SoftIsland<W>::hold_joints()
-{
-    hold_joint_speeds(problem_, island_, bodies_, shafts_, memory_.newton);
-    for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
 }
 
 template <int W>

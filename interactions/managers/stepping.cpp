@@ -81,7 +81,12 @@ Verdict settle_joints(Problem& problem, const Island& island, Bodies& bodies, Sh
 {
     const auto is_joint = [&](const Line& line) { return island.rows[line.row].kind == RowKind::Equality; };
     if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint)) return {};
-    set_joint_targets(problem, island);
+    for (Point& p : problem.points) p.least = kFar;
+    for (Line& line : problem.lines)
+    {
+        line.target = island.rows[line.row].rate;
+        line.most = is_joint(line) ? HUGE_VAL : 0.0, line.least = -line.most;
+    }
     const Verdict out = method.find_impulses(problem);
     problem.write_speeds(bodies, shafts);
     problem.read_speeds(bodies, shafts);
@@ -244,21 +249,22 @@ void displace(const Problem& problem, Bodies& bodies, Shafts& shafts)
     }
 }
 
+/// Whether the error of the row is an angle.
 bool turns_only(const ConstraintRow& row)
 {
     return std::all_of(row.blocks.begin(), row.blocks.begin() + row.count, [](const RowBlock& b) { return b.linear == Vec3{}; });
 }
 
-void set_joint_targets(Problem& problem, const Island& island)
+namespace
 {
-    for (Point& p : problem.points) p.least = kFar;
-    for (Line& line : problem.lines)
-    {
-        line.target = island.rows[line.row].rate;
-        line.most = island.rows[line.row].kind == RowKind::Equality ? HUGE_VAL : 0.0, line.least = -line.most;
-    }
-}
 
+/// Errors of joints are linear in the displacements only for small turns. What remains after a correction is corrected again while it is
+/// more than this fraction of the island's size (or rad), or a chain of light links under a heavy load would come apart. Without a limit on
+/// turns, a taut chain would be thrown from one side to the other.
+constexpr double kJointsApart = 0x1p-11;
+constexpr int kMostCorrections = 10;
+
+/// Sets the displacements that would close the joints and stops; returns the largest of them.
 double set_displacements_of_lines(Problem& problem, const Island& island, double length)
 {
     double worst = 0;
@@ -273,6 +279,12 @@ double set_displacements_of_lines(Problem& problem, const Island& island, double
     return worst;
 }
 
+double displacement_of(const Contact& c, const StepChoices& choices)
+{
+    return (c.depth - choices.slop) * (c.depth > choices.slop ? choices.correction_share : 1.0);
+}
+
+/// Shortens the displacements where a body would turn too far for the errors of joints to be linear.
 void limit_turns(Problem& problem)
 {
     constexpr double kMostTurn = 0.25;  // rad
@@ -281,41 +293,6 @@ void limit_turns(Problem& problem)
         if (!problem.anchors[i].shaft) most = std::max(most, length(problem.movers[i].w));
     if (most <= kMostTurn) return;
     for (Mover& m : problem.movers) m.v = m.v * (kMostTurn / most), m.w = m.w * (kMostTurn / most);
-}
-
-namespace
-{
-
-double displacement_of(const Contact& c, const StepChoices& choices)
-{
-    return (c.depth - choices.slop) * (c.depth > choices.slop ? choices.correction_share : 1.0);
-}
-
-/// How far the worst joint is from holding, m (rad times `length`).
-double largest_error(const Island& island, double length)
-{
-    double worst = 0;
-    for (const ConstraintRow& row : island.rows)
-        if (row.kind == RowKind::Equality) worst = std::max(worst, std::fabs(row.error) * (turns_only(row) ? length : 1));
-    return worst;
-}
-
-/// Joints that are apart after the move are speeds that the rows at its start did not see: a taut chain resists a push across it only once
-/// it sags. These speeds are stopped where the joints are apart, with those of what presses on the chain, as in a plastic impact. Where the
-/// joints have been closed, the rows would not see them either, and the chain would keep speeds at which it does not move.
-Verdict stop_what_parts_joints(Problem& problem, const Island& island, Bodies& bodies, Shafts& shafts, Method& method)
-{
-    problem.turn_with(bodies);
-    problem.turn_lines();
-    problem.read_speeds(bodies, shafts);
-    problem.clear_impulses();
-    problem.apply_impulses();
-    set_joint_targets(problem, island);
-    for (std::size_t i = 0; i < problem.points.size(); ++i)
-        if (const Contact& c = island.contacts[i]; c.depth >= 0 || c.impulse != Vec3{}) problem.points[i].least = 0;
-    const Verdict out = method.find_impulses(problem);
-    problem.write_speeds(bodies, shafts);
-    return out;
 }
 
 Verdict displace_by(Problem& problem, double tolerance, Bodies& bodies, Shafts& shafts, Method& method, bool limits)
@@ -339,7 +316,6 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
     island.motion->refresh_depths();
     if (!island.rows.empty()) island.motion->refresh_rows();
     const double length = island.bodies.empty() ? 1 : island.size;  // islands of shafts alone have errors in rad
-    if (largest_error(island, length) > kJointsApart * length) (void)stop_what_parts_joints(problem, island, bodies, shafts, method);
     double worst = 0;
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {

@@ -77,19 +77,6 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
 void set_targets(Problem& problem, const Island& island, double h, double slop, std::span<const double> passing = {});
 /// The same for the rows alone.
 void set_line_targets(Problem& problem, const Island& island, double h);
-/// Whether the error of the row is an angle.
-bool turns_only(const ConstraintRow& row);
-/// Sets the targets of the joints to the rates of their rows, and lets nothing else of the problem act.
-void set_joint_targets(Problem& problem, const Island& island);
-/// Sets the displacements that would close the joints and stops; returns the largest of them, m (rad times `length`).
-double set_displacements_of_lines(Problem& problem, const Island& island, double length);
-/// Shortens the displacements where a body would turn too far for the errors of joints to be linear.
-void limit_turns(Problem& problem);
-/// Errors of joints are linear in the displacements only for small turns. What remains after a correction is corrected again while it is
-/// more than this fraction of the island's size (or rad), at most so often, or a chain of light links under a heavy load would come apart.
-/// Without a limit on turns, a taut chain would be thrown from one side to the other.
-inline constexpr double kJointsApart = 0x1p-11;
-inline constexpr int kMostCorrections = 10;
 Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory);
 /// Moves with the mean of old and new velocities. Where the impulses have not converged it moves with the new velocities only:
 /// these keep gaps from closing, whereas their mean with velocities that lead into an overlap would not.

@@ -128,10 +128,8 @@ TEST_CASE("a beam that lies on a stone and hangs in a hinge: the hinge carries h
         s.run(2);
         // The stone carries the beam between x = 0.9 and its end at 1: the rest is the hinge's.
         const double force = s.vec("pivot", "force").z / (4 * kG);
-        MESSAGE(type, ": ", force);
         CHECK(force > 0.47);
         CHECK(force < 0.51);
-        CHECK(s.real("pivot", "position_error") < 1e-9);
     }
 }
 
