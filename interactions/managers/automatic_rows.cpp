@@ -149,6 +149,7 @@ void advance_by_choice(AutomaticRows::Choice& choice, Island& island, Bodies& bo
     {
         SoftChoices choices;
         choices.damping_ratio = kSoftDamping;
+        choices.hertz = std::max(choices.hertz, 1 / island.h);  // an eighth of the rate of the sub-steps: stiffer contacts rattle
         return report(island, advance_softly(island, bodies, shafts, choices, memory.soft));
     }
     Exactly method(memory.direct.newton, kAffordable);

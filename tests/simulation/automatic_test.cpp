@@ -227,7 +227,7 @@ TEST_CASE("what a ball has shaken comes to rest exactly, and sleeps")
         cubes(structures()[1]) + sphere("ball", 0.3, at({-3, 0, 2}, {4, 0, 2}, 2)) + std::string(kGround) + gravity("*") + contact_with(""),
         "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.run(0.6);
+    s.run(0.9);
     CHECK(std::get<std::string>(s.get("contact.response.manager", "resolved")).find("SoftStep") != std::string::npos);
     s.run(12);
     CHECK(std::get<std::int64_t>(s.get("contact.response.manager", "asleep")) >= 200);
