@@ -9,7 +9,8 @@ namespace plab::resolution
 namespace
 {
 
-/// In half thicknesses per step: beyond it a body may end up behind the middle of what it hits, or on its far side.
+/// In radii per step, of thin bodies in half thicknesses: beyond it a body may end up behind the middle of what it hits, or on its far
+/// side.
 constexpr double kFast = 0.25;
 
 std::string_view name_of(ImpactSearch search)
@@ -61,7 +62,7 @@ void choose_search(const StepContext& context, Row row, AutomaticRows& rows, Con
     rows.reason[row] = rows.resolved[row] + ": " + (few ? island_text(load) : std::to_string(load.bodies) + " bodies move");
     if (load.search != ImpactSearch::Locate)
         rows.reason[row] += load.search == ImpactSearch::Speculate
-                                ? ", and a body moves by " + rounded_text(load.travel, 2) + " of half its thickness in a step"
+                                ? ", and a body moves by " + rounded_text(load.travel, 2) + " of its size in a step"
                                 : ", and no body moves far in a step";
     if (first && load.search == ImpactSearch::Locate) return;
     context.emit(row, "resolution.chosen", Severity::Info, rows.reason[row],

@@ -7,7 +7,7 @@
 /// An island is what persistent contacts and the joints of touching bodies hold together. An impact rewinds and solves the whole island of
 /// its bodies, so the cost of locating all impacts of a step grows with the square of the largest island, and not with the number of bodies
 /// that fly or rest apart: a thousand balls that bounce on a floor are located, a heap of nine is not. Fast: within a
-/// step a point of a body moves by more than a quarter of half the body's thickness.
+/// step a body moves by more than a quarter of its radius, or a point of a thin body by more than an eighth of its thickness.
 ///
 /// The choice follows from the state at the start of the step alone, so that rewinds, trials and replays make the same one. `resolved`
 /// names it and `reason` says why; resolution.chosen reports each change.

@@ -15,8 +15,8 @@ namespace plab::simulation
 namespace
 {
 
-/// The largest distance that a point of a dynamic body moves within the step at its present velocity, in units of half the body's
-/// thickness: a plate that falls over is fast for its edge. Of a body that is round, the thickness reaches as far as its points.
+/// The largest distance that a dynamic body moves within the step at its present velocity, in units of its radius. Of a thin body the
+/// fastest point counts, in units of half its thickness: a plate that falls over is fast for its edge.
 double largest_travel(const Bodies& bodies, std::span<const double> radius_of_body, std::span<const double> thickness_of_body, double h)
 {
     double most = 0;
@@ -24,9 +24,11 @@ double largest_travel(const Bodies& bodies, std::span<const double> radius_of_bo
     {
         const double radius = radius_of_body[b];
         if (!bodies.dynamic(b) || !(radius > 0) || !std::isfinite(radius)) continue;
-        const double thickness = thickness_of_body[b] > 0 ? std::min(thickness_of_body[b], radius) : radius;
-        const double speed = length(bodies.velocity[b]) + length(bodies.angular_velocity[b]) * (radius - thickness);
-        most = std::max(most, speed * h / thickness);
+        constexpr double kThin = 0.125;  // of the radius
+        const double thickness = thickness_of_body[b];
+        const bool thin = thickness > 0 && thickness < kThin * radius;
+        const double speed = length(bodies.velocity[b]) + (thin ? length(bodies.angular_velocity[b]) * (radius - thickness) : 0.0);
+        most = std::max(most, speed * h / (thin ? thickness : radius));
     }
     return most;
 }

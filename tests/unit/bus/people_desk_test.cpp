@@ -11,12 +11,12 @@ using namespace plab::bus;
 namespace
 {
 
-wire::ClientId client(std::uint8_t number) { return {number}; }
+wire::ClientId guest(std::uint8_t number) { return {number}; }
 
 ViewerMessage viewer(std::uint8_t of, std::uint64_t number, double x = 0)
 {
     ViewerMessage out;
-    out.sample.client = client(of), out.sample.number = number, out.sample.position = {x, 0, 0};
+    out.sample.client = guest(of), out.sample.number = number, out.sample.position = {x, 0, 0};
     out.sample.direction = {1, 0, 0}, out.sample.up = {0, 0, 1};
     return out;
 }
@@ -24,7 +24,7 @@ ViewerMessage viewer(std::uint8_t of, std::uint64_t number, double x = 0)
 UserMessage user(std::uint64_t number, double x = 0)
 {
     UserMessage out;
-    out.sample.client = client(1), out.sample.number = number, out.sample.position = {x, 0, 0}, out.sample.orientation = {1, 0, 0, 0};
+    out.sample.client = guest(1), out.sample.number = number, out.sample.position = {x, 0, 0}, out.sample.orientation = {1, 0, 0, 0};
     return out;
 }
 
