@@ -95,7 +95,7 @@ struct ContactLoad
     std::uint32_t bodies = 0;         ///< dynamic bodies of the scene
     std::uint32_t island_bodies = 0;  ///< dynamic bodies of the largest island that persistent contacts hold together
     std::uint32_t island_points = 0;  ///< contact points of the island that has most of them
-    double travel = 0;                ///< largest distance that a body moves within the step, in radii; a point of a thin one, in halves of its thickness
+    double travel = 0;                ///< largest distance that a body moves in the step, in radii (a thin one: in halves of its thickness)
     bool has_manager = false;         ///< the response leaves contacts to a manager; without one, speculation is not possible
     // out
     ImpactSearch search = ImpactSearch::AtEnd;
