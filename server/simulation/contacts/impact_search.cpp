@@ -136,7 +136,13 @@ bool ContactBook::adapts() const
     return std::any_of(detectors_.begin(), detectors_.end(), [](const Detector& d) { return d.adapts; });
 }
 
-void ContactBook::search_as(const ContactBook& whole) { ask_search(whole.cache_.pairs(), imposed_); }
+void ContactBook::search_as(const ContactBook& whole)
+{
+    imposed_.clear();
+    // Before the first step the whole scene knows no pairs, and the part chooses by what touches in it.
+    if (step_.frame.tick == 0 && whole.cache_.pairs().empty()) return;
+    ask_search(whole.cache_.pairs(), imposed_);
+}
 
 bool ContactBook::choose_search()
 {
