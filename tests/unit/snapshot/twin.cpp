@@ -72,8 +72,12 @@ Footprint footprint(const simulation::Simulation& s)
     {
         std::string text = std::to_string(e.tick) + " " + model::format_real(e.time) + " " + e.kind + " ";
         text += e.component == kNoIndex ? "-" : s.world().id_of(e.component);
-        text += " " + id_of(s.world(), e.a) + " " + id_of(s.world(), e.b) + " " + e.message;
-        for (const double x : e.values) text += " " + model::format_real(x);
+        text += " " + id_of(s.world(), e.a) + " " + id_of(s.world(), e.b) + " ";
+        // What the figures of levels tell is measured, and for people alone.
+        const bool measured = e.kind == "level.changed";
+        text += measured ? e.message.substr(0, e.message.find("; cost")) : e.message;
+        for (const double x : e.values)
+            if (!measured) text += " " + model::format_real(x);
         out.events.push_back(std::move(text));
     }
     return out;
