@@ -53,7 +53,6 @@ namespace
 {
 
 constexpr std::size_t kHeavyPoints = 16;  // times max_points
-constexpr double kTouches = 0x1p-7;       // of the island's size: a wider gap does not count
 /// An island at rest, or nearly so, is solved within these Newton steps. One that tumbles costs no more than they do: sweeps finish.
 constexpr Solving kAffordable{1e-12, 12, 20, 1e-12};
 /// Ends of sliding are located for a body that slides alone.
@@ -113,10 +112,7 @@ AutomaticRows::Choice choose_method(const StepContext& context, const Island& is
 {
     const auto most = static_cast<std::size_t>(rows.max_points[row]), resting = static_cast<std::size_t>(rows.max_resting[row]);
     const auto joints = static_cast<std::size_t>(std::ranges::count(island.rows, RowKind::Equality, &ConstraintRow::kind));
-    // Gaps that may close within the step (Resolution/Speculative) cost little: few of them carry a load.
-    const auto touching = static_cast<std::size_t>(
-        std::ranges::count_if(island.contacts, [&](const Contact& c) { return c.depth >= -kTouches * island.size; }));
-    const std::size_t points = touching + island.rows.size() - joints;
+    const std::size_t points = island.contacts.size() + island.rows.size() - joints;
     const double ratio = mass_ratio(island, bodies);
     // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time. Where
     // contact points prevail, as in a heap of jointed bodies, each of them may change its state in each iteration, which costs far more.

@@ -44,6 +44,10 @@ struct Figures
     double impacts = 0;   ///< located, per step
     double rates = 0;     ///< evaluations of the equations of motion per step, where the solver counts them
     double memory = 0;    ///< bytes, at the end, beyond what an empty scene takes
+    double early = 0;     ///< s, mean of the first 30 steps after the first one
+    double late = 0;      ///< s, mean of the last 60; 0: not so many steps were made
+    double moved = 0;     ///< m, the farthest that a body is from where it was put
+    double created = 0;   ///< J, by contacts
 };
 
 double processor_time()
@@ -83,6 +87,14 @@ double evaluations(const simulation::Simulation& simulation)
     return static_cast<double>(std::get<std::int64_t>(world.get(solver, "evaluations")));
 }
 
+/// m, the farthest that a body is from these positions.
+double farthest_from(const std::vector<Vec3>& places, const std::vector<Vec3>& now)
+{
+    double most = 0;
+    for (std::size_t b = 0; b < places.size(); ++b) most = std::max(most, length(now[b] - places[b]));
+    return most;
+}
+
 Figures run_here(const std::string& scene_text, int most_steps)
 {
     Figures out;
@@ -96,18 +108,25 @@ Figures run_here(const std::string& scene_text, int most_steps)
     simulation::Simulation simulation(library);
     if (const auto loaded = simulation.load(*scene); !loaded) fail(loaded.error().text());
     out.load = processor_time() - begin;
+    const std::vector<Vec3> places = simulation.world().host().bodies.position;
     begin = processor_time();
     simulation.step();
     out.first = processor_time() - begin;
     begin = processor_time();
+    double last_60 = begin;
     for (int i = 0; i < most_steps; ++i)
     {
+        if (i == 30) out.early = (processor_time() - begin) / 30;
+        if (i == most_steps - 60) last_60 = processor_time();
         simulation.step();
         ++out.steps, out.impacts += simulation.stepper().report().events, out.rates += evaluations(simulation);
         if (processor_time() - begin > kMostSeconds) break;
     }
     out.step = (processor_time() - begin) / out.steps, out.impacts /= out.steps, out.rates /= out.steps;
+    if (out.steps == most_steps) out.late = (processor_time() - last_60) / 60;
     out.contacts = contact_points(simulation);
+    out.moved = farthest_from(places, simulation.world().host().bodies.position);
+    for (const simulation::ContactEnergy& e : simulation.stepper().contact_energy()) out.created += e.created;
     out.memory = peak_memory() - idle;
     return out;
 }
@@ -244,6 +263,25 @@ void scenes_table()
     row("1000 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(1000), 480);
 }
 
+/// What stands where it is put, and is to stay there, at dt 1/60 for 10 s.
+void rest_table()
+{
+    std::printf(
+        "\n| scene at rest | manager | first step, ms | a step of the next 0.5 s, ms | a step at the end, ms | moved, m | energy made, J "
+        "|\n|---|---|---|---|---|---|---|\n");
+    const auto row = [](const char* name, const char* manager, const std::string& text)
+    {
+        const Figures f = measure(text, 600);
+        std::printf("| %s | %s | %.3g | %.3g | %.3g | %.2g | %.2g |\n", name, manager, f.first * 1e3, f.early * 1e3, f.late * 1e3, f.moved,
+                    f.created);
+    };
+    row("tower of 30 cubes", "nothing named", tower(30));
+    row("the same", "SoftStep", tower(30, "SoftStep"));
+    row("pyramid of 210 cubes", "nothing named", pyramid(20));
+    row("the same", "SoftStep", pyramid(20, "SoftStep"));
+    row("10,000 cubes apart", "nothing named", cubes_apart(10000));
+}
+
 /// What was measured with `count` elements of a kind, per element; `step` per contact point in the rows of heaps.
 struct GrowthPoint
 {
@@ -332,6 +370,7 @@ int main(int argc, char** argv)
         return argc == 2 && std::strcmp(argv[1], "--help") == 0 ? 0 : 2;
     }
     scenes_table();
+    rest_table();
     impacts_table();
     const std::vector<int> tens{10, 100, 1000, 10000}, hundreds{100, 1000, 10000};
     std::vector<Growth> all;

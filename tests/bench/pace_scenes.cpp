@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "support/random_poses.h"
 #include "support/text.h"
@@ -110,6 +111,45 @@ std::string newcomers_heap(int n)
                     i % 2 == 0 ? "shape=\"s\" mass=\"1\"" : "shape=\"q\" mass=\"1\"");
     }
     return scene("1/240", out + component("contact", "CDetection/ODE", "between=\"*\" response.friction=\"0.5\""));
+}
+
+namespace
+{
+
+/// Cubes of 0.5 m where they stand. With a manager impacts are not located.
+std::string standing(const std::vector<Vec3>& places, const std::string& manager)
+{
+    std::string out = kGravity + kGround + component("s", "Shape/Box", "half_extents=\"0.25 0.25 0.25\"");
+    for (std::size_t i = 0; i < places.size(); ++i) out += body(static_cast<int>(i), places[i]);
+    if (!manager.empty()) out += component("manager", "Manager/" + manager, "");
+    return scene("1/60", out + component("contact", "CDetection/ODE",
+                                         manager.empty() ? "between=\"*\" response.friction=\"0.5\""
+                                                         : "between=\"*\" resolution=\"Resolution/None\" response=\"Response/Rows\" "
+                                                           "response.manager=\"manager\" response.friction=\"0.5\""));
+}
+
+}  // namespace
+
+std::string tower(int high, const std::string& manager)
+{
+    std::vector<Vec3> places;
+    for (int k = 0; k < high; ++k) places.push_back({0, 0, 0.25 + 0.5 * k});
+    return standing(places, manager);
+}
+
+std::string pyramid(int wide, const std::string& manager)
+{
+    std::vector<Vec3> places;
+    for (int k = 0; k < wide; ++k)
+        for (int i = 0; i < wide - k; ++i) places.push_back({0.52 * i + 0.26 * k, 0, 0.25 + 0.5 * k});
+    return standing(places, manager);
+}
+
+std::string cubes_apart(int n)
+{
+    std::vector<Vec3> places;
+    for (int i = 0; i < n; ++i) places.push_back({1.0 * (i % 100), 1.0 * (i / 100), 0.25});
+    return standing(places, "");
 }
 
 std::string tumbled(const char* type, const std::string& parameters, int n)

@@ -27,6 +27,12 @@ std::string pile(int n);
 std::string balls(int n);
 /// Balls and boxes that fall; no algorithm is named.
 std::string newcomers_heap(int n);
+/// Cubes on one another, as they stand: a tower, and a pyramid with so many at the bottom. `manager`: SoftStep, Direct ...; empty:
+/// nothing is named.
+std::string tower(int high, const std::string& manager = "");
+std::string pyramid(int wide, const std::string& manager = "");
+/// Cubes that stand apart; no algorithm is named.
+std::string cubes_apart(int n);
 /// Solids of one shape that fall in random orientations into one heap, 0.2 m large. `type`, `parameters`: of the shape.
 std::string tumbled(const char* type, const std::string& parameters, int n);
 /// Chains of five boxes on ball joints that fall into one heap; no algorithm is named but Resolution/None.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/scene.h"
@@ -34,6 +35,12 @@ inline std::string springs_under_budget(int count, const std::string& more)
     }
     return out + "<component id=\"lod\" type=\"Governor/Budget\" watches=\"*.solver\" levels=\"" + kLadder +
            "\" budget=\"1e-3\" every=\"0.05\" dwell=\"0\" " + more + "/>";
+}
+
+/// Tells the governor "lod" what was measured, as the host does.
+inline void measure(Scene& s, const char* input, Value value)
+{
+    REQUIRE(s.ask(simulation::SetOperation{"lod", input, std::move(value)}).done);
 }
 
 inline std::ptrdiff_t count_at(const Scene& s, std::int32_t level)

@@ -10,15 +10,9 @@ using plab::test::count_at;
 using plab::test::has;
 using plab::test::kLadder;
 using plab::test::level;
+using plab::test::measure;
 using plab::test::Scene;
 using plab::test::springs_under_budget;
-
-namespace
-{
-
-void measure(Scene& s, const char* input, Value value) { REQUIRE(s.ask(SetOperation{"lod", input, std::move(value)}).done); }
-
-}  // namespace
 
 TEST_CASE("a budget: trial steps tell what levels cost and how they err, so the first measured step is enough to leave out a bad one")
 {

@@ -8,13 +8,12 @@ using plab::test::count_at;
 using plab::test::has;
 using plab::test::kLadder;
 using plab::test::level;
+using plab::test::measure;
 using plab::test::Scene;
 using plab::test::springs_under_budget;
 
 namespace
 {
-
-void measure(Scene& s, const char* input, Value value) { REQUIRE(s.ask(SetOperation{"lod", input, std::move(value)}).done); }
 
 /// Two bodies ahead of a viewer and two behind it, each pair under a governor of its own.
 std::string two_governors(const std::string& more = "")

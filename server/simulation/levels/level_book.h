@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -213,7 +214,8 @@ private:
     std::vector<Change> changes_;                  ///< by directory index
     std::vector<Told> told_;                       ///< by directory index
     std::vector<Known> known_;                     ///< by directory index
-    std::vector<double> cost_of_level_;            ///< s, at the last before_exchange(); NaN: unknown
+    /// By governor (component) and level: s, at the last before_exchange(); NaN: unknown. One exchange may be of several governors.
+    std::map<std::uint32_t, std::vector<double>> costs_of_levels_;
     std::vector<std::vector<LevelTrial>> trials_;  ///< by directory index
     /// By directory index: what the world returns is not valid any more after a trial, which may copy the directory that a snapshot shares.
     std::vector<std::string> ids_;

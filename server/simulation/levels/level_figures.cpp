@@ -76,7 +76,7 @@ std::vector<LevelChange> LevelBook::before_exchange(const std::vector<Operation>
 {
     std::vector<LevelChange> out;
     const ComponentCosts costs(world_, stepper_.cost());
-    cost_of_level_.clear();
+    costs_of_levels_.clear();
     for (const Operation& operation : operations)
     {
         const auto* swap = std::get_if<SwapOperation>(&operation);
@@ -86,7 +86,7 @@ std::vector<LevelChange> LevelBook::before_exchange(const std::vector<Operation>
         if (!g) continue;
         const std::int32_t level = level_of(world_, i, g->ladder);
         change.from = text_of_level(*g, i, level);
-        if (cost_of_level_.empty()) cost_of_level_ = costs_of_levels(*g, costs);
+        if (!costs_of_levels_.contains(g->component)) costs_of_levels_[g->component] = costs_of_levels(*g, costs);
         const ComponentCost cost = costs.of(i);
         change.cost.before = seconds_of(cost);
         // Levels of one type share an account, unless each component is timed on its own.
@@ -120,7 +120,9 @@ const LevelChange& LevelBook::after_exchange(std::uint32_t component, std::strin
     {
         const bool can_tell = !std::isnan(change.cost.after);
         change.cost.after = known.had[at].cost;
-        if (can_tell && std::isnan(change.cost.after) && at < cost_of_level_.size()) change.cost.after = cost_of_level_[at];
+        const auto costs = costs_of_levels_.find(g->component);
+        if (can_tell && std::isnan(change.cost.after) && costs != costs_of_levels_.end() && at < costs->second.size())
+            change.cost.after = costs->second[at];
         change.error.after = known.had[at].error;
     }
     if (tells.by == g->component) told = {known.told_before, tells.error, tells.unit};

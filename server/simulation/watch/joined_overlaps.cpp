@@ -53,7 +53,8 @@ struct Found
 {
     const Contact* deepest = nullptr;
     std::uint32_t joint = kNoIndex;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    std::size_t pairs = 0;
+    std::pair<std::uint32_t, std::uint32_t> last{kNoIndex, kNoIndex};  ///< contacts of one pair follow one another
 };
 
 Event warning(const RunView& s, const Detector& d, const Found& found)
@@ -67,7 +68,7 @@ Event warning(const RunView& s, const Detector& d, const Found& found)
     e.message = a + " and " + b + " collide and overlap, while " + world.id_of(found.joint) +
                 " holds them there; if that is meant, <component type=\"Collision/Exclude\" a=\"" + a + "\" b=\"" + b +
                 "\"/> keeps them from colliding";
-    if (const std::size_t more = found.pairs.size() - 1; more > 0)
+    if (const std::size_t more = found.pairs - 1; more > 0)
         e.message += " (" + std::to_string(more) + (more > 1 ? " more pairs" : " more pair") + " of this kind)";
     return e;
 }
@@ -92,7 +93,7 @@ void report_joined_overlaps(const RunView& s, std::span<const double> half_thick
         if (joint == kNoIndex) continue;
         Found& own = found[f.detector];
         const std::pair pair{c.a.index, c.b.index};
-        if (std::find(own.pairs.begin(), own.pairs.end(), pair) == own.pairs.end()) own.pairs.push_back(pair);
+        if (pair != own.last) ++own.pairs, own.last = pair;
         if (!own.deepest || c.depth > own.deepest->depth) own.deepest = &c, own.joint = joint;
     }
     for (std::size_t k = 0; k < found.size(); ++k)

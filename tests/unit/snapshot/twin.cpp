@@ -73,11 +73,11 @@ Footprint footprint(const simulation::Simulation& s)
         std::string text = std::to_string(e.tick) + " " + model::format_real(e.time) + " " + e.kind + " ";
         text += e.component == kNoIndex ? "-" : s.world().id_of(e.component);
         text += " " + id_of(s.world(), e.a) + " " + id_of(s.world(), e.b) + " ";
-        // What the figures of levels tell is measured, and for people alone.
-        const bool measured = e.kind == "level.changed";
-        text += measured ? e.message.substr(0, e.message.find("; cost")) : e.message;
-        for (const double x : e.values)
-            if (!measured) text += " " + model::format_real(x);
+        // What levels cost is measured by the clock, and for people alone; how they err is not.
+        const bool has_costs = e.kind == "level.changed";
+        const std::size_t costs = has_costs ? e.message.find("; cost") : std::string::npos;
+        text += costs == std::string::npos ? e.message : e.message.substr(0, costs) + e.message.substr(e.message.find(", error", costs));
+        for (std::size_t k = has_costs ? 2 : 0; k < e.values.size(); ++k) text += " " + model::format_real(e.values[k]);
         out.events.push_back(std::move(text));
     }
     return out;

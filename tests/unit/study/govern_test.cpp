@@ -156,7 +156,7 @@ TEST_CASE("a pattern compares several governors at once: of each ladder the ends
     CHECK(points[0].steps[0].deciding > 0);
     CHECK(points[0].steps[1].exchanged == 0);
     CHECK(points[3].steps[0].exchanged == 0);
-    const std::string folder = "unit_study_govern";  // in the build folder of the test
+    const std::string folder = std::string(PLAB_BINARY_DIR) + "/unit_study_govern";
     REQUIRE(write_govern(*result, folder).ok());
     const std::string table = test::content_of(folder + "/steps.csv");
     CHECK(test::has(table, "step,governed,cheapest levels,levels 2 of 3,most exact levels,deciding,trials,exchanged\n"));

@@ -155,10 +155,10 @@ std::string swinging(const std::string& governor)
 
 TEST_CASE("a promise in W is kept, interval by interval, and one that is broken is found")
 {
-    const auto kept = verified(swinging(by_error("bound='0.3' unit='W' dwell='0'", "0.1")), 4.0);
+    const auto kept = verified(swinging(by_error("bound='0.3' unit='W' dwell='0'", "0.1")), 5.0);
     REQUIRE_MESSAGE(kept.ok(), test::reasons(kept));
     const VerifiedGovernor& g = kept->governors[0];
-    CHECK(g.counted() >= 15);
+    CHECK(g.counted() >= 20);
     CHECK(g.share() >= 0.95);
     REQUIRE(g.worst());
     CHECK(g.worst()->error > 0.01);
