@@ -65,13 +65,15 @@ TEST_CASE("400 bodies under Radau5: the solver has its account, and all accounts
         "mass='1' inertia='0.1 0.2 0.3' angular_velocity='1 2 3' solver='stiff'/></repeat>"
         "<component id='g' type='Field/Gravity' between='all'/><component id='air' type='Field/Drag' between='all' linear='0.1'/>");
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.step(20);
+    s.step(64);
     MESSAGE("step ", step_of(s), " ns, solver ", cost_of(s, "stiff"), " ns, drag ", cost_of(s, "air"), " ns");
     CHECK(cost_of(s, "stiff") > 0.5 * step_of(s));
     CHECK(cost_of(s, "air") > 0);
     CHECK(cost_of(s, "air") < 0.5 * step_of(s));
     CHECK(sum_of(s) == doctest::Approx(step_of(s)).epsilon(0.02));
-    CHECK(s.simulation().stepper().cost().mean_of_host() < 0.1 * step_of(s));
+    // Medians: another program that interrupts one of these steps for a millisecond is no work of the server.
+    const simulation::CostBook& cost = s.simulation().stepper().cost();
+    CHECK(cost.host().median < 0.1 * cost.step().median);
 }
 
 TEST_CASE("two scripts of different cost have two figures, in proportion to what they do")
