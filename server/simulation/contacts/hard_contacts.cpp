@@ -11,6 +11,7 @@ void HardContacts::begin_step()
     if (contacts_.choose_search()) held_.forget_state();
     if (sleeping_.begin_step()) held_.forget_state();
     held_.note_starts(sleeping_.may_sleep());
+    parts_.begin_step();
     if (held_.any())
         for (held_.begin_step(); sleeping_.wake_touched(held_.fresh()); held_.begin_step()) held_.forget_state();
     // A step that starts from a snapshot has to detect contacts that are otherwise known from the step before. This must not count in the
@@ -41,6 +42,84 @@ void HardContacts::advance(std::span<const std::uint32_t> groups, std::span<cons
                            WorkBook book, bool trial)
 {
     join_islands(groups);
+    if (!parts_.measure(groups, from, to)) return advance_at_once(groups, observed, from, to, book, trial);
+    list_divided(groups);
+    if (!whole_.empty()) advance_at_once(whole_, observed, from, to, book, trial);
+    advance_in_parts(observed, from, to, book, trial);
+}
+
+/// Distributes the groups over those of islands that advance in parts, and all others.
+void HardContacts::list_divided(std::span<const std::uint32_t> groups)
+{
+    parts_of_.resize(step_.groups.all.size(), 0);
+    for (const std::uint32_t g : groups)
+    {
+        std::uint32_t& parts = parts_of_[islands_.find(g)];
+        parts = std::max(parts, parts_.of(g));
+    }
+    divided_.clear(), whole_.clear();
+    for (const std::uint32_t g : groups)
+    {
+        const std::uint32_t island = islands_.find(g);
+        if (parts_of_[island] > 1)
+            divided_.push_back({island, g});
+        else
+            whole_.push_back(g);
+    }
+    std::sort(divided_.begin(), divided_.end());
+}
+
+void HardContacts::advance_in_parts(std::span<const std::uint32_t> observed, double from, double to, WorkBook book, bool trial)
+{
+    for (auto first = divided_.begin(); first != divided_.end();)
+    {
+        const std::uint32_t island = first->island;
+        part_members_.clear();
+        for (; first != divided_.end() && first->island == island; ++first) part_members_.push_back(first->group);
+        list_kinematic(island);
+        const std::uint32_t parts = parts_of_[island];
+        double begin = from;
+        for (std::uint32_t k = 1; k <= parts && !step_.frame.give_up(); ++k)
+        {
+            const double end = k == parts ? to : from + (to - from) * k / parts;
+            if (k > 1) put_kinematic(begin);
+            advance_at_once(part_members_, observed, begin, end, book, trial);
+            begin = end;
+        }
+        put_kinematic(from);
+    }
+    std::ranges::fill(parts_of_, 0u);
+}
+
+/// Kinematic bodies that an island touches have groups of their own, which advance after it.
+void HardContacts::list_kinematic(std::uint32_t island)
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    kinematic_.clear();
+    for (const std::uint32_t place : places_)
+    {
+        const PairState& p = std::as_const(contacts_).cache().pairs()[place];
+        for (const auto& [body, other] : {std::pair(p.a, p.b), std::pair(p.b, p.a)})
+            if (bodies.motion[body.index] == Motion::Kinematic && bodies.dynamic(other.index) &&
+                islands_.find(step_.groups.of(other)) == island)
+                kinematic_.push_back(step_.groups.of(body));
+    }
+    std::sort(kinematic_.begin(), kinematic_.end());
+    kinematic_.erase(std::unique(kinematic_.begin(), kinematic_.end()), kinematic_.end());
+}
+
+/// Puts these bodies where they are at a time (s since the start of the step).
+void HardContacts::put_kinematic(double time)
+{
+    if (kinematic_.empty()) return;
+    GroupSystem& system = motion_.system_for(kinematic_, {});
+    system.begin(time, time, {}, nullptr);
+    system.move_prescribed();
+}
+
+void HardContacts::advance_at_once(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,
+                                   WorkBook book, bool trial)
+{
     groups_.assign(groups.begin(), groups.end());
     held_.take(groups_, islands_, reached_.members(), places_);
     if (held_.holds_any()) held_.advance(observed, islands_, from, to, book, trial);
@@ -161,6 +240,7 @@ void HardContacts::finish_step()
     for (const auto& island : contacts_.cache().rest().islands)
         step_.report.resting_pairs +=
             static_cast<int>(std::count_if(island->pairs.begin(), island->pairs.end(), [](const PairState& p) { return !p.ahead; }));
+    parts_.finish_step();
     // What was detected at velocities that are gone does not serve the next step.
     if (sleeping_.finish_step(held_.starts(), held_.fresh())) held_.forget_state();
 }

@@ -174,7 +174,7 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
         if (number == kNoIndex) continue;
         islands_[number]->roots.push_back(i), islands_[number]->shafts.push_back(shaft);
     }
-    system.evaluate(0, 0);
+    system.evaluate_midway();
     given_speed_.resize(step_.world.host().bodies.size(), 0.0);
     share(islands, [&](HeldIsland& island) { set_approach(island, system, to - from); });
     advance_to_midpoint(islands, system, to - from);
@@ -203,7 +203,7 @@ void HeldIslands::advance_to_midpoint(std::span<HeldIsland*> islands, GroupSyste
         for (const Run& run : island->runs) turning_.push_back({island, &run});
     }
     if (turning_.empty()) return;
-    system.evaluate(0, 0);
+    system.evaluate_kinematics();  // the forces are those of the midpoint already
     std::sort(turning_.begin(), turning_.end(), [](const RunOf& x, const RunOf& y) { return x.run->order < y.run->order; });
     for (const RunOf& t : turning_)
         for (const Contact& c : t.island->of(*t.run)) at_midpoint_.emplace_back(c, t.run->found->detector);

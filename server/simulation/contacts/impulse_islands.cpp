@@ -46,7 +46,9 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     members_.resize(system.bodies().size());
     std::iota(members_.begin(), members_.end(), 0u);
     const bool at_midpoint = advance_to_midpoint(system, h);
+    if (!at_midpoint) system.go_midway();
     system.evaluate_here();
+    system.leave_midway();
     if (at_midpoint) update_touching(h);
     if (!trial)
         for (const FoundContact& f : touching_)

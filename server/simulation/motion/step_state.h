@@ -37,6 +37,7 @@ struct ContactEnergy
 struct Reported
 {
     bool stiff = false;                       ///< contact.stiff
+    bool stiff_forces = false;                ///< force.stiff
     std::vector<std::uint8_t> contradictory;  ///< constraint.contradiction and coupling.*, by component
 };
 

@@ -234,6 +234,7 @@ Portrait rest_of(const SnapshotContent& s)
     ledger.push_back({"kinetic energy at the start", Weight::Ledger, s.ledger.kinetic_at_start});
     Facts& memory = out["memory of events"];
     memory.push_back({"stiff contacts reported", Weight::Ledger, s.reported.stiff});
+    memory.push_back({"stiff forces reported", Weight::Ledger, s.reported.stiff_forces});
     memory.push_back({"energy is counted", Weight::Ledger, s.watch.counting});
     memory.push_back({"energy gain reported", Weight::Ledger, s.watch.reported});
     memory.push_back({"energy at the start", Weight::Ledger, s.watch.start_energy});

@@ -108,7 +108,7 @@ private:
             return reason("the snapshot's clock is not valid");
         s.run = run->run, s.revision = run->revision, s.state_hash = run->state_hash, s.contacts.next_id = run->next_contact;
         s.ledger.departed = run->departed_work, s.ledger.requests = run->requests_work, s.ledger.kinetic_at_start = run->kinetic_at_start;
-        s.reported.stiff = run->reported_stiff;
+        s.reported.stiff = run->reported_stiff, s.reported.stiff_forces = run->reported_stiff_forces;
         for (const Number& n : *split) s.split.push_back(n.value);
         DivergenceMemory& w = s.watch;
         w.counting = watch->counting, w.reported = watch->reported, w.sealed = watch->sealed, w.start_energy = watch->start_energy;

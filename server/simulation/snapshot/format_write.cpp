@@ -110,7 +110,7 @@ void write_pairs(const std::string& name, List list, const FileRows& rows, std::
 void write_run(const SnapshotContent& s, bool loaded_is_scene, std::vector<Section>& out)
 {
     std::vector<RunRow> run{{build_name(), s.run, s.revision, s.state_hash, s.contacts.next_id, s.ledger.departed, s.ledger.requests,
-                             s.ledger.kinetic_at_start, s.reported.stiff, loaded_is_scene}};
+                             s.ledger.kinetic_at_start, s.reported.stiff, s.reported.stiff_forces, loaded_is_scene}};
     std::vector<ClockImage> clock{s.clock};
     std::vector<Number> split;
     for (const std::uint32_t n : s.split) split.push_back({n});

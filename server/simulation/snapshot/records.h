@@ -31,14 +31,15 @@ struct RunRow
     std::string build;
     std::uint64_t run = 0, revision = 0, state_hash = 0, next_contact = 1;
     double departed_work = 0, requests_work = 0, kinetic_at_start = 0;
-    bool reported_stiff = false, loaded_is_scene = false;
+    bool reported_stiff = false, reported_stiff_forces = false, loaded_is_scene = false;
 };
 template <class V>
 void columns(RunRow& r, V visit)
 {
     visit("build", r.build), visit("run", r.run), visit("revision", r.revision), visit("state_hash", r.state_hash);
     visit("next_contact", r.next_contact), visit("departed_work", r.departed_work), visit("requests_work", r.requests_work);
-    visit("kinetic_at_start", r.kinetic_at_start), visit("told_stiff", r.reported_stiff), visit("loaded_is_scene", r.loaded_is_scene);
+    visit("kinetic_at_start", r.kinetic_at_start), visit("told_stiff", r.reported_stiff), visit("told_stiff_forces", r.reported_stiff_forces);
+    visit("loaded_is_scene", r.loaded_is_scene);
 }
 
 struct Settings

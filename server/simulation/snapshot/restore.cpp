@@ -133,7 +133,7 @@ Result<LiveScene> revive(const RunContext& context, const SnapshotContent& from)
     stepper.contact_energy() = rearranged(from.ledger.contact_energy, components, component);
     stepper.contact_energy().resize(components);
     stepper.departed_work() = from.ledger.departed, stepper.requests_work() = from.ledger.requests;
-    stepper.reported() = {from.reported.stiff, rearranged(from.reported.contradictory, components, component)};
+    stepper.reported() = {from.reported.stiff, from.reported.stiff_forces, rearranged(from.reported.contradictory, components, component)};
     stepper.reported().contradictory.resize(components, 0);
     stepper.continue_split(from.split);
     stepper.continue_after(from.clock.last_tick, from.clock.last_start, from.clock.last_step);

@@ -97,7 +97,7 @@ void GroupSystem::activate()
 
 void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events)
 {
-    from_ = from;
+    from_ = from, midway_ = 0;
     book_ = book;
     call_.context = {};
     call_.context.time = frame_.start_time + from, call_.context.dt = to - from;
@@ -266,16 +266,40 @@ void GroupSystem::evaluate(double t, double weight)
     rates_of_quantities();
 }
 
+void GroupSystem::go_midway()
+{
+    if (uniform_ && !extra_) return;
+    std::fill(coordinates_.begin(), coordinates_.end(), 0.0);
+    evaluate_kinematics();
+    midway_ = 0.5 * call_.context.dt;
+    for (std::size_t i = 0; i < coordinates_.size(); ++i) coordinates_[i] = midway_ * coordinate_rates_[i];
+}
+
+void GroupSystem::leave_midway()
+{
+    if (midway_ == 0) return;
+    midway_ = 0;
+    std::fill(coordinates_.begin(), coordinates_.end(), 0.0);
+    evaluate_kinematics();
+}
+
+void GroupSystem::evaluate_midway()
+{
+    go_midway();
+    evaluate(midway_, 0);
+    leave_midway();
+}
+
 void GroupSystem::evaluate_here()
 {
-    evaluate(0, 0);
+    evaluate(midway_, 0);
     if (!book_.work) return;
     std::span<double> before = workspace(0);
     std::copy(speeds_.begin(), speeds_.end(), before.begin());
     for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] += 0.5 * call_.context.dt * speed_rates_[i];
-    evaluate(0, 1);
+    evaluate(midway_, 1);
     std::copy(before.begin(), before.end(), speeds_.begin());
-    evaluate(0, 0);  // booked or not, so that the kick has the same bits in both cases
+    evaluate(midway_, 0);  // booked or not, so that the kick has the same bits in both cases
 }
 
 void GroupSystem::evaluate_kinematics()

@@ -99,6 +99,15 @@ public:
     /// Writes the solver's result into the tables. Returns false if a value is not finite.
     bool finish();
     bool all_finite() const;
+    /// For contact steps, which evaluate forces once and move with the mean of the speeds before and after the kick: the next evaluations
+    /// are made where the members are halfway through the advance at their present speeds. So a spring swings without gaining energy:
+    /// half a move, kick, half a move is Stoermer and Verlet's method (Hairer, Lubich, Wanner, Geometric Numerical Integration (2006),
+    /// I.1.4), whereas a kick by the forces of the start adds energy in each step. Does nothing if no force depends on time or state.
+    void go_midway();
+    /// Puts the members back to where they are at the start of the advance.
+    void leave_midway();
+    /// The forces halfway; the members are where they were afterwards.
+    void evaluate_midway();
     /// Evaluates forces and rates at the present state, for contact steps (kick, then move). The work during the following kick is booked
     /// with the mean of the speeds before and after it, which is exact for constant forces.
     void evaluate_here();
@@ -141,8 +150,9 @@ public:
     std::span<const double> coordinate_rates() const override { return coordinate_rates_; }
     std::span<const double> speed_rates() const override { return speed_rates_; }
     void evaluate(double t, double weight) override;
-    /// Books the work of the forces that act at the present coordinates and speeds, at the power of other velocities: those with which the
-    /// bodies moved meanwhile, in the form of speeds(). A force that depends on the velocity is not what it would be at those.
+    /// Books the work of the forces that act midway, or at the present coordinates where forces do not change, and at the speeds of the
+    /// start, at the power of other velocities: those with which the bodies moved meanwhile, in the form of speeds(). A force that depends
+    /// on the velocity is not what it would be at those.
     void book_forces(std::span<const double> moved_with);
     void evaluate_kinematics() override;
     std::span<double> workspace(int i) override;
@@ -207,6 +217,7 @@ private:
 
     world::CommandCall call_;  ///< of the Force commands; its context is that of all evaluations
     double from_ = 0;
+    double midway_ = 0;  ///< s since the start of the advance, between go_midway() and leave_midway(); else 0
     WorkBook book_;
     ShaftSystem shaft_system_;
     std::unique_ptr<RowSystem> rows_;

@@ -94,8 +94,9 @@ void GroupSystem::book_forces(std::span<const double> moved_with)
     StageScratch& scratch = *scratch_;
     const auto exchange_speeds = [&] { std::ranges::swap_ranges(speeds_, scratch.speeds); };
     scratch.speeds.assign(moved_with.begin(), moved_with.end());
+    go_midway();
     exchange_speeds();
-    scatter(0);
+    scatter(midway_);
     for (const std::vector<std::uint32_t>* list : {&bodies_, &prescribed_bodies_})
         for (const std::uint32_t b : *list)
         {
@@ -105,7 +106,7 @@ void GroupSystem::book_forces(std::span<const double> moved_with)
     for (const std::vector<std::uint32_t>* list : {&shafts_, &prescribed_shafts_})
         for (const std::uint32_t s : *list) scratch.moved_shafts.speed[s] = host.shafts.speed[s];
     exchange_speeds();
-    scatter(0);
+    scatter(midway_);
     clear_wrenches();
     scratch.wrenches.bind(scratch.moved_bodies, scratch.moved_shafts);
     run_forces(1);
