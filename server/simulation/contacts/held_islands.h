@@ -6,7 +6,8 @@
 /// independent. In each step this class
 ///   1. collects the persistent contacts, from the end of the last step if nothing has moved since, or by a new detection;
 ///   2. joins groups to islands with disjoint sets, and hands each island its contacts, joint rows and members;
-///   3. evaluates the forces once, at the start of the step, or at the midpoint for bodies on curved surfaces (midpoint_contacts.h);
+///   3. evaluates the forces once, midway through the advance (GroupSystem::go_midway), where bodies on curved surfaces are put for their
+///      contacts as well (midpoint_contacts.h);
 ///   4. calls the island's manager. The manager decides the order of substeps through IslandMotion: kick() applies the forces for a time h,
 ///      move() integrates the poses, and in between it solves contacts and rows for impulses;
 ///   5. books the work in the energy ledger, and keeps the impulses to warm-start the next step.
