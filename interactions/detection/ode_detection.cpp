@@ -19,6 +19,16 @@ void report_complaints(const StepContext& context, Row row, const OdeScene& scen
         context.events->emit(std::move(e));
     }
 }
+
+/// A misspelt role or a forgotten shape would otherwise show in bodies that fall through one another alone.
+void report_idle(const StepContext& context, Row row, const OdeScene& scene)
+{
+    const OdeScene::Participants p = scene.participants();
+    if (p.any_pair() || p.dynamic == 0) return;
+    const auto bodies = [](std::size_t n) { return std::to_string(n) + (n == 1 ? " body" : " bodies"); };
+    context.emit(row, "detection.idle", Severity::Warning,
+                 "no two bodies can collide: `between` has " + bodies(p.between) + " with a shape, and `against` has " + bodies(p.against));
+}
 }  // namespace
 
 void OdeRows::describe(Schema& s)
@@ -51,7 +61,7 @@ Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bo
     auto& scene = rows.scene[row];
     if (!scene) scene = std::make_unique<OdeScene>();
     if (scene->update(context, rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink))
-        report_complaints(context, row, *scene);
+        report_complaints(context, row, *scene), report_idle(context, row, *scene);
     scene->detect(context, bodies, filter, sink);
     if (!sink.motion_margin().empty()) return {};  // this query asked for candidate pairs, not for contacts
     if (!sink.only_persistent()) rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());

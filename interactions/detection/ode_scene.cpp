@@ -86,6 +86,17 @@ bool OdeScene::update(const StepContext& context, const std::string& space, cons
     return rebuilds;
 }
 
+OdeScene::Participants OdeScene::participants() const
+{
+    Participants out;
+    for (const Member& m : members_)
+    {
+        out.dynamic += m.membership.dynamic ? 1 : 0;
+        if (m.first_shape != m.end_shape) ++(m.membership.between ? out.between : out.against);
+    }
+    return out;
+}
+
 void OdeScene::add_members(const RefList& bodies, bool between, const Bodies& table)
 {
     for (const Ref& r : bodies)

@@ -33,6 +33,13 @@ public:
     double penetration() const { return penetration_; }  ///< m, deepest overlap in the last detection pass
     const std::vector<Collider>& colliders() const { return colliders_; }
     const std::vector<std::uint32_t>& shapes() const { return shape_of_collider_; }
+    /// Bodies with a shape, by role, and bodies of both that can move.
+    struct Participants
+    {
+        std::size_t between = 0, against = 0, dynamic = 0;
+        bool any_pair() const { return between > 0 && between + against > 1; }
+    };
+    Participants participants() const;
 
 private:
     struct Member  // a body that takes part

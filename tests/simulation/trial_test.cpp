@@ -262,7 +262,7 @@ TEST_CASE("the cost of a swap is a median of repetitions, and its difference is 
     Scene s(
         "<component id='a' type='State/RigidBody' mass='1' inertia='1 1 1'/><component id='s' type='Script/Lua' driven='a'>"
         "<param name='code'>" +
-        script(200) + "</param></component>" + gears_and_balls(1, 0));
+        script(200) + "</param></component>" + gears_and_balls(1, 1));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step(5);
     const Reply dearer = ask(s, {SwapOperation{"s", "Script/Lua", {{"code", script(8000)}}}});

@@ -129,6 +129,7 @@ std::string page(const std::vector<Case>& cases, const Table& table)
         "| `motion.diverged` | the energy is a hundred times what was present or added, or a speed keeps doubling every few steps; the "
         "motion "
         "continues, but its numbers are meaningless |\n"
+        "| `force.stiff` | forces on bodies in contact change too fast even for the parts into which their island divides the step |\n"
         "| `contact.missed` | a body passed through another between two detections; its centre of mass is checked, so a corner that passes "
         "is not noticed |\n"
         "| `contact.deep` | bodies remain deep inside one another, where impulses or rows should hold them |\n\n"

@@ -49,7 +49,7 @@ void ForceParts::rebuild()
         const Group& group = step_.groups.all[g];
         const bool depends = std::ranges::any_of(
             group.forces, [&](const BlockRow& r) { return !step_.world.tables()[blocks[r.block].table]->type().info.uniform; });
-        if (depends && !(group.bodies.empty() && group.shafts.empty())) depends_[g] = 1, any_ = true;
+        if (depends && group.rows.empty() && !(group.bodies.empty() && group.shafts.empty())) depends_[g] = 1, any_ = true;
     }
 }
 
@@ -61,12 +61,7 @@ bool ForceParts::measure(std::span<const std::uint32_t> groups, double from, dou
     for (const std::uint32_t g : groups)
     {
         parts_[g] = 1;
-        if (depends_[g] == 0) continue;
-        // A system with joints is that of one group, which its island has as well.
-        if (step_.groups.all[g].rows.empty())
-            plain_.push_back(g);
-        else
-            measure_together(std::span(&g, 1), from, to);
+        if (depends_[g] != 0) plain_.push_back(g);
     }
     if (!plain_.empty()) measure_together(plain_, from, to);
     return any_divided_;
@@ -76,7 +71,6 @@ void ForceParts::measure_together(std::span<const std::uint32_t> groups, double 
 {
     const double h = to - from;
     GroupSystem& system = motion_.system_for(groups, {});
-    system.hold_rows(true);
     system.begin(from, to, {}, nullptr);
     list_members(system, groups);
     speeds_.assign(system.speeds().begin(), system.speeds().end());
@@ -97,7 +91,6 @@ void ForceParts::measure_together(std::span<const std::uint32_t> groups, double 
     std::ranges::fill(system.coordinates(), 0.0);
     std::ranges::copy(speeds_, system.speeds().begin());
     system.evaluate_kinematics();
-    system.hold_rows(false);
 }
 
 void ForceParts::list_members(const GroupSystem& system, std::span<const std::uint32_t> groups)
@@ -226,8 +219,7 @@ void ForceParts::divide(std::span<const std::uint32_t> groups)
 
 void ForceParts::finish_step()
 {
-    const bool too_stiff = needed_ > kMost, reported = std::exchange(step_.reported.stiff_forces, too_stiff);
-    if (!too_stiff || reported) return;
+    if (needed_ <= kMost || std::exchange(step_.reported.stiff_forces, true)) return;
     const Group& group = step_.groups.all[stiffest_];
     const BlockRow& force = group.forces.front();
     Event e;

@@ -12,7 +12,8 @@
 /// part of the bodies' size, so forces that change no further, as those of dry friction in a script, do not count. The result follows
 /// from the state alone: trials, rewinds and replays divide alike.
 ///
-/// Limits: joints are not counted, so a stiff spring on a light link of a heavy mechanism asks for more parts than it needs.
+/// Limits: groups with joints are not measured, as what a spring does there depends on what its joints let move; their steps are divided
+/// only if they touch a group that asks for it.
 #pragma once
 
 #include <span>
@@ -30,7 +31,7 @@ public:
 
     static constexpr double kMost = 64;
 
-    /// After any structural change: lists the groups on which forces act that depend on time or state.
+    /// After any structural change: lists the groups without joints on which forces act that depend on time or state.
     void rebuild();
     void begin_step() { needed_ = 1, stiffest_ = kNoIndex; }
     /// Measures the forces on `groups` (ascending) at their present state, for an advance from `from` to `to` (s since the start of the

@@ -37,7 +37,7 @@ struct ContactEnergy
 struct Reported
 {
     bool stiff = false;                       ///< contact.stiff
-    bool stiff_forces = false;                ///< force.stiff
+    bool stiff_forces = false;                ///< force.stiff; once in a run
     std::vector<std::uint8_t> contradictory;  ///< constraint.contradiction and coupling.*, by component
 };
 

@@ -268,7 +268,7 @@ void GroupSystem::evaluate(double t, double weight)
 
 void GroupSystem::go_midway()
 {
-    if (uniform_ && !extra_) return;
+    if (uniform_ || extra_) return;
     std::fill(coordinates_.begin(), coordinates_.end(), 0.0);
     evaluate_kinematics();
     midway_ = 0.5 * call_.context.dt;

@@ -102,7 +102,8 @@ public:
     /// For contact steps, which evaluate forces once and move with the mean of the speeds before and after the kick: the next evaluations
     /// are made where the members are halfway through the advance at their present speeds. So a spring swings without gaining energy:
     /// half a move, kick, half a move is Stoermer and Verlet's method (Hairer, Lubich, Wanner, Geometric Numerical Integration (2006),
-    /// I.1.4), whereas a kick by the forces of the start adds energy in each step. Does nothing if no force depends on time or state.
+    /// I.1.4), whereas a kick by the forces of the start adds energy in each step. Does nothing if no force depends on time or state, or
+    /// where contacts are forces, which have pieces of their own.
     void go_midway();
     /// Puts the members back to where they are at the start of the advance.
     void leave_midway();

@@ -50,9 +50,10 @@ TEST_CASE("the walker of MJCF, exported and imported again: the same masses, joi
     }
     CHECK(second.real("left_hip_motor", "gear") == 40);
     first.warnings_expected = second.warnings_expected = true;
-    first.run(0.5), second.run(0.5);
+    // To rounding, until it tumbles: then an impact falls into one step here and into the next there.
+    first.run(0.4), second.run(0.4);
     for (const char* const body : {"torso", "left_shin", "right_shin"})
-        CHECK(distance(second.vec(body, "position"), first.vec(body, "position")) < 1e-6);
+        CHECK(distance(second.vec(body, "position"), first.vec(body, "position")) < 1e-12);
 }
 
 TEST_CASE("an exported scene that has moved begins where it is: zeros of joints, stops and springs stay where they are")
