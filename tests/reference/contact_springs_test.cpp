@@ -103,6 +103,26 @@ TEST_CASE("a block that swings on a floor for 100 periods makes no energy")
     }
 }
 
+TEST_CASE("a weight that a slider guides on a block swings for 100 periods without gaining energy")
+{
+    // The block of 1 kg slides on the floor, against the weight of 1 kg: h w = 0.06.
+    Scene s(std::string(kFloor) +
+            "<component id='box' type='Shape/Box' half_extents='0.2 0.2 0.2'/>"
+            "<component id='b' type='State/RigidBody' mass='1' shape='box' position='0 0 0.2'/>"
+            "<component id='w' type='State/RigidBody' mass='1' inertia='0.1 0.1 0.1' position='0.1 0 0.2'/>"
+            "<component id='rail' type='Constraint/Slider' a='b' b='w' axis='1 0 0'/>"
+            "<component id='s' type='Constraint/SpringDamper' a='b' b='w' anchor_a='-0.5 0 0' length='0.5' stiffness='100'/>" +
+            detection(""));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    const double start = energy(s), swing = 0.5 * 100 * 0.01;
+    double most = start, least = start;
+    for (int i = 0; i < 240 * 44; ++i) s.step(), most = std::fmax(most, energy(s)), least = std::fmin(least, energy(s));
+    MESSAGE("energy: " << (most - start) / swing << " " << (least - start) / swing << " of the swing's energy");
+    const double bound = 200.0 / (240 * 240);
+    CHECK(most - start < bound * swing);
+    CHECK(least - start > -bound * swing);
+}
+
 TEST_CASE("a spring of any stiffness between blocks on the ground makes no energy")
 {
     for (const char* response : kNamed)
