@@ -56,7 +56,7 @@ void ForceParts::rebuild()
 bool ForceParts::measure(std::span<const std::uint32_t> groups, double from, double to)
 {
     any_divided_ = false;
-    if (!any_ || !(to > from)) return false;
+    if (!any_ || motion_.extra() || !(to > from)) return false;
     plain_.clear();
     for (const std::uint32_t g : groups)
     {

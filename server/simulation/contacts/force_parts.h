@@ -13,7 +13,7 @@
 /// from the state alone: trials, rewinds and replays divide alike.
 ///
 /// Limits: groups with joints are not measured, as what a spring does there depends on what its joints let move; their steps are divided
-/// only if they touch a group that asks for it.
+/// only if they touch a group that asks for it. Islands with contacts by force (Response/Penalty) have pieces of their own.
 #pragma once
 
 #include <span>

@@ -203,7 +203,11 @@ void HeldIslands::advance_to_midpoint(std::span<HeldIsland*> islands, GroupSyste
         for (const Run& run : island->runs) turning_.push_back({island, &run});
     }
     if (turning_.empty()) return;
-    system.evaluate_kinematics();  // the forces are those of the midpoint already
+    // Forces that depend on the state are those of the midpoint already, but for islands with contacts by force (go_midway).
+    if (motion_.extra())
+        system.evaluate(0, 0);
+    else
+        system.evaluate_kinematics();
     std::sort(turning_.begin(), turning_.end(), [](const RunOf& x, const RunOf& y) { return x.run->order < y.run->order; });
     for (const RunOf& t : turning_)
         for (const Contact& c : t.island->of(*t.run)) at_midpoint_.emplace_back(c, t.run->found->detector);
