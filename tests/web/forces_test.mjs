@@ -80,7 +80,7 @@ test('arrows are the forces, on what moves, and the longest is written', async (
   assert.ok(seen.full > 4.99 * kG && seen.full < 5 * kG * 1.6, `the longest is ${seen.full} N`);
   // The third column of a matrix is along the arrow: upwards, as all of it moves and lies on something.
   assert.ok(seen.arrows.every(([, , z]) => z > 0), 'all point upwards');
-  assert.match(await page.$eval('#force-scale', (e) => e.textContent), /↑ [\d.]+ N/);
+  await until('the scale is written', async () => /↑ [\d.]+ N/.test(await page.$eval('#force-scale', (e) => e.textContent)));
 });
 
 test('what is selected tells what it touches', async () => {
