@@ -128,7 +128,7 @@ bool holds_at_rest(std::size_t products, Island& island, Bodies& bodies, Shafts&
     StepChoices choices;
     choices.or_nothing = true;
     choices.correction_share = 0.2;  // what SoftStep has let sink is lifted slowly
-    Exactly method(memory.direct.newton, how);
+    Exactly method(memory.direct.newton, how, island);
     const Verdict verdict = advance_island(island, bodies, shafts, method, choices, memory.direct.step);
     if (verdict.put_back) return false;
     report(island, verdict);
@@ -152,7 +152,7 @@ void advance_by_choice(AutomaticRows::Choice& choice, Island& island, Bodies& bo
         choices.hertz = std::max(choices.hertz, 1 / island.h);  // an eighth of the rate of the sub-steps: stiffer contacts rattle
         return report(island, advance_softly(island, bodies, shafts, choices, memory.soft));
     }
-    Exactly method(memory.direct.newton, kAffordable);
+    Exactly method(memory.direct.newton, kAffordable, island);
     StepChoices choices;
     choices.slip_ends_up_to = kSlipEnds;
     report(island, advance_island(island, bodies, shafts, method, choices, memory.direct.step));

@@ -211,7 +211,7 @@ void solve_all_directly(const StepContext& context, Row row, DirectRows& rows, B
                       island.fell_back = true;
                       return;
                   }
-                  Exactly method(memory.newton, how);
+                  Exactly method(memory.newton, how, island);
                   report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
               });
     add_all(context, row, islands, rows);

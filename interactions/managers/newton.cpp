@@ -9,7 +9,7 @@ namespace
 {
 
 /// kappa of law_of: the stiffness rho of an active contact is kappa / K.
-constexpr double kLeastStiffness = 1e6, kMostStiffness = 1e12;
+constexpr double kSoftest = 1e2, kUsualStiffness = 1e6, kMostStiffness = 1e12;
 
 /// The linearised law of a point: dj = change - G du. Whether the point presses, sticks or slides is decided from tau with rho =
 /// 1 / K, for which impulses and velocities have the same weight; the active directions then use the stiffer rho = kappa / K.
@@ -44,6 +44,23 @@ void law_of(const Point& p, const Vec3& u, double kappa, Vec3& change, Mat3& G)
     G(0, 2) = p.friction * c * stiff, G(1, 2) = p.friction * s * stiff;
 }
 
+/// The piece of the law that a point is in: 0 separated, 1 sticking (or without friction), 2 sliding; as law_of decides it.
+char piece_of(const Point& p, const Vec3& u)
+{
+    if (!(p.K(2, 2) > 0)) return 0;
+    const double rho = 1 / p.K(2, 2), normal = p.impulse.z - rho * (u.z - p.least);
+    if (normal <= 0) return 0;
+    const bool slides = p.frictional() && std::hypot(p.impulse.x - rho * u.x, p.impulse.y - rho * u.y) > p.friction * normal;
+    return slides ? 2 : 1;
+}
+
+/// 1 where a row acts within its bounds, or 0.
+char piece_of(const Line& line, double rate)
+{
+    const double wanted = line.impulse - (rate - line.target) / line.mobility;
+    return line.count > 0 && wanted >= line.least && wanted <= line.most ? 1 : 0;
+}
+
 /// Square root of the sum of the squared violations: smooth enough to compare steps by.
 double total_violation(const Problem& problem)
 {
@@ -67,12 +84,53 @@ bool is_joint(const Line& line) { return line.count > 0 && line.least == -HUGE_V
 
 bool is_large(const Problem& problem) { return problem.points.size() + problem.lines.size() > 256; }
 
+/// A step that multiplies the violation by more has gone too far.
+constexpr double kTooFar = 2;
+
+/// kappa from one Newton step to the next.
+class Stiffness
+{
+public:
+    double kappa() const { return kappa_; }
+    /// Convergence is slow where masses differ much: the contacts then need a larger stiffness. Not where it is slow because points have
+    /// changed their pieces, and not once the residual is at the level of rounding: a larger stiffness only amplifies rounding, and the
+    /// disagreement between redundant contacts.
+    void adapt(bool same_pieces, double before, double now, double tolerance)
+    {
+        raised_ = same_pieces && now > 0.05 * before && now > tolerance;
+        if (raised_) kappa_ = std::min(most_, kappa_ * kFactor);
+    }
+    /// Where the step has gone too far: points that barely press change their impulses by much, and so their pieces, if the stiffness is
+    /// large; and rounding grows with it. False if it is as low as it may be.
+    bool lower()
+    {
+        raised_ = false;
+        if (kappa_ <= kSoftest) return false;
+        most_ = kappa_ /= kFactor;
+        return true;
+    }
+    /// Whether a step with a larger stiffness, in the same pieces, has changed nothing: rows contradict one another.
+    bool makes_no_difference(bool same_pieces, double before, double now)
+    {
+        return is_useless_ = raised_ && same_pieces && now > 0.99 * before && now < kTooFar * before;
+    }
+    bool is_useless() const { return is_useless_; }
+
+private:
+    static constexpr double kFactor = 1e2;
+    double kappa_ = kUsualStiffness, most_ = kMostStiffness;
+    bool raised_ = false, is_useless_ = false;
+};
+
 /// Number of summands for Problem::rounding: loads add up over the contacts of the island. In large islands some contacts carry
 /// no load and change their state with every rounding error.
 double terms_of(const Problem& problem)
 {
     return (is_large(problem) ? 4096 : 16) * static_cast<double>(problem.points.size() + problem.lines.size());
 }
+
+/// Whether Newton's method, where it gets no further, has come close enough.
+bool is_enough(const Problem& problem, const Solving& how) { return how.rounds > 0 && violation(problem) <= how.enough; }
 
 bool is_warm(const Problem& problem)
 {
@@ -154,21 +212,40 @@ void NewtonSolver::recall(Problem& problem) const
     problem.apply_impulses();
 }
 
+bool NewtonSolver::changes_pieces(const Problem& problem)
+{
+    bool changes = false;
+    pieces_.resize(problem.points.size() + problem.lines.size());
+    auto piece = pieces_.begin();
+    const auto take = [&](char now) { changes = changes || *piece != now, *piece++ = now; };
+    for (const Point& p : problem.points) take(piece_of(p, problem.relative_velocity(p)));
+    for (const Line& line : problem.lines) take(piece_of(line, problem.rate(line)));
+    return changes;
+}
+
 bool NewtonSolver::newton(Problem& problem, const Solving& how, Solved& out)
 {
     constexpr int kPatience = 4;
-    constexpr double kGrowth = 1e2;
-    double now = total_violation(problem), best = now, kappa = kLeastStiffness;
+    double now = total_violation(problem), best = now;
+    Stiffness stiffness;
     remember(problem);
+    (void)changes_pieces(problem);
     for (int since_best = 0; out.steps < how.most_steps && since_best < kPatience && !settled(problem, now, how.tolerance);)
     {
-        if (!find_step(problem, kappa)) break;
+        if (!find_step(problem, stiffness.kappa())) break;
         const double before = now;
         now = advance(problem, now);
         ++out.steps, ++since_best;
-        // Convergence is slow where masses differ much: the contacts then need a larger stiffness. Not once the residual is at
-        // the level of rounding, where a larger stiffness would amplify the disagreement between redundant contacts.
-        if (now > 0.05 * before && now > how.tolerance) kappa = std::min(kMostStiffness, kappa * kGrowth);
+        const bool same = !changes_pieces(problem);
+        if (stiffness.makes_no_difference(same, before, now) && now > problem.rounding(terms_of(problem))) break;
+        if (now > kTooFar * before && stiffness.lower())
+        {
+            recall(problem);
+            now = best;
+            (void)changes_pieces(problem);
+            continue;
+        }
+        stiffness.adapt(same, before, now, how.tolerance);
         if (!(now < best)) continue;
         if (now < 0.5 * best) since_best = 0;
         best = now;
@@ -178,8 +255,8 @@ bool NewtonSolver::newton(Problem& problem, const Solving& how, Solved& out)
     // How much rounding leaves can be estimated only once the impulses are known.
     Solving within = how;
     within.tolerance = std::max(how.tolerance, problem.rounding(terms_of(problem)));
-    if (!settled(problem, best, within.tolerance)) return false;
-    polish(problem, best, kappa, within, out);
+    if (!settled(problem, best, within.tolerance)) return stiffness.is_useless() && violation(problem) <= how.enough;
+    polish(problem, best, stiffness.kappa(), within, out);
     return true;
 }
 
@@ -192,7 +269,7 @@ void NewtonSolver::polish(Problem& problem, double best, double kappa, const Sol
     const int most = coarse > 1 ? 3 : 1;
     // Raises the stiffness in the ratio in which rounding is coarser than asked for: heavy bodies then converge, and redundant
     // contacts keep their shares.
-    if (coarse > 1) kappa = std::max(kappa, std::min(kMostStiffness, kLeastStiffness * coarse));
+    if (coarse > 1) kappa = std::max(kappa, std::min(kMostStiffness, kUsualStiffness * coarse));
     for (int i = 0; i < most && best > kFine * how.finest; ++i, ++out.steps)
     {
         if (!find_step(problem, kappa)) return;
@@ -214,18 +291,18 @@ void NewtonSolver::approach(Problem& problem, const Solving& how, Solved& out)
     guess_points_ = best_points_, guess_lines_ = best_lines_;
     // The first round starts as if all contacts stuck: for most piles at rest this is already the solution.
     (void)lagrangian_.round(problem, matrix_, 1e5, true, how.tolerance, out.steps);
-    out.converged = newton(problem, how, out);
-    if (out.converged) return;
+    out.ended = newton(problem, how, out) || is_enough(problem, how);
+    if (out.ended) return;
     if (!(total_violation(problem) < guess)) best_points_ = guess_points_, best_lines_ = guess_lines_, recall(problem);
     out.sweeps += sweep(problem, {kSweeps, how.tolerance, 1}).sweeps;
     problem.apply_impulses();
     double kappa = kFirst;
-    for (int i = 0; i < kRounds && !out.converged && out.steps < how.most_steps; ++i)
+    for (int i = 0; i < kRounds && !out.ended && out.steps < how.most_steps; ++i)
     {
         const bool there = lagrangian_.round(problem, matrix_, kappa, false, how.tolerance, out.steps);
         kappa = there ? std::min(kMost, kGrowth * kappa) : kappa / kGrowth;
         if (there)
-            out.converged = newton(problem, how, out);
+            out.ended = newton(problem, how, out) || is_enough(problem, how);
         else
             problem.apply_impulses();
     }
@@ -294,7 +371,9 @@ void NewtonSolver::finish_by_sweeps(Problem& problem, const Solving& how, Solved
         if (out.converged || round + 1 == how.rounds) return;
         Solving again = how;
         again.most_steps = out.steps + kNewtonSteps;
-        if (newton(problem, again, out)) out.residual = violation(problem), out.converged = out.residual <= how.tolerance;
+        (void)newton(problem, again, out);
+        out.residual = violation(problem);
+        out.converged = out.residual <= std::max(how.tolerance, how.enough);
     }
 }
 
@@ -327,20 +406,20 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
     {
         // The result is as good as rounding of the largest impulse allows, but light bodies may need more.
         if (problem.rounding() > how.tolerance && guess > how.tolerance)
-            matrix_.shape(problem), polish(problem, guess, kLeastStiffness, how, out);
+            matrix_.shape(problem), polish(problem, guess, kUsualStiffness, how, out);
     }
     else
     {
-        if (is_warm(problem)) out.converged = settles_by_sweeps(problem, guess, exact, out);
-        if (!out.converged) matrix_.shape(problem);
+        if (is_warm(problem)) out.ended = settles_by_sweeps(problem, guess, exact, out);
+        if (!out.ended) matrix_.shape(problem);
         const std::size_t affordable = how.most_products / std::max<std::size_t>(1, matrix_.products());
         exact.most_steps = static_cast<int>(std::min(affordable, static_cast<std::size_t>(how.most_steps)));
-        if (!out.converged && is_warm(problem)) out.converged = newton(problem, exact, out);
-        if (!out.converged) approach(problem, exact, out);
+        if (!out.ended && is_warm(problem)) out.ended = newton(problem, exact, out);
+        if (!out.ended) approach(problem, exact, out);
         set_tolerance();
     }
     out.residual = violation(problem);
-    out.converged = out.residual <= exact.tolerance;
+    out.converged = out.residual <= std::max(exact.tolerance, out.ended ? how.enough : 0.0);
     if (out.converged) return out;
     out.fell_back = true;
     if (how.rounds == 0) return out;

@@ -15,6 +15,9 @@
 /// regularisation and picks, of all solutions, the one nearest to the initial guess in the norm weighted by 1/rho: the split
 /// stays as it was, and is equal where there was no guess.
 ///
+/// Rows that contradict one another have no solution: the proximal term then leads to the least violation in the same norm, with
+/// impulses that grow from step to step. newton() ends where a larger stiffness gains nothing.
+///
 /// Newton's method converges only near a solution. solve() therefore takes the cheapest method that works: (1) nothing, if the
 /// last impulses still satisfy the law; (2) some sweeps, for a large island that has only drifted by rounding; (3) Newton's
 /// method from the last impulses; (4) rounds of the augmented Lagrangian (lagrangian.h), each followed by Newton's method; (5)
@@ -40,12 +43,16 @@ struct Solving
     int most_sweeps = 100;     ///< Gauss-Seidel sweeps where Newton's method does not converge
     double finest = 1e-12;     ///< m/s: the tolerance that was asked for; rounding may raise `tolerance`
     int rounds = 4;            ///< of sweeps, each followed by Newton's method; 0: the impulses are left where Newton's method ends
+    /// m/s: the violation that is left where Newton's method gets no further: points that barely press open and close, and rows may
+    /// contradict one another by rounding, as where both feet of a mechanism stand.
+    double enough = 0;
     std::size_t most_products = SIZE_MAX;  ///< of blocks, in all factorisations: about 0.1 us each
 };
 struct Solved
 {
     int steps = 0, sweeps = 0;
     double residual = 0;  ///< m/s, see violation()
+    bool ended = false;   ///< nothing more was tried: converged, or close enough
     bool converged = false;
     bool fell_back = false;  ///< Gauss-Seidel sweeps were needed
 };
@@ -70,6 +77,8 @@ private:
     bool find_step(const Problem& problem, double kappa);
     void go(Problem& problem, double share);
     double advance(Problem& problem, double now);
+    /// Whether a point or row is in another piece of the law than when this was last asked.
+    bool changes_pieces(const Problem& problem);
     bool newton(Problem& problem, const Solving& how, Solved& out);
     void polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out);
     void approach(Problem& problem, const Solving& how, Solved& out);
@@ -85,6 +94,8 @@ private:
     std::vector<Law> laws_;
     std::vector<LineLaw> line_laws_;
     std::vector<Column6> step_;
+    std::vector<char> pieces_;
+    double share_ = 1;
     std::vector<Vec3> point_steps_, best_points_, guess_points_;
     std::vector<double> line_steps_, best_lines_, guess_lines_;
 };

@@ -60,6 +60,8 @@ public:
     /// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with
     /// another of its points, so the point must not turn with it.
     void turn_with(const Bodies& bodies);
+    /// Multiplies the inertias of all bodies, until they are set again. By powers of two this is exact.
+    void weigh_turns(double factor);
     /// The rows were found again after bodies had turned.
     void turn_lines();
     /// The same for the movers and rows alone, after they have turned for h (s): sets Mover::turned. The velocities of the movers become

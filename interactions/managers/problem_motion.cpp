@@ -54,6 +54,15 @@ void Problem::turn_with(const Bodies& bodies)
         if (!is_isotropic_at(p.a) || !is_isotropic_at(p.b)) set_mobility(p);
 }
 
+void Problem::weigh_turns(double factor)
+{
+    for (std::size_t i = 0; i < movers.size(); ++i)
+        if (!anchors[i].shaft)
+            anchors[i].inertia = anchors[i].inertia * factor, movers[i].inverse_inertia = movers[i].inverse_inertia * (1 / factor);
+    for (Line& line : lines) set_mobility(line);
+    for (Point& p : points) set_mobility(p);
+}
+
 void Problem::turn_lines()
 {
     for (Line& line : lines)

@@ -14,12 +14,16 @@ namespace plab::managers
 class Exactly final : public Method
 {
 public:
-    Exactly(NewtonSolver& newton, const Solving& how) : newton_(newton), how_(how) {}
+    Exactly(NewtonSolver& newton, const Solving& how, const Island& island) : newton_(newton), how_(how)
+    {
+        // What correct_positions() leaves alone need not be held more exactly in a step.
+        how_.enough = kPositionTolerance * (island.bodies.empty() ? 1 : island.size) / island.h;
+    }
     Verdict find_impulses(Problem& problem) override { return verdict(newton_.solve(problem, how_)); }
     Verdict find_displacements(Problem& problem, double tolerance) override
     {
         Solving how = how_;
-        how.tolerance = 0.1 * tolerance;
+        how.tolerance = 0.1 * tolerance, how.enough = tolerance;
         return verdict(newton_.solve(problem, how));
     }
 

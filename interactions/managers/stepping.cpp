@@ -259,8 +259,7 @@ namespace
 {
 
 /// Errors of joints are linear in the displacements only for small turns. What remains after a correction is corrected again while it is
-/// more than this fraction of the island's size (or rad), or a chain of light links under a heavy load would come apart. Without a limit on
-/// turns, a taut chain would be thrown from one side to the other.
+/// more than this fraction of the island's size (or rad), or a chain of light links under a heavy load would come apart.
 constexpr double kJointsApart = 0x1p-11;
 constexpr int kMostCorrections = 10;
 
@@ -284,27 +283,51 @@ double displacement_of(const Contact& c, const StepChoices& choices)
     return (c.depth - choices.slop) * (c.depth > choices.slop ? choices.correction_share : 1.0);
 }
 
-/// Shortens the displacements where a body would turn too far for the errors of joints to be linear.
-void limit_turns(Problem& problem)
+constexpr double kMostTurn = 0.25;  // rad: so far errors of joints count as linear in the turns
+
+double largest_turn(const Problem& problem)
 {
-    constexpr double kMostTurn = 0.25;  // rad
     double most = 0;
     for (std::size_t i = 0; i < problem.movers.size(); ++i)
         if (!problem.anchors[i].shaft) most = std::max(most, length(problem.movers[i].w));
-    if (most <= kMostTurn) return;
-    for (Mover& m : problem.movers) m.v = m.v * (kMostTurn / most), m.w = m.w * (kMostTurn / most);
+    return most;
 }
 
-Verdict displace_by(Problem& problem, double tolerance, Bodies& bodies, Shafts& shafts, Method& method, bool limits)
+void find_from_rest(Problem& problem, double tolerance, Method& method, Verdict& out)
 {
-    problem.turn_with(bodies);
     problem.rest();
     problem.clear_impulses();
-    for (Point& p : problem.points) p.friction = 0;
     problem.apply_impulses();
-    const Verdict out = method.find_displacements(problem, tolerance);
-    if (limits) limit_turns(problem);
+    out.join(method.find_displacements(problem, tolerance));
+}
+
+/// Where displacements would turn bodies so far that errors of joints are not linear, finds others with smaller turns. A taut chain of
+/// light links under a heavy load would be thrown from one side to the other to close a joint; if inertias count more than masses, the load
+/// is drawn to it instead. Inertias change nothing but which of all displacements that close the joints is found. Returns their factor.
+double keep_turns_small(Problem& problem, double tolerance, Method& method, Verdict& out)
+{
+    constexpr double kFactor = 16;
+    constexpr int kTries = 4;
+    double weight = 1;
+    for (int n = 0; n < kTries && largest_turn(problem) > kMostTurn; ++n)
+    {
+        weight *= kFactor, problem.weigh_turns(kFactor);
+        find_from_rest(problem, tolerance, method, out);
+    }
+    if (const double most = largest_turn(problem); most > kMostTurn)
+        for (Mover& m : problem.movers) m.v = m.v * (kMostTurn / most), m.w = m.w * (kMostTurn / most);
+    return weight;
+}
+
+Verdict displace_by(Problem& problem, double tolerance, Bodies& bodies, Shafts& shafts, Method& method, bool small_turns)
+{
+    problem.turn_with(bodies);
+    for (Point& p : problem.points) p.friction = 0;
+    Verdict out;
+    find_from_rest(problem, tolerance, method, out);
+    const double weight = small_turns ? keep_turns_small(problem, tolerance, method, out) : 1.0;
     displace(problem, bodies, shafts);
+    if (weight != 1) problem.weigh_turns(1 / weight);
     return out;
 }
 

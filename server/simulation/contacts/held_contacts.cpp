@@ -7,6 +7,21 @@
 
 namespace plab::simulation
 {
+namespace
+{
+
+/// Whether a contact of the same pair had an impulse in the last step.
+bool pair_presses(std::span<const Contact> contacts, std::size_t i)
+{
+    const auto same = [&](std::size_t k) { return contacts[k].a == contacts[i].a && contacts[k].b == contacts[i].b; };
+    std::size_t begin = i, end = i;
+    while (begin > 0 && same(begin - 1)) --begin;
+    while (end < contacts.size() && same(end)) ++end;
+    return std::ranges::any_of(contacts.subspan(begin, end - begin), [](const Contact& c) { return c.impulse != Vec3{}; });
+}
+
+}  // namespace
+
 // Known pairs ---------------------------------------------------------------------------------------------------------
 
 void HeldIslands::note_state()
@@ -283,10 +298,10 @@ void HeldIslands::take_known(Contact& c, const Contact& found, KnownContact& kno
     c.depth = found.depth - known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
 }
 
-/// Sets Contact::approach, the closing speed of impacts. A contact counts as an impact if it had no impulse in the last step and closes
-/// faster than half the speed that forces would give it in this one, or if it had an impulse and closes faster than twice that speed.
-/// Slower contacts jitter or come to rest, and get no restitution. The speed is that of a whole step also in a part of one: what counts
-/// as an impact must not depend on how far a trial goes.
+/// Sets Contact::approach, the closing speed of impacts. A contact counts as an impact if its pair had no impulse in the last step and it
+/// closes faster than half the speed that forces would give it in this one, or if the pair had an impulse and it closes faster than twice
+/// that speed. Slower contacts jitter or come to rest, as corners of a body that rocks on its edges do, and get no restitution. The speed
+/// is that of a whole step also in a part of one: what counts as an impact must not depend on how far a trial goes.
 void HeldIslands::set_approach(HeldIsland& island, const GroupSystem& system, double h)
 {
     std::atomic<double> smallest{-HUGE_VAL};  // negative, as raise_to() finds the largest
@@ -309,11 +324,14 @@ void HeldIslands::set_approach(HeldIsland& island, const GroupSystem& system, do
     for_parts(&step_.workers, island.contacts.size(), kPart,
               [&](std::size_t begin, std::size_t end)
               {
-                  bool meets = false;
-                  for (Contact& c : std::span(island.contacts).subspan(begin, end - begin))
+                  bool meets = false, presses = false;
+                  for (std::size_t i = begin; i < end; ++i)
                   {
+                      Contact& c = island.contacts[i];
+                      if (i == begin || c.a != island.contacts[i - 1].a || c.b != island.contacts[i - 1].b)
+                          presses = pair_presses(island.contacts, i);
                       const double speed = contacts_.normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
-                      const double share = c.impulse == Vec3{} ? 0.5 : 2;
+                      const double share = presses ? 2 : 0.5;
                       c.approach = speed < -std::max(least, share * given) ? -speed : 0.0;
                       meets = meets || c.approach > 0;
                   }

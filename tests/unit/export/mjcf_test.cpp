@@ -50,8 +50,8 @@ TEST_CASE("the walker of MJCF, exported and imported again: the same masses, joi
     }
     CHECK(second.real("left_hip_motor", "gear") == 40);
     first.warnings_expected = second.warnings_expected = true;
-    // To rounding, until it tumbles: then an impact falls into one step here and into the next there.
-    first.run(0.4), second.run(0.4);
+    // To rounding: also while both feet stand, where rows disagree by rounding and points barely press.
+    first.run(0.55), second.run(0.55);
     for (const char* const body : {"torso", "left_shin", "right_shin"})
         CHECK(distance(second.vec(body, "position"), first.vec(body, "position")) < 1e-12);
 }
