@@ -173,8 +173,8 @@ void solve_all_sequentially(const StepContext& context, Row row, SequentialRows&
 void DirectRows::describe(Schema& s)
 {
     s.param(tolerance, "tolerance", unit::metre_per_second,
-            "violation that counts as zero; never less than the rounding error, about 1e-11 in a wall of 1000 "
-            "bricks")
+            "violation that counts as zero; never less than the rounding error, about 1e-11 in a wall of 1000 bricks. Where Newton's "
+            "method gets no further, what moves no body by more than 2^-30 of its size in a step counts as zero too")
         .or_else(1e-13)
         .positive();
     s.param(max_steps, "max_steps", unit::one, "maximum number of Newton steps; after these, sweeps finish")
