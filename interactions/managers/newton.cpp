@@ -189,7 +189,7 @@ double NewtonSolver::advance(Problem& problem, double now)
     double at = 1;
     go(problem, 1);
     double residual = total_violation(problem);
-    for (int i = 0; i < kHalvings && !(residual < 2 * now); ++i)
+    for (int i = 0; i < kHalvings && !(residual < kTooFar * now); ++i)
     {
         go(problem, -0.5 * at);
         at *= 0.5;

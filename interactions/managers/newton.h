@@ -95,7 +95,6 @@ private:
     std::vector<LineLaw> line_laws_;
     std::vector<Column6> step_;
     std::vector<char> pieces_;
-    double share_ = 1;
     std::vector<Vec3> point_steps_, best_points_, guess_points_;
     std::vector<double> line_steps_, best_lines_, guess_lines_;
 };

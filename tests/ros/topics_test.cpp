@@ -128,7 +128,9 @@ TEST_CASE("the graph names the node, and all its endpoints belong to it")
     REQUIRE(eventually([&] { return (topics = endpoints(client, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, "rt/lab/sim/")).size() == 6; }));
     for (const auto& [topic, e] : topics) CHECK_MESSAGE(writers.contains(e.key), topic);
     std::map<std::string, Endpoint> requests;
-    REQUIRE(eventually([&] { return (requests = endpoints(client, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, "rq/lab/sim/" + server.node() + "/")).size() == 16; }));
+    REQUIRE(eventually(
+        [&]
+        { return (requests = endpoints(client, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, "rq/lab/sim/" + server.node() + "/")).size() == 16; }));
     for (const auto& [topic, e] : requests) CHECK_MESSAGE(readers.contains(e.key), topic);
     CHECK(writers.size() == 22);
     CHECK(readers.size() == 16);
