@@ -24,6 +24,7 @@ constexpr const char* kRatioDoc = "the ratio from velocity_factor or tooth count
 constexpr const char* kCouplingReport = "errors and transmitted torque of the step";
 
 constexpr const char* kRows = "Constraint/Rows";
+constexpr const char* kChange = "one row: how the force changes with position and speed, where a manager holds joints of its bodies";
 constexpr const char* kPrepare = "Constraint/Prepare";
 constexpr const char* kFinish = "Constraint/Finish";
 constexpr const char* kPlaced = "takes points and axis from the present pose, if they are new";
@@ -141,6 +142,7 @@ void register_lengths(Registrar& registrar)
         .family(kLength)
         .command<&prepare_spring>(Phase::Prepare, kPrepare, kPlaced)
         .command<&apply_spring>(Phase::Force, "Constraint/Force", "adds -(k stretch + c rate) along the spring")
+        .command<&linearize_spring>(Phase::Linearize, "Constraint/ForceChange", kChange)
         .command<&stored_by_spring>(Phase::Potential, "Constraint/Energy", "k stretch^2 / 2")
         .command<&finish_spring>(Phase::Finish, kFinish, "length, its rate and force at the end of the step")
         .accuracy("the solver's order; with Solver/Exponential exact along a line")
@@ -174,6 +176,7 @@ void register_coordinates(Registrar& registrar)
         .command<&prepare_coordinate<TorsionSpringRows>>(Phase::Prepare, kPrepare, kPlaced)
         .command<&begin_turning<TorsionSpringRows>>(Phase::Drive, kStart, kStartDoc)
         .command<&apply_torsion>(Phase::Force, "Constraint/Force", "adds -(k (x - rest) + c x') along the coordinate")
+        .command<&linearize_torsion>(Phase::Linearize, "Constraint/ForceChange", kChange)
         .command<&stored_by_torsion>(Phase::Potential, "Constraint/Energy", "k (x - rest)^2 / 2")
         .command<&finish_torsion>(Phase::Finish, kFinish, "position, rate and effort at the end of the step")
         .accuracy("the solver's order")
@@ -186,6 +189,7 @@ void register_coordinates(Registrar& registrar)
         .command<&prepare_actuator>(Phase::Prepare, kPrepare, kPlaced)
         .command<&begin_turning<ActuatorRows>>(Phase::Drive, kStart, kStartDoc)
         .command<&apply_actuator>(Phase::Force, "Constraint/Force", "adds gear (gain u + bias) along the coordinate")
+        .command<&linearize_actuator>(Phase::Linearize, "Constraint/ForceChange", kChange)
         .command<&finish_actuator>(Phase::Finish, kFinish, "position, rate and effort at the end of the step")
         .accuracy("the solver's order")
         .strengths("motors and servos of a robot, with gear ratio and limits; its input is one number that requests and scripts set")

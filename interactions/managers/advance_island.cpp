@@ -52,15 +52,16 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
         out.join(SlipEnds(island, bodies, shafts, method, choices.slop, memory).advance());
     else
     {
-        island.motion->kick(island.h);
+        const Moving moving = how_to_move(problem, island, island.h);
+        kick(problem, island, bodies, shafts, island.h);
         problem.read_speeds(bodies, shafts);
-        set_targets(problem, island, island.h, choices.slop, memory.passing);
+        set_targets(problem, island, island.h, choices.slop, moving, memory.passing);
         problem.apply_impulses();
         const Verdict found = method.find_impulses(problem);
         if (choices.or_nothing && !found.converged) return put_back(memory, bodies, shafts);
         out.join(found);
         problem.write_speeds(bodies, shafts);
-        move(island, found, island.h);
+        move(problem, island, found, island.h, moving);
         store_impulses(problem, island);
         add_impulses(problem, island);
     }

@@ -111,12 +111,15 @@ AutomaticRows::Choice choose_method(const StepContext& context, const Island& is
                                     Row row)
 {
     const auto most = static_cast<std::size_t>(rows.max_points[row]), resting = static_cast<std::size_t>(rows.max_resting[row]);
-    const auto joints = static_cast<std::size_t>(std::ranges::count(island.rows, RowKind::Equality, &ConstraintRow::kind));
+    const auto is_linear = [](const ConstraintRow& r) { return r.kind == RowKind::Equality || r.kind == RowKind::ForceChange; };
+    const auto joints = static_cast<std::size_t>(std::ranges::count_if(island.rows, is_linear));
     const std::size_t points = island.contacts.size() + island.rows.size() - joints;
     const double ratio = mass_ratio(island, bodies);
     // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time. Where
     // contact points prevail, as in a heap of jointed bodies, each of them may change its state in each iteration, which costs far more.
-    const bool yields = ratio >= rows.heavy[row] || 2 * points <= joints;
+    // So may it where a servo presses a light link on something: against it, the link weighs many times what it does alone.
+    const bool presses = std::ranges::find(island.rows, RowKind::ForceChange, &ConstraintRow::kind) != island.rows.end();
+    const bool yields = ratio >= rows.heavy[row] || 2 * points <= joints || presses;
     const bool direct = points + joints <= most || (yields && points <= kHeavyPoints * most), asks = !direct && points + joints <= resting;
     return {direct, asks ? worth_of_rest(island, bodies, context.tick) : 0, points, joints, ratio};
 }

@@ -45,14 +45,29 @@ void add_outer(double* b, const Column6& x, const Column6& y, double g)
 
 }  // namespace
 
+void IslandMatrix::join(std::uint32_t i, std::uint32_t j)
+{
+    if (i != kNoIndex && j != kNoIndex && i != j) edges_.push_back({std::min(i, j), std::max(i, j)});
+}
+
 void IslandMatrix::shape(const Problem& problem)
 {
     edges_.clear();
-    const auto join = [&](std::uint32_t i, std::uint32_t j)
-    {
-        if (i != kNoIndex && j != kNoIndex && i != j) edges_.push_back({std::min(i, j), std::max(i, j)});
-    };
     for (const Point& p : problem.points) join(p.a, p.b);
+    analyse(problem);
+    pair_of_point_.clear();
+    for (const Point& p : problem.points) pair_of_point_.push_back(p.a != kNoIndex && p.b != kNoIndex ? matrix_.find(p.a, p.b) : kNoIndex);
+}
+
+void IslandMatrix::shape_of_rows(const Problem& problem)
+{
+    edges_.clear();
+    analyse(problem);
+}
+
+/// Joins the movers of the rows, too.
+void IslandMatrix::analyse(const Problem& problem)
+{
     for (const Line& line : problem.lines)
         for (const auto& [i, j] : kPairsOfThree)
             if (j < line.count) join(line.mover[i], line.mover[j]);
@@ -64,8 +79,7 @@ void IslandMatrix::shape(const Problem& problem)
         matrix_.analyse(nodes_, edges_);
         known_edges_ = edges_;
     }
-    pair_of_point_.clear(), pairs_of_line_.clear();
-    for (const Point& p : problem.points) pair_of_point_.push_back(p.a != kNoIndex && p.b != kNoIndex ? matrix_.find(p.a, p.b) : kNoIndex);
+    pairs_of_line_.clear();
     for (const Line& line : problem.lines)
     {
         auto& pairs = pairs_of_line_.emplace_back();
@@ -124,10 +138,9 @@ void IslandMatrix::add(const Problem& problem, std::size_t i, double g)
     }
 }
 
-bool IslandMatrix::solve(std::span<Column6> x)
+bool IslandMatrix::substitute(std::span<Column6> x) const
 {
     if (x.empty()) return true;
-    if (!matrix_.factor(interruption_)) return false;
     matrix_.solve({x.front().data(), 6 * x.size()});
     return std::all_of(x.begin(), x.end(),
                        [](const Column6& c) { return std::all_of(c.begin(), c.end(), [](double v) { return std::isfinite(v); }); });

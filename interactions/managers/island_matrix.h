@@ -25,18 +25,26 @@ class IslandMatrix
 public:
     /// Sets the pattern to the contact graph of the problem. Cheap if it has not changed.
     void shape(const Problem& problem);
+    /// The same without the contact points, for a matrix of rows alone.
+    void shape_of_rows(const Problem& problem);
     /// Resets the matrix to M alone.
     void start(const Problem& problem);
     /// Adds J^T G J of one point; G is in contact coordinates (t1, t2, n).
     void add(const Problem& problem, std::size_t point, const Mat3& G);
     void add(const Problem& problem, std::size_t line, double g);
-    /// x = (M + J^T G J)^-1 x. Returns false if the matrix is singular, the result is not finite, or the step has been
-    /// interrupted.
     /// Block products in one factorisation, which measure its cost.
     std::size_t products() const { return matrix_.products(); }
-    bool solve(std::span<Column6> x);
+    /// x = (M + J^T G J)^-1 x. Returns false if the matrix is singular, the result is not finite, or the step has been
+    /// interrupted.
+    bool solve(std::span<Column6> x) { return x.empty() || (factor() && substitute(x)); }
+    /// The two parts of solve(), for several right-hand sides.
+    bool factor() { return matrix_.factor(interruption_); }
+    bool substitute(std::span<Column6> x) const;
 
 private:
+    void join(std::uint32_t i, std::uint32_t j);
+    void analyse(const Problem& problem);
+
     linear::SparseBlocks matrix_{linear::SparseBlocks::Kind::General};
     const Interruption* interruption_ = nullptr;
     std::vector<linear::SparseNode> nodes_;

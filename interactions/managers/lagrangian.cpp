@@ -15,9 +15,9 @@ void Lagrangian::start(const Problem& problem, double kappa)
         const Vec3 u = p.frictional() ? problem.relative_velocity(p) : Vec3{};
         bias_.push_back(p.friction * std::hypot(u.x, u.y));
     }
-    for (const Line& line : problem.lines) line_rho_.push_back(line.count > 0 ? kappa / line.mobility : 0.0);
+    for (const Line& line : problem.lines) line_rho_.push_back(line.count > 0 ? line.stiffness(kappa) : 0.0);
     velocities_.resize(problem.points.size()), velocity_steps_.resize(problem.points.size());
-    rates_.resize(problem.lines.size()), rate_steps_.resize(problem.lines.size());
+    gaps_.resize(problem.lines.size()), rate_steps_.resize(problem.lines.size());
     step_.resize(problem.movers.size());
 }
 
@@ -81,9 +81,9 @@ double Lagrangian::gradient(const Problem& problem, IslandMatrix* matrix)
     {
         const Line& line = problem.lines[i];
         if (line.count == 0) continue;
-        rates_[i] = problem.rate(line);
+        gaps_[i] = problem.gap(line);
         double g = 0;
-        add_push(step_, line, project_line(line, line.impulse - line_rho_[i] * (rates_[i] - line.target), line_rho_[i], &g));
+        add_push(step_, line, project_line(line, line.impulse - line_rho_[i] * gaps_[i], line_rho_[i], &g));
         if (matrix && g != 0) matrix->add(problem, i, g);
     }
     double largest = 0;
@@ -113,7 +113,7 @@ void Lagrangian::weld(Problem& problem, IslandMatrix& matrix)
     {
         const Line& line = problem.lines[i];
         if (line.count == 0) continue;
-        const double gap = problem.rate(line) - line.target;
+        const double gap = problem.gap(line);
         if (line.least == 0 && line.impulse <= 0 && gap > 0) continue;
         matrix.add(problem, i, line_rho_[i]);
         add_push(step_, line, -line_rho_[i] * gap);
@@ -140,7 +140,7 @@ double Lagrangian::slope(const Problem& problem, double t)
     {
         const Line& line = problem.lines[i];
         if (line.count == 0) continue;
-        const double tau = line.impulse - line_rho_[i] * (rates_[i] + rate_steps_[i] * t - line.target);
+        const double tau = line.impulse - line_rho_[i] * (gaps_[i] + rate_steps_[i] * t);
         sum -= project_line(line, tau, line_rho_[i], nullptr) * rate_steps_[i];
     }
     return sum;
@@ -181,7 +181,7 @@ void Lagrangian::take_impulses(Problem& problem)
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
     {
         Line& line = problem.lines[i];
-        if (line.count > 0) line.impulse = project_line(line, line.impulse - line_rho_[i] * (problem.rate(line) - line.target), 0, nullptr);
+        if (line.count > 0) line.impulse = project_line(line, line.impulse - line_rho_[i] * problem.gap(line), 0, nullptr);
     }
     problem.apply_impulses();
 }

@@ -46,7 +46,7 @@ private:
 
     std::vector<double> rho_, bias_, line_rho_;
     std::vector<Vec3> velocities_, velocity_steps_;  // at the present v, and their change along the step
-    std::vector<double> rates_, rate_steps_;
+    std::vector<double> gaps_, rate_steps_;
     std::vector<Column6> step_, force_;
 };
 

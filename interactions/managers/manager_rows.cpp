@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "advance_island.h"
 #include "plab/number_text.h"
@@ -31,28 +32,49 @@ double unknown_share(const Problem& problem)
 class Sweeps final : public Method
 {
 public:
-    Sweeps(int iterations, int position_iterations, double tolerance, double relaxation)
-        : iterations_(iterations), position_iterations_(position_iterations), tolerance_(tolerance), relaxation_(relaxation)
+    Sweeps(int iterations, int position_iterations, double tolerance, double relaxation, JointSolver& joints)
+        : iterations_(iterations),
+          position_iterations_(position_iterations),
+          tolerance_(tolerance),
+          relaxation_(relaxation),
+          joints_(joints)
     {
     }
     Verdict find_impulses(Problem& problem) override
     {
-        const Swept done =
-            sweep_without_gain(problem, {static_cast<int>(iterations_ * (1 + 9 * unknown_share(problem))), 0.1 * tolerance_, relaxation_});
+        const Sweeping how{static_cast<int>(iterations_ * (1 + 9 * unknown_share(problem))), 0.1 * tolerance_, relaxation_};
+        const Swept done = has_forces(problem) ? sweep_between_joints(problem, how) : sweep_without_gain(problem, how);
         problem.apply_impulses();
         const double residual = violation(problem);
         return {done.sweeps, residual, residual <= tolerance_, false};
     }
     Verdict find_displacements(Problem& problem, double tolerance) override
     {
-        const Swept done = sweep(problem, {position_iterations_, tolerance, relaxation_});
+        const Sweeping how{position_iterations_, tolerance, relaxation_};
+        const Swept done = has_forces(problem) ? sweep_between_joints(problem, how) : sweep(problem, how);
         problem.apply_impulses();
         return {done.sweeps, 0, true, false};
     }
 
 private:
+    /// Where forces are stiff, joints and forces are held exactly between some sweeps.
+    Swept sweep_between_joints(Problem& problem, Sweeping how)
+    {
+        constexpr int kAtOnce = 8;
+        Swept out;
+        joints_.hold(problem, how.tolerance);
+        for (const int most = std::exchange(how.most, kAtOnce); out.sweeps < most && !out.converged && !problem.interrupted();)
+        {
+            const Swept some = sweep(problem, how);
+            out.sweeps += some.sweeps, out.change = some.change, out.converged = some.converged;
+            joints_.hold(problem, how.tolerance);
+        }
+        return out;
+    }
+
     int iterations_, position_iterations_;
     double tolerance_, relaxation_;
+    JointSolver& joints_;
 };
 
 /// As a fraction of a body's size per step (or of a rad): smaller violations are not reported.
@@ -163,7 +185,7 @@ void solve_all_sequentially(const StepContext& context, Row row, SequentialRows&
               [&](std::size_t, Island& island, StepMemory& memory)
               {
                   Sweeps method(whole(rows.max_iterations[row]), whole(rows.position_iterations[row]), rows.tolerance[row],
-                                rows.relaxation[row]);
+                                rows.relaxation[row], memory.joints);
                   memory.problem.workers = context.workers;
                   report(island, advance_island(island, bodies, shafts, method, choices, memory));
               });
@@ -206,7 +228,7 @@ void solve_all_directly(const StepContext& context, Row row, DirectRows& rows, B
                   memory.step.problem.workers = context.workers;
                   if (is_swept(i))
                   {
-                      Sweeps method(how.most_sweeps, how.most_sweeps, std::max(1e-6, how.tolerance), 1);
+                      Sweeps method(how.most_sweeps, how.most_sweeps, std::max(1e-6, how.tolerance), 1, memory.step.joints);
                       report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
                       island.fell_back = true;
                       return;

@@ -55,9 +55,9 @@ char piece_of(const Point& p, const Vec3& u)
 }
 
 /// 1 where a row acts within its bounds, or 0.
-char piece_of(const Line& line, double rate)
+char piece_of(const Line& line, double gap)
 {
-    const double wanted = line.impulse - (rate - line.target) / line.mobility;
+    const double wanted = line.impulse - gap / line.resistance();
     return line.count > 0 && wanted >= line.least && wanted <= line.most ? 1 : 0;
 }
 
@@ -67,7 +67,7 @@ double total_violation(const Problem& problem)
     double sum = 0;
     const auto take = [&sum](double v) { sum += v * v; };
     for (const Point& p : problem.points) take(violation(p, problem.relative_velocity(p)));
-    for (const Line& line : problem.lines) take(violation(line, problem.rate(line)));
+    for (const Line& line : problem.lines) take(violation(line, problem.gap(line)));
     return std::sqrt(sum);
 }
 
@@ -78,9 +78,6 @@ bool settled(const Problem& problem, double total, double tolerance)
     const auto n = static_cast<double>(problem.points.size() + problem.lines.size());
     return total <= tolerance * std::sqrt(n) && violation(problem) <= tolerance;
 }
-
-/// Whether a row is an equality, whose impulse has no bounds.
-bool is_joint(const Line& line) { return line.count > 0 && line.least == -HUGE_VAL && line.most == HUGE_VAL; }
 
 bool is_large(const Problem& problem) { return problem.points.size() + problem.lines.size() > 256; }
 
@@ -159,9 +156,9 @@ bool NewtonSolver::find_step(const Problem& problem, double kappa)
         const Line& line = problem.lines[i];
         line_laws_[i] = {};
         if (line.count == 0) continue;
-        const double rho = 1 / line.mobility, gap = problem.rate(line) - line.target, wanted = line.impulse - rho * gap;
+        const double gap = problem.gap(line), stiff = line.stiffness(kappa), wanted = line.impulse - gap / line.resistance();
         const double held = std::clamp(wanted, line.least, line.most);
-        line_laws_[i] = held == wanted ? LineLaw{-kappa * rho * gap, kappa * rho} : LineLaw{held - line.impulse, 0};
+        line_laws_[i] = held == wanted ? LineLaw{-stiff * gap, stiff} : LineLaw{held - line.impulse, 0};
         add_push(step_, line, line_laws_[i].change);
         if (line_laws_[i].G != 0) matrix_.add(problem, i, line_laws_[i].G);
     }
@@ -219,7 +216,7 @@ bool NewtonSolver::changes_pieces(const Problem& problem)
     auto piece = pieces_.begin();
     const auto take = [&](char now) { changes = changes || *piece != now, *piece++ = now; };
     for (const Point& p : problem.points) take(piece_of(p, problem.relative_velocity(p)));
-    for (const Line& line : problem.lines) take(piece_of(line, problem.rate(line)));
+    for (const Line& line : problem.lines) take(piece_of(line, problem.gap(line)));
     return changes;
 }
 
@@ -308,55 +305,6 @@ void NewtonSolver::approach(Problem& problem, const Solving& how, Solved& out)
     }
 }
 
-/// Sets the impulses of the joints so that these hold exactly, while all other impulses stay as they are: a linear problem.
-void NewtonSolver::hold_joints(Problem& problem, double tolerance)
-{
-    constexpr double kStiffness = 1e6;  // of more, rounding in a chain under a load of some hundred times its links' mass makes nonsense
-    constexpr int kRounds = 8;
-    double before = HUGE_VAL;
-    for (int round = 0; round < kRounds; ++round)
-    {
-        matrix_.start(problem);
-        step_.assign(problem.movers.size(), Column6{});
-        line_laws_.assign(problem.lines.size(), {});
-        double worst = 0;
-        for (std::size_t i = 0; i < problem.lines.size(); ++i)
-        {
-            const Line& line = problem.lines[i];
-            if (!is_joint(line)) continue;
-            const double gap = problem.rate(line) - line.target, stiff = kStiffness / line.mobility;
-            worst = std::max(worst, std::fabs(gap));
-            line_laws_[i] = {-stiff * gap, stiff};
-            add_push(step_, line, line_laws_[i].change);
-            matrix_.add(problem, i, stiff);
-        }
-        // Joints that contradict one another stay apart.
-        if (worst <= tolerance || !(worst < 0.5 * before) || !matrix_.solve(step_)) return;
-        before = worst;
-        for (std::size_t i = 0; i < problem.lines.size(); ++i)
-            if (line_laws_[i].G != 0) problem.lines[i].impulse += line_laws_[i].change - line_laws_[i].G * rate_of(step_, problem.lines[i]);
-        problem.apply_impulses();
-    }
-}
-
-/// Joints that hold remove energy from what the other impulses leave, but these were found for joints that yield. If more energy results
-/// than there was, they are halved, and dropped in the end.
-void NewtonSolver::hold_joints_without_gain(Problem& problem, double tolerance)
-{
-    constexpr int kHalvings = 4;
-    if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint)) return;
-    hold_joints(problem, tolerance);
-    for (int n = 1; n <= kHalvings && makes_energy(problem); ++n)
-    {
-        const double share = n < kHalvings ? 0.5 : 0.0;
-        for (Point& p : problem.points) p.impulse = p.impulse * share;
-        for (Line& line : problem.lines)
-            if (!is_joint(line)) line.impulse *= share;
-        problem.apply_impulses();
-        hold_joints(problem, tolerance);
-    }
-}
-
 /// Alternates Gauss-Seidel sweeps with Newton's method: each can leave a point at which the other stagnates.
 void NewtonSolver::finish_by_sweeps(Problem& problem, const Solving& how, Solved& out)
 {
@@ -365,7 +313,7 @@ void NewtonSolver::finish_by_sweeps(Problem& problem, const Solving& how, Solved
     {
         out.sweeps += sweep_without_gain(problem, {how.most_sweeps, how.tolerance, 1}).sweeps;
         problem.apply_impulses();
-        hold_joints_without_gain(problem, how.tolerance);
+        joints_.hold_without_gain(problem, how.tolerance);
         out.residual = violation(problem);
         out.converged = out.residual <= how.tolerance;
         if (out.converged || round + 1 == how.rounds) return;

@@ -30,6 +30,7 @@
 
 #include <cstdint>
 
+#include "joint_solver.h"
 #include "lagrangian.h"
 #include "sequential.h"
 
@@ -83,13 +84,12 @@ private:
     void polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out);
     void approach(Problem& problem, const Solving& how, Solved& out);
     bool settles_by_sweeps(Problem& problem, double guess, const Solving& how, Solved& out);
-    void hold_joints(Problem& problem, double tolerance);
-    void hold_joints_without_gain(Problem& problem, double tolerance);
     void finish_by_sweeps(Problem& problem, const Solving& how, Solved& out);
     void remember(const Problem& problem);
     void recall(Problem& problem) const;
 
     IslandMatrix matrix_;
+    JointSolver joints_;
     Lagrangian lagrangian_;
     std::vector<Law> laws_;
     std::vector<LineLaw> line_laws_;

@@ -26,7 +26,8 @@ namespace plab::managers
 /// The points of an island with more of them are coloured and swept four pairs at a time (contact_packets.h).
 inline constexpr std::size_t kSweptInOrder = 64;
 
-/// A row of a joint, limit or motor: sum of linear . v + angular . w + given = target, or >= target if it is one-sided.
+/// A row of a joint, limit or motor: sum of linear . v + angular . w + given + compliance * impulse = target, or >= target if it is
+/// one-sided. Only the change of a force is compliant (RowKind::ForceChange).
 struct Line
 {
     std::uint32_t row = 0;    ///< index in Island::rows
@@ -34,10 +35,18 @@ struct Line
     std::array<std::uint32_t, ConstraintRow::kMostBlocks> mover{};
     std::array<Vec3, ConstraintRow::kMostBlocks> linear, angular;
     double given = 0;
-    double mobility = 0;  ///< J M^-1 J^T
+    double mobility = 0;    ///< J M^-1 J^T
+    double compliance = 0;  ///< like mobility, 1/kg or 1/(kg m^2)
     double target = 0;
+    double before = 0;           ///< ForceChange: J v before the last kick
     double least = 0, most = 0;  ///< bounds of the impulse, N s or N m s
     double impulse = 0;
+
+    /// How much nearer to its target an impulse of 1 takes the row alone, 1/kg or 1/(kg m^2).
+    double resistance() const { return mobility + compliance; }
+    /// The impulse per distance from the target of a row that acts with `kappa` times the stiffness that would close it alone if it had no
+    /// compliance.
+    double stiffness(double kappa) const { return compliance == 0 ? kappa / mobility : 1 / (mobility / kappa + compliance); }
 };
 
 /// Movers, or contact points, of which one thread computes so many at once: some microseconds of work.
@@ -103,6 +112,11 @@ public:
 
     Vec3 relative_velocity(const Point& p) const;  ///< u, m/s
     double rate(const Line& line) const;           ///< J v + given
+    /// How far a row is from its target, m/s or rad/s.
+    double gap(const Line& line) const
+    {
+        return line.compliance == 0 ? rate(line) - line.target : rate(line) + line.compliance * line.impulse - line.target;
+    }
     void push(const Point& p, const Vec3& j);
     void push(const Line& line, double j);
     /// m/s: how far from the contact law rounding may leave the result: a fraction of the largest speed, or of the speed that
@@ -173,7 +187,7 @@ private:
 ///   j_n = max(0, j_n - (u_n - least) / K_nn),   j_t = projection of j_t - u_t / k_t onto the disc of radius mu j_n.
 /// It is 0 exactly where Signorini's condition and Coulomb's law (a true cone, with friction opposing the slip) hold.
 double violation(const Point& p, const Vec3& u);
-double violation(const Line& line, double rate);
+double violation(const Line& line, double gap);
 /// The largest violation over all points and lines.
 double violation(const Problem& problem);
 

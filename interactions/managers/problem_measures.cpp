@@ -22,12 +22,13 @@ double violation(const Point& p, const Vec3& u)
     return std::max(of_normal, std::hypot(x * share - p.impulse.x, y * share - p.impulse.y) * k);
 }
 
-double violation(const Line& line, double rate)
+// A row with much compliance hardly moves anything: what counts is the speed by which it would.
+double violation(const Line& line, double gap)
 {
     if (line.count == 0) return 0;
-    const double off = rate - line.target, wanted = line.impulse - off / line.mobility;
+    const double wanted = line.impulse - gap / line.resistance();
     const double held = std::clamp(wanted, line.least, line.most);
-    return held == wanted ? std::fabs(off) : std::fabs(held - line.impulse) * line.mobility;
+    return held == wanted ? std::fabs(gap) * (line.mobility / line.resistance()) : std::fabs(held - line.impulse) * line.mobility;
 }
 
 double kinetic_energy(const Problem& problem)
@@ -46,7 +47,7 @@ double violation(const Problem& problem)
 {
     double largest = 0;
     for (const Point& p : problem.points) largest = std::max(largest, violation(p, problem.relative_velocity(p)));
-    for (const Line& line : problem.lines) largest = std::max(largest, violation(line, problem.rate(line)));
+    for (const Line& line : problem.lines) largest = std::max(largest, violation(line, problem.gap(line)));
     return largest;
 }
 

@@ -19,9 +19,9 @@ constexpr double kSliver = 1e-9;
 Verdict SlipEnds::try_part(double h)
 {
     Problem& problem = memory_.problem;
-    island_.motion->kick(h);
+    kick(problem, island_, bodies_, shafts_, h);
     problem.read_speeds(bodies_, shafts_);
-    set_targets(problem, island_, h, slop_, memory_.passing);
+    set_targets(problem, island_, h, slop_, how_to_move(problem, island_, h), memory_.passing);
     problem.apply_impulses();
     return method_.find_impulses(problem);
 }
@@ -79,7 +79,7 @@ void SlipEnds::move(const Verdict& found, double h)
 {
     Problem& problem = memory_.problem;
     problem.write_speeds(bodies_, shafts_);
-    managers::move(island_, found, h);
+    managers::move(problem, island_, found, h, how_to_move(problem, island_, h));
     add_impulses(problem, island_);
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {

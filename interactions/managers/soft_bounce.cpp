@@ -89,8 +89,8 @@ void SoftIsland<W>::bounce_with_limits(double share)
         const bool one_sided = row.kind == RowKind::OneSided, pressed = memory_.line_greatest[i] > 0;
         line.target = row.rate + (one_sided ? share * row.restitution * memory_.line_closing[i] : 0.0);
         line.least = one_sided ? 0.0 : -HUGE_VAL, line.most = HUGE_VAL;
-        // Motors have no impulse at an instant; nor has a limit that was not reached.
-        if (row.kind == RowKind::Rate || (one_sided && !pressed)) line.least = line.most = 0;
+        // Nor has a limit an impulse that was not reached.
+        if (!acts_at_once(row) || (one_sided && !pressed)) line.least = line.most = 0;
     }
     (void)sweep(problem_, contacts_, {kMostSweeps, 1e-6 * fastest, 1, 0});
 }

@@ -47,7 +47,10 @@ Verdict SoftIsland<W>::run()
         kick();
         sweep_.gathers = s > 0;
         sweep_soft(contacts_, std::span<Mover>(problem_.movers), sweep_, std::span<SoftPoint<W>>(soft_));
-        sweep_lines(true);
+        if (forces_)
+            hold_forces(true);
+        else
+            sweep_lines(true);
         write();
         if (bounces_) count_travel();
         move();
@@ -185,15 +188,17 @@ template <int W>
 void SoftIsland<W>::kick()
 {
     if (bounces_) note_kicks(true);
-    island_.motion->kick(h_);
+    managers::kick(problem_, island_, bodies_, shafts_, h_);
     if (!island_.rows.empty()) island_.motion->refresh_rows(), problem_.turn_lines();
     read_given();
     meet();
-    set_line_targets(problem_, island_, h_);
+    set_line_targets(problem_, island_, h_, Moving::ByEnd);
     if (!applied_ || !problem_.lines.empty()) sum();  // targets limit the impulses of lines
     applied_ = true;
     most_ = problem_.read_speeds_and_apply(bodies_, shafts_);
     if (bounces_) note_kicks(false);
+    forces_ = has_forces(problem_);
+    hold_forces(true);
 }
 
 /// The impulse that stopped an impact is no estimate for the impulses after it.
@@ -245,6 +250,7 @@ void SoftIsland<W>::write()
 template <int W>
 void SoftIsland<W>::move()
 {
+    note_move(problem_, island_, h_, Moving::ByEnd);
     island_.motion->move(h_);
     // Inertias of the new attitudes, and the velocities with the impulses that write() applied.
     problem_.turn_movers_and_apply(bodies_, h_, memory_.moved);
@@ -259,7 +265,8 @@ void SoftIsland<W>::relax()
     if (choices_.relax_iterations == 0) follow_move(contacts_, std::span<const Mover>(movers), moved(h_), soft);
     for (int i = 0; i < choices_.relax_iterations; ++i)
     {
-        sweep_lines(false);
+        if (i == 0) hold_forces(false);
+        if (i > 0 || !forces_) sweep_lines(false);
         if (i == 0)
             follow_move_and_sweep(contacts_, movers, moved(h_), soft);
         else
@@ -275,14 +282,31 @@ void SoftIsland<W>::sweep_lines(bool soft)
         Line& line = problem_.lines[i];
         if (line.count == 0) continue;
         const ConstraintRow& row = island_.rows[line.row];
-        const bool pulled = soft && row.kind != RowKind::Rate && (row.kind == RowKind::Equality || row.error < 0);
+        const bool pulled = soft && (row.kind == RowKind::Equality || (row.kind == RowKind::OneSided && row.error < 0));
         const double bias = pulled ? sweep_.between.bias_rate * row.error : 0.0, before = line.impulse;
         const double share = pulled ? sweep_.between.mass_scale : 1.0, leak = pulled ? sweep_.between.impulse_scale : 0.0;
-        line.impulse =
-            std::clamp(before - share * (problem_.rate(line) - line.target + bias) / line.mobility - leak * before, line.least, line.most);
+        line.impulse = std::clamp(before - share * (problem_.gap(line) + bias) / line.resistance() - leak * before, line.least, line.most);
         problem_.push(line, line.impulse - before);
         memory_.line_greatest[i] = std::max(memory_.line_greatest[i], line.impulse);
     }
+}
+
+/// Where forces are stiff, one sweep over the rows is far from enough: joints and forces are held exactly, with the contacts as they are.
+/// `corrects`: joints that are apart close as fast as contacts that overlap.
+template <int W>
+void SoftIsland<W>::hold_forces(bool corrects)
+{
+    if (!forces_) return;
+    const double rate = corrects ? sweep_.between.bias_rate : 0.0;
+    const auto close_at = [&](double speed_per_error)
+    {
+        for (Line& line : problem_.lines)
+            if (const ConstraintRow& row = island_.rows[line.row]; row.kind == RowKind::Equality)
+                line.target -= speed_per_error * row.error;
+    };
+    if (rate != 0) close_at(rate);
+    memory_.step.joints.hold(problem_, 1e-3 * choices_.tolerance);
+    if (rate != 0) close_at(-rate);
 }
 
 template <int W>
@@ -346,6 +370,7 @@ int SoftIsland<W>::step_hard()
     // Moves back with the impulses of the move.
     problem_.apply_moved(memory_.moved);
     problem_.write_speeds(bodies_, shafts_);
+    note_move(problem_, island_, -h_, Moving::ByEnd);
     island_.motion->move(-h_);
     problem_.turn_movers_back(bodies_, -h_);
     follow_move(contacts_, movers, moved(-h_), soft);
@@ -388,7 +413,7 @@ void SoftIsland<W>::finish(Verdict& out)
     {
         const Line& line = problem_.lines[i];
         island_.rows[line.row].impulse = memory_.line_sum[i];
-        if (line.count > 0 && island_.rows[line.row].kind != RowKind::OneSided)
+        if (line.count > 0 && (island_.rows[line.row].kind == RowKind::Equality || island_.rows[line.row].kind == RowKind::Rate))
             out.residual = std::max(out.residual, std::fabs(problem_.rate(line) - island_.rows[line.row].rate));
     }
     out.converged = out.residual <= choices_.tolerance;

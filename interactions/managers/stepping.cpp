@@ -5,6 +5,7 @@
 
 #include "plab/body_turn.h"
 #include "plab/rotation.h"
+#include "plab/row_speed.h"
 
 namespace plab::managers
 {
@@ -70,8 +71,8 @@ void set_impact_targets(Problem& problem, const Island& island, std::span<const 
         const double speed = closing(problem, line, row, island.h);
         line.target = row.rate + share * row.restitution * speed;
         line.least = one_sided ? 0.0 : -HUGE_VAL, line.most = HUGE_VAL;
-        // Motors have no impulse at an instant; nor has a limit that is not reached.
-        if (row.kind == RowKind::Rate || (one_sided && row.error > 0 && speed == 0)) line.least = line.most = 0;
+        // Nor has a limit an impulse that is not reached.
+        if (!acts_at_once(row) || (one_sided && row.error > 0 && speed == 0)) line.least = line.most = 0;
     }
 }
 
@@ -188,7 +189,7 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     return out;
 }
 
-void set_targets(Problem& problem, const Island& island, double h, double slop, std::span<const double> passing)
+void set_targets(Problem& problem, const Island& island, double h, double slop, Moving moving, std::span<const double> passing)
 {
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
@@ -198,10 +199,70 @@ void set_targets(Problem& problem, const Island& island, double h, double slop, 
         problem.points[i].least = c.turning + std::min(0.0, c.depth + (dot(c.impulse, c.normal) > 0 ? slop : 0.0)) / h;
     }
     for (std::size_t i = 0; i < passing.size(); ++i) problem.points[i].least = std::min(problem.points[i].least, passing[i]);
-    set_line_targets(problem, island, h);
+    set_line_targets(problem, island, h, moving);
 }
 
-void set_line_targets(Problem& problem, const Island& island, double h)
+Moving how_to_move(const Problem& problem, const Island& island, double h)
+{
+    constexpr double kStops = 4;  // h c / m: slower by exp(-4) at the end
+    const auto stops = [&](const Line& line)
+    {
+        const ConstraintRow& row = island.rows[line.row];
+        return row.kind == RowKind::ForceChange && h * row.damping * line.mobility > kStops;
+    };
+    return std::ranges::any_of(problem.lines, stops) ? Moving::ByEnd : Moving::ByMean;
+}
+
+void kick(Problem& problem, const Island& island, const Bodies& bodies, const Shafts& shafts, double h)
+{
+    for (Line& line : problem.lines)
+        if (const ConstraintRow& row = island.rows[line.row]; row.kind == RowKind::ForceChange) line.before = speed_of(row, bodies, shafts);
+    island.motion->kick(h);
+}
+
+namespace
+{
+
+/// theta of set_line_targets() for z = h c / m.
+double share_of_end(double z)
+{
+    constexpr double kSmall = 1e-2;  // then the next term of the series, z^3 / 720, is below 2^-28
+    return z < kSmall ? 0.5 + z / 12 : -1 / std::expm1(-z) - 1 / z;
+}
+
+/// Let v be the speed at the end and x the displacement halfway through the move, x = error + h (v_before + v) / 4 or error + h v / 2. The
+/// impulse j = h (bias - stiffness x - damping (theta v + (1 - theta) v_before - rate)) is linear in v: j = without - g v, so that
+/// v + j / g = without / g.
+void set_force_target(Line& line, const ConstraintRow& row, double h, Moving moving)
+{
+    constexpr double kNothing = 0x1p-52;
+    const bool by_mean = moving == Moving::ByMean;
+    const double ahead = by_mean ? 0.25 * h : 0.5 * h, theta = share_of_end(h * row.damping * line.mobility);
+    const double g = h * (row.stiffness * ahead + row.damping * theta);
+    if (line.count == 0 || !(g * line.mobility > kNothing))
+    {
+        line.least = line.most = line.impulse = 0;
+        return;
+    }
+    const double halfway = row.error + (by_mean ? ahead * line.before : 0.0);
+    const double without = h * (row.bias - row.stiffness * halfway - row.damping * ((1 - theta) * line.before - row.rate));
+    line.compliance = 1 / g, line.target = without / g;
+}
+
+}  // namespace
+
+void note_move(const Problem& problem, const Island& island, double h, Moving moving)
+{
+    for (const Line& line : problem.lines)
+    {
+        ConstraintRow& row = island.rows[line.row];
+        if (row.kind != RowKind::ForceChange || line.count == 0) continue;
+        const double end = problem.rate(line);
+        row.error += h * (moving == Moving::ByMean ? 0.5 * (line.before + end) : end);
+    }
+}
+
+void set_line_targets(Problem& problem, const Island& island, double h, Moving moving)
 {
     for (Line& line : problem.lines)
     {
@@ -209,6 +270,7 @@ void set_line_targets(Problem& problem, const Island& island, double h)
         const bool one_sided = row.kind == RowKind::OneSided;
         line.target = row.rate - (one_sided && row.error > 0 ? row.error / h : 0.0);
         line.least = std::max(one_sided ? 0.0 : -HUGE_VAL, row.lower * h), line.most = row.upper * h;
+        if (row.kind == RowKind::ForceChange) set_force_target(line, row, h, moving);
         line.impulse = std::clamp(line.impulse, line.least, line.most);
     }
 }
@@ -261,6 +323,8 @@ namespace
 /// Errors of joints are linear in the displacements only for small turns. What remains after a correction is corrected again while it is
 /// more than this fraction of the island's size (or rad), or a chain of light links under a heavy load would come apart.
 constexpr double kJointsApart = 0x1p-11;
+/// rad: where correcting overlap turns a body by more, joints may be apart afterwards.
+constexpr double kMuch = 0x1p-6;
 constexpr int kMostCorrections = 10;
 
 /// Sets the displacements that would close the joints and stops; returns the largest of them.
@@ -272,7 +336,7 @@ double set_displacements_of_lines(Problem& problem, const Island& island, double
         const ConstraintRow& row = island.rows[line.row];
         line.target = -row.error;
         const bool held = row.kind == RowKind::Equality;
-        line.least = held ? -HUGE_VAL : 0.0, line.most = row.kind == RowKind::Rate || line.count == 0 ? 0.0 : HUGE_VAL;
+        line.least = held ? -HUGE_VAL : 0.0, line.most = !acts_at_once(row) || line.count == 0 ? 0.0 : HUGE_VAL;
         if (line.most > 0) worst = std::max(worst, (held ? std::fabs(row.error) : -row.error) * (turns_only(row) ? length : 1));
     }
     return worst;
@@ -356,7 +420,8 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
     if (worst <= kPositionTolerance * length) return {};
     if (apart > kJointsApart * length) problem.turn_lines();
     Verdict out = displace_by(problem, kPositionTolerance * length, bodies, shafts, method, apart > kJointsApart * length);
-    for (int n = 1; n < kMostCorrections && apart > kJointsApart * length; ++n)
+    const bool may_part = !island.rows.empty() && largest_turn(problem) > kMuch;
+    for (int n = 1; n < kMostCorrections && (apart > kJointsApart * length || may_part); ++n)
     {
         island.motion->refresh_rows();
         if (!(set_displacements_of_lines(problem, island, length) > kJointsApart * length)) break;
@@ -369,9 +434,11 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
     return out;
 }
 
-void move(const Island& island, const Verdict& found, double h)
+void move(const Problem& problem, const Island& island, const Verdict& found, double h, Moving moving)
 {
-    if (found.converged)
+    if (!found.converged) moving = Moving::ByEnd;
+    note_move(problem, island, h, moving);
+    if (moving == Moving::ByMean)
         island.motion->move_mean(h);
     else
         island.motion->move(h);

@@ -1,7 +1,7 @@
 /// The parts of the step described in advance_island.h: impacts, velocity targets of the contact solve, position correction.
 #pragma once
 
-#include "problem.h"
+#include "joint_solver.h"
 
 namespace plab::managers
 {
@@ -37,6 +37,7 @@ inline constexpr double kFar = -1e30;
 struct StepMemory
 {
     Problem problem;
+    JointSolver joints;            ///< of methods that sweep
     std::vector<Vec3> velocities;  ///< m/s, at the start of the step
     std::vector<Vec3> impulses;    ///< N s, from the parts of the step that are done
     std::vector<double> line_impulses;
@@ -73,14 +74,32 @@ void keep_speeds(const Bodies& bodies, const Shafts& shafts, StepMemory& memory)
 void take_back_speeds(const StepMemory& memory, Bodies& bodies, Shafts& shafts);
 
 Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& method, StepMemory& memory);
+/// Whether a row has an impulse at an instant, as in an impact: motors and forces have none.
+inline bool acts_at_once(const ConstraintRow& row) { return row.kind == RowKind::Equality || row.kind == RowKind::OneSided; }
+/// How the bodies will move after a kick.
+enum class Moving : std::uint8_t
+{
+    ByMean,  ///< by the mean of their speeds before the kick and at the end
+    ByEnd,   ///< by those at the end
+};
+/// By the mean, unless a damper would stop its bodies within a fraction of h: a speed that an impact leaves lasts no longer, and half of it
+/// would take them far during h.
+Moving how_to_move(const Problem& problem, const Island& island, double h);
+/// Applies the forces during h (s).
+void kick(Problem& problem, const Island& island, const Bodies& bodies, const Shafts& shafts, double h);
 /// Sets what the contact velocities and row rates must be at the end of h; `passing` as in StepMemory, or empty.
-void set_targets(Problem& problem, const Island& island, double h, double slop, std::span<const double> passing = {});
-/// The same for the rows alone.
-void set_line_targets(Problem& problem, const Island& island, double h);
+void set_targets(Problem& problem, const Island& island, double h, double slop, Moving moving, std::span<const double> passing = {});
+/// The same for the rows alone. The change of a force (RowKind::ForceChange) is that of the implicit midpoint rule, for which it is
+/// evaluated where the bodies are halfway through the move. Damping counts with the speed theta v + (1 - theta) v_before, where theta is
+/// such that a body on a damper alone slows down by exactly exp(-h c / m): 1/2 if that is slow, up to 1 for stiff dampers, whose speeds
+/// would otherwise swing from one side to the other (exponential fitting; W. Liniger, R. Willoughby, SIAM J. Numer. Anal. 7 (1970)).
+void set_line_targets(Problem& problem, const Island& island, double h, Moving moving);
 Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory);
-/// Moves with the mean of old and new velocities. Where the impulses have not converged it moves with the new velocities only:
-/// these keep gaps from closing, whereas their mean with velocities that lead into an overlap would not.
-void move(const Island& island, const Verdict& found, double h);
+/// Moves. Where the impulses have not converged it does so with the new velocities in any case: these keep gaps from closing, whereas
+/// their mean with velocities that lead into an overlap would not.
+void move(const Problem& problem, const Island& island, const Verdict& found, double h, Moving moving);
+/// Notes how far a move by h (s) takes the bodies along the rows of forces. To be called before it.
+void note_move(const Problem& problem, const Island& island, double h, Moving moving);
 void store_impulses(const Problem& problem, Island& island);
 /// Adds the impulses of the points to what the island's contacts gave, if somebody asks for that.
 void add_impulses(const Problem& problem, Island& island);

@@ -225,12 +225,14 @@ private:
         return type ? *type : nullptr;
     }
 
-    /// Measure always runs. Prepare and Connect also run as parts of building a component: they are listed only if the author
-    /// listed them.
+    /// Measure always runs. Prepare and Connect also run as parts of building a component, and Linearize with the force that it describes:
+    /// they are listed only if the author listed them.
     static bool takes_part(const ComponentSpec& c, const CommandInfo& command)
     {
         const bool listed = std::find(c.commands.begin(), c.commands.end(), command.name) != c.commands.end();
-        if (command.phase == Phase::Prepare || command.phase == Phase::Connect) return c.explicit_commands && listed;
+        const bool runs_with_another =
+            command.phase == Phase::Prepare || command.phase == Phase::Connect || command.phase == Phase::Linearize;
+        if (runs_with_another) return c.explicit_commands && listed;
         return !c.explicit_commands || listed || command.phase == Phase::Measure;
     }
 

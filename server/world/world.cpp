@@ -78,7 +78,8 @@ std::uint64_t World::enabled_commands(const model::ComponentType& type, const mo
     for (std::size_t i = 0; i < type.info.commands.size(); ++i)
     {
         const CommandInfo& command = type.info.commands[i];
-        const bool intrinsic = command.phase == Phase::Measure || command.phase == Phase::Prepare;
+        // Linearize is a part of the force that it describes, and is used with it only.
+        const bool intrinsic = command.phase == Phase::Measure || command.phase == Phase::Prepare || command.phase == Phase::Linearize;
         const bool listed = std::find(spec.commands.begin(), spec.commands.end(), command.name) != spec.commands.end();
         // Connect contributes a coupling, so it is active whenever any command of the component was selected.
         const bool connects = command.phase == Phase::Connect && !spec.commands.empty();

@@ -29,12 +29,17 @@ Result<void> prepare_actuator(Row row, ActuatorRows& rows, const Bodies& bodies)
 namespace
 {
 
+/// F without its limits.
+double wanted_force(const ActuatorRows& rows, Row row, const Coordinate& c)
+{
+    const double u = std::clamp(rows.control[row], rows.control_lower[row], rows.control_upper[row]);
+    const Vec3& bias = rows.bias[row];
+    return rows.gain[row] * u + bias.x + rows.gear[row] * (bias.y * c.x + bias.z * c.speed);
+}
+
 double effort_of(const ActuatorRows& rows, Row row, const Coordinate& c)
 {
-    const double gear = rows.gear[row], u = std::clamp(rows.control[row], rows.control_lower[row], rows.control_upper[row]);
-    const Vec3& bias = rows.bias[row];
-    const double force = rows.gain[row] * u + bias.x + gear * (bias.y * c.x + bias.z * c.speed);
-    return gear * std::clamp(force, rows.force_lower[row], rows.force_upper[row]);
+    return rows.gear[row] * std::clamp(wanted_force(rows, row, c), rows.force_lower[row], rows.force_upper[row]);
 }
 
 }  // namespace
@@ -47,6 +52,22 @@ void apply_actuator(const StepContext& step, Rows which, const ActuatorRows& row
         const Coordinate c = coordinate_of(rows, row, bodies, shafts, step.time);
         wrenches.begin(step.component_of_row[row]);
         add_effort(c, effort_of(rows, row, c), bodies, shafts, wrenches);
+    }
+}
+
+void linearize_actuator(const StepContext& step, Rows which, const ActuatorRows& rows, const Bodies& bodies, const Shafts& shafts,
+                        RowSink& sink)
+{
+    for (const Row row : which)
+    {
+        const Coordinate c = coordinate_of(rows, row, bodies, shafts, step.time);
+        const double gear = rows.gear[row], wanted = wanted_force(rows, row, c);
+        const double lower = rows.force_lower[row], upper = rows.force_upper[row], force = std::clamp(wanted, lower, upper);
+        ConstraintRow change = change_along(c, -gear * gear * rows.bias[row].y, -gear * gear * rows.bias[row].z);
+        change.bias = gear * (wanted - force);
+        change.lower = gear * ((gear > 0 ? lower : upper) - force), change.upper = gear * ((gear > 0 ? upper : lower) - force);
+        sink.begin(step.component_of_row[row]);
+        sink.add(change);
     }
 }
 

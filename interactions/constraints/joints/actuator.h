@@ -25,6 +25,9 @@ struct ActuatorRows : CoordinateRows
 Result<void> prepare_actuator(Row row, ActuatorRows& rows, const Bodies& bodies);
 void apply_actuator(const StepContext& step, Rows which, const ActuatorRows& rows, const Bodies& bodies, const Shafts& shafts,
                     Wrenches& wrenches);
+/// Where the force is at one of its limits, the row starts from the force that the law would give without it, and keeps the limits.
+void linearize_actuator(const StepContext& step, Rows which, const ActuatorRows& rows, const Bodies& bodies, const Shafts& shafts,
+                        RowSink& sink);
 void finish_actuator(const StepContext& step, Rows which, ActuatorRows& rows, const Bodies& bodies, const Shafts& shafts);
 
 }  // namespace plab::constraints

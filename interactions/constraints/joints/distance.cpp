@@ -106,6 +106,18 @@ void apply_spring(const StepContext& step, Rows which, const SpringDamperRows& r
     }
 }
 
+void linearize_spring(const StepContext& step, Rows which, const SpringDamperRows& rows, const Bodies& bodies, RowSink& sink)
+{
+    for (const Row row : which)
+    {
+        const Stretch s = stretch_of(rows.sides(row, bodies));
+        ConstraintRow change = row_over(s.sides, s.u, -cross(s.sides.a.r, s.u), cross(s.sides.b.r, s.u), 0);
+        change.kind = RowKind::ForceChange, change.stiffness = rows.stiffness[row], change.damping = rows.damping[row];
+        sink.begin(step.component_of_row[row]);
+        sink.add(change);
+    }
+}
+
 void stored_by_spring(Rows which, const SpringDamperRows& rows, const Bodies& bodies, StoredEnergy& stored)
 {
     for (const Row row : which)

@@ -50,6 +50,7 @@ void finish_distance(const StepContext& step, Rows which, DistanceRows& rows, co
 
 void prepare_spring(Row row, SpringDamperRows& rows, const Bodies& bodies);
 void apply_spring(const StepContext& step, Rows which, const SpringDamperRows& rows, const Bodies& bodies, Wrenches& wrenches);
+void linearize_spring(const StepContext& step, Rows which, const SpringDamperRows& rows, const Bodies& bodies, RowSink& sink);
 void stored_by_spring(Rows which, const SpringDamperRows& rows, const Bodies& bodies, StoredEnergy& stored);
 void finish_spring(Rows which, SpringDamperRows& rows, const Bodies& bodies);
 

@@ -80,6 +80,15 @@ void add_effort(const Coordinate& c, double effort, const Bodies& bodies, const 
     }
 }
 
+ConstraintRow change_along(const Coordinate& c, double stiffness, double damping)
+{
+    ConstraintRow row = c.row;
+    row.kind = RowKind::ForceChange;
+    row.error = row.rate = row.bias = 0;
+    row.stiffness = std::fmax(0.0, stiffness), row.damping = std::fmax(0.0, damping);
+    return row;
+}
+
 void MotorRows::describe(Schema& s)
 {
     describe_coordinate(s, {"turn", "slide"});
@@ -151,6 +160,16 @@ void apply_torsion(const StepContext& step, Rows which, const TorsionSpringRows&
         const Coordinate c = coordinate_of(rows, row, bodies, shafts, step.time);
         wrenches.begin(step.component_of_row[row]);
         add_effort(c, effort_of(rows, row, c), bodies, shafts, wrenches);
+    }
+}
+
+void linearize_torsion(const StepContext& step, Rows which, const TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts,
+                       RowSink& sink)
+{
+    for (const Row row : which)
+    {
+        sink.begin(step.component_of_row[row]);
+        sink.add(change_along(coordinate_of(rows, row, bodies, shafts, step.time), rows.stiffness[row], rows.damping[row]));
     }
 }
 

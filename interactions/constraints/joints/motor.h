@@ -37,6 +37,8 @@ struct Coordinate
 Coordinate coordinate_of(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
 /// Adds `effort` (N m or N) along the coordinate to the wrench that has been begun.
 void add_effort(const Coordinate& c, double effort, const Bodies& bodies, const Shafts& shafts, Wrenches& wrenches);
+/// How an effort -stiffness x - damping x' changes (RowKind::ForceChange); negative ones, which drive, count as 0.
+ConstraintRow change_along(const Coordinate& c, double stiffness, double damping);
 /// Phase::Drive and Phase::Finish of coordinates that count turns.
 void begin_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
 void keep_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
@@ -80,6 +82,8 @@ struct TorsionSpringRows : CoordinateRows
 };
 void apply_torsion(const StepContext& step, Rows which, const TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts,
                    Wrenches& wrenches);
+void linearize_torsion(const StepContext& step, Rows which, const TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts,
+                       RowSink& sink);
 void stored_by_torsion(const StepContext& step, Rows which, const TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts,
                        StoredEnergy& stored);
 void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts);

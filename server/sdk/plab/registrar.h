@@ -86,7 +86,7 @@ struct PhaseCall
     ShaftMotion* shaft_motion = nullptr;        // Couple
     RatioGraph* ratios = nullptr;               // Connect
     const ShaftReactions* reactions = nullptr;  // Finish
-    RowSink* rows_out = nullptr;                // Constrain
+    RowSink* rows_out = nullptr;                // Constrain, Linearize
     const RowReports* row_reports = nullptr;    // Finish
     DynamicSystem* system = nullptr;            // Advance
     Island* island = nullptr;                   // Solve: one of them

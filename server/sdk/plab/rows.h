@@ -1,4 +1,4 @@
-/// Constraint rows: the equations that joints, limits and motors impose on their participants.
+/// Constraint rows: the equations that joints, limits and motors impose on their participants, and how forces change with their state.
 #pragma once
 
 #include <array>
@@ -24,6 +24,9 @@ enum class RowKind : std::uint8_t
     Equality,  ///< error = 0, enforced for acceleration, speed and position
     Rate,      ///< J v = rate: motors. No position error
     OneSided,  ///< error >= 0 with lambda >= 0: limits. To be added only if the row may become active within the step
+    /// lambda = bias - stiffness error - damping (J v - rate): by how much a force of Phase::Force differs, later in a step, from what it
+    /// was when it was evaluated. Only of Phase::Linearize
+    ForceChange,
 };
 
 /// A scalar row J v = rate with the multiplier lambda: wrench_k = J_k^T lambda.
@@ -37,11 +40,13 @@ struct ConstraintRow
     std::array<RowBlock, kMostBlocks> blocks{};
     std::uint32_t count = 0;
     RowKind kind = RowKind::Equality;
-    double error = 0;                                         ///< phi, m or rad
-    double rate = 0;                                          ///< m/s or rad/s: required J v
-    double bias = 0;                                          ///< m/s^2 or rad/s^2: required J a
+    double error = 0;                                         ///< phi, m or rad; ForceChange: displacement since the force was evaluated
+    double rate = 0;                                          ///< m/s or rad/s: required J v; ForceChange: J v at the evaluation
+    double bias = 0;                                          ///< m/s^2 or rad/s^2: required J a; ForceChange: N or N m, see there
     double lower = -std::numeric_limits<double>::infinity();  ///< bounds of lambda, N or N m
     double upper = std::numeric_limits<double>::infinity();
+    double stiffness = 0;       ///< ForceChange: N/m or N m/rad, >= 0
+    double damping = 0;         ///< ForceChange: N s/m or N m s/rad, >= 0
     double restitution = 0;     ///< OneSided: ratio of separation speed to approach speed
     std::uint32_t feature = 0;  ///< which row of its component; stable, for warm starting
     // Filled by the host:
@@ -56,7 +61,7 @@ struct ConstraintRow
     }
 };
 
-/// Receives the rows of Phase::Constrain, for one row of the table after the other.
+/// Receives the rows of Phase::Constrain or Phase::Linearize, for one row of the table after the other.
 class RowSink
 {
 public:

@@ -27,6 +27,7 @@ enum class Phase : std::uint8_t
     Decide,     ///< PreStep, before the step: what a component asks of the scene, as a client would: other levels of detail, any request
     Drive,      ///< PreStep: once per step; may change its own declared state
     Force,      ///< Step: add wrenches; a pure function of time and state, at every solver stage
+    Linearize,  ///< Step: rows that tell how a force of the component changes with position and speed, where joints are held in contact
     Choose,     ///< Step: a resolution that adapts chooses how impacts of this step are found
     Couple,     ///< Step: relate speeds of shafts, at every solver stage and after impulses
     Constrain,  ///< Step: constraint rows at the present state, at every solver stage
@@ -57,6 +58,7 @@ constexpr Stage stage_of(Phase phase)
         case Phase::Drive:
             return Stage::PreStep;
         case Phase::Force:
+        case Phase::Linearize:
         case Phase::Choose:
         case Phase::Couple:
         case Phase::Constrain:
@@ -79,9 +81,9 @@ constexpr std::string_view name_of(Stage stage)
 
 constexpr std::string_view name_of(Phase phase)
 {
-    constexpr std::string_view names[] = {"measure", "prepare", "connect",   "view",   "decide",    "drive", "force",
-                                          "choose",  "couple",  "constrain", "touch",  "advance",   "solve", "detect",
-                                          "gap",     "locate",  "respond",   "finish", "potential", "draw",  "restore"};
+    constexpr std::string_view names[] = {"measure", "prepare", "connect",   "view",      "decide",  "drive",  "force",  "linearize",
+                                          "choose",  "couple",  "constrain", "touch",     "advance", "solve",  "detect", "gap",
+                                          "locate",  "respond", "finish",    "potential", "draw",    "restore"};
     return names[static_cast<int>(phase)];
 }
 

@@ -33,8 +33,11 @@ void HeldIslands::solve(std::span<HeldIsland*> islands, GroupSystem& system, dou
     {
         island->rows.clear();
         if (!island->has_rows || !system.rows()) continue;
-        system.rows()->begin_hold(system.context());
-        island->rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
+        const std::span<const ConstraintRow> changes = system.force_changes();
+        system.rows()->begin_hold(system.context(), changes);
+        const std::span<const ConstraintRow> joints = system.rows()->rows();
+        island->rows.assign(joints.begin(), joints.end());
+        island->rows.insert(island->rows.end(), changes.begin(), changes.end());
     }
     wedging_.resize(step_.world.host().bodies.size(), 0.0);
     share(islands,

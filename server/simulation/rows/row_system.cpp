@@ -4,7 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "world/command_call.h"
+#include "plab/row_speed.h"
+#include "simulation/rows/scheduled_rows.h"
 
 namespace plab::simulation
 {
@@ -17,53 +18,18 @@ constexpr double kMostKick = 4;
 
 }  // namespace
 
-/// Runs the components' Constrain commands, block by block.
-class RowSystem::ScheduledRows final : public RowSource
+/// Runs the components' Constrain commands.
+class RowSystem::RowsOfComponents final : public RowSource
 {
 public:
     void select(world::World& world, const Schedule& schedule, std::span<const BlockRow> rows)
     {
-        world_ = &world;
-        sorted_.assign(rows.begin(), rows.end());
-        std::sort(sorted_.begin(), sorted_.end());
-        sorted_.erase(std::unique(sorted_.begin(), sorted_.end()), sorted_.end());
-        const auto& blocks = schedule.of(Phase::Constrain);
-        if (selected_.size() < blocks.size()) selected_.resize(blocks.size());
-        count_ = 0;
-        for (std::size_t i = 0; i < sorted_.size();)
-        {
-            Selected& s = selected_[count_++];
-            s.block = &blocks[sorted_[i].block];
-            s.rows.clear();
-            for (const std::uint32_t block = sorted_[i].block; i < sorted_.size() && sorted_[i].block == block; ++i)
-                s.rows.push_back(sorted_[i].row);
-        }
+        scheduled_.select(world, schedule, Phase::Constrain, rows);
     }
-    void constrain(const StepContext& given, RowSink& sink) override
-    {
-        world::HostTables& host = world_->host();
-        world::CommandCall call{given, {}};
-        PhaseCall& to = call.arguments;
-        to.bodies = &host.bodies, to.shafts = &host.shafts, to.shapes = &host.shapes, to.materials = &host.materials;
-        to.quantities = &host.quantities, to.rows_out = &sink;
-        for (std::size_t k = 0; k < count_; ++k)
-        {
-            const Selected& s = selected_[k];
-            call.select(*world_->tables()[s.block->table]);
-            (void)call.run(*s.block->command, s.rows);  // rows report problems as events, not as errors
-        }
-    }
+    void constrain(const StepContext& context, RowSink& sink) override { scheduled_.run(context, sink, nullptr); }
 
 private:
-    struct Selected
-    {
-        const Block* block = nullptr;
-        std::vector<Row> rows;
-    };
-    world::World* world_ = nullptr;
-    std::vector<BlockRow> sorted_;
-    std::vector<Selected> selected_;  // only the first count_ are valid
-    std::size_t count_ = 0;
+    ScheduledRows scheduled_;
 };
 
 /// Receives the rows: groups them into pieces by component, and replaces shafts by the roots of their trains.
@@ -86,12 +52,8 @@ public:
 private:
     void reduce(RowBlock& block, std::uint32_t row, std::uint32_t k)
     {
-        if (block.participant.facet != Facet::Shaft || !block.participant.valid()) return;
-        const std::uint32_t root = shafts_.root[block.participant.index];
-        if (root == block.participant.index) return;
-        out_.geared_.push_back({row, k, block.participant, block.angular.x});
-        block.angular.x *= shafts_.ratio[block.participant.index];
-        block.participant.index = root;
+        const RowBlock as_given = block;
+        if (replace_by_root(block, shafts_)) out_.geared_.push_back({row, k, as_given.participant, as_given.angular.x});
     }
 
     RowSystem& out_;
@@ -112,7 +74,7 @@ void RowSystem::configure(world::World& world, const Schedule& schedule, std::sp
         source_ = nullptr;
         return;
     }
-    if (!scheduled_) scheduled_ = std::make_unique<ScheduledRows>();
+    if (!scheduled_) scheduled_ = std::make_unique<RowsOfComponents>();
     scheduled_->select(world, schedule, rows);
     configure(world.host(), *scheduled_, graph);
 }
@@ -140,18 +102,9 @@ bool RowSystem::is_mobile(Ref participant) const
     return participant.facet == Facet::Body ? host_->bodies.dynamic(participant.index) : host_->shafts.dynamic(participant.index);
 }
 
-double RowSystem::speed_of(const RowBlock& b) const
-{
-    if (b.participant.facet == Facet::Shaft) return b.angular.x * host_->shafts.speed[b.participant.index];
-    return dot(b.linear, host_->bodies.velocity[b.participant.index]) + dot(b.angular, host_->bodies.angular_velocity[b.participant.index]);
-}
+double RowSystem::speed_of(const RowBlock& b) const { return plab::speed_of(b, host_->bodies, host_->shafts); }
 
-double RowSystem::speed_of(const ConstraintRow& row) const
-{
-    double sum = 0;
-    for (std::uint32_t k = 0; k < row.count; ++k) sum += speed_of(row.blocks[k]);
-    return sum;
-}
+double RowSystem::speed_of(const ConstraintRow& row) const { return plab::speed_of(row, host_->bodies, host_->shafts); }
 
 double RowSystem::speed_of_others(const ConstraintRow& row) const
 {
@@ -278,11 +231,12 @@ void RowSystem::account(const RowBook& book, double share) const
     }
 }
 
-void RowSystem::begin_hold(const StepContext& context)
+void RowSystem::begin_hold(const StepContext& context, std::span<const ConstraintRow> further)
 {
     collect(context);
     held_speed_.clear();
-    for (const ConstraintRow& row : rows_) held_speed_.push_back(speed_of(row) - speed_of_others(row));
+    for (const std::span<const ConstraintRow> some : {std::span<const ConstraintRow>(rows_), further})
+        for (const ConstraintRow& row : some) held_speed_.push_back(speed_of(row) - speed_of_others(row));
 }
 
 double RowSystem::take_impulses(const StepContext& context, std::span<const ConstraintRow> held, double h, const RowBook& book)

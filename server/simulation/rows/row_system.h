@@ -109,8 +109,8 @@ public:
     /// not changed in any bit.
     void join(const StepContext& context, const RowBook& book);
 
-    /// collect(), for a manager that will hold the rows during the advance.
-    void begin_hold(const StepContext& context);
+    /// collect(), for a manager that will hold the rows during the advance, and `further` rows that move the same members.
+    void begin_hold(const StepContext& context, std::span<const ConstraintRow> further = {});
     /// To be called after the manager held the rows over h (s): `held` are the same rows with their impulses (N s), in the same order.
     /// Stores what is reported about them and the errors that remain at the present state. Books their work, computed with the mean of
     /// the speeds before and after, and returns its sum (J).
@@ -129,7 +129,7 @@ public:
 
 private:
     class Sink;
-    class ScheduledRows;
+    class RowsOfComponents;
     /// A block as its component emitted it, before a shaft was replaced by the root of its train.
     struct Geared
     {
@@ -191,7 +191,7 @@ private:
     world::HostTables* host_ = nullptr;
     const ConstraintGraph* graph_ = nullptr;
     RowSource* source_ = nullptr;
-    std::unique_ptr<ScheduledRows> scheduled_;
+    std::unique_ptr<RowsOfComponents> scheduled_;
     RowEquations equations_;
 
     std::vector<ConstraintRow> rows_;

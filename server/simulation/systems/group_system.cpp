@@ -287,6 +287,7 @@ void GroupSystem::evaluate_midway()
 {
     go_midway();
     evaluate(midway_, 0);
+    if (rows_ && rows_held_) force_changes_.collect(call_.context, midway_, scratch_->meter());
     leave_midway();
 }
 

@@ -12,6 +12,7 @@
 #include "plab/minimal_coordinates.h"
 #include "simulation/articulated/articulated_bodies.h"
 #include "simulation/groups/groups.h"
+#include "simulation/rows/force_changes.h"
 #include "simulation/rows/row_system.h"
 #include "simulation/shafts/shaft_system.h"
 #include "simulation/systems/progress.h"
@@ -132,6 +133,8 @@ public:
     void kick(std::size_t member, double h);
     /// The joints of the members; null if there are none.
     RowSystem* rows() { return rows_.get(); }
+    /// How forces change after evaluate_midway(), if there are joints and a manager holds them.
+    std::span<const ConstraintRow> force_changes() const { return force_changes_.rows(); }
     /// The meter of the thread that advances this system.
     CostMeter& meter() { return scratch_->meter(); }
     RowBook row_book() const { return {book_.work, book_.sign, scratch_->accounted_bodies, scratch_->accounted_shafts}; }
@@ -211,7 +214,7 @@ private:
     std::vector<std::uint32_t> roots_;  ///< shafts that have coordinates of their own
     std::vector<Selected> selected_;    ///< only the first selected_count_ are valid
     std::size_t selected_count_ = 0;
-    std::vector<BlockRow> merged_;
+    std::vector<BlockRow> merged_, forces_of_members_;
     std::vector<std::uint32_t> groups_;
     bool has_observed_ = false;
     bool uniform_ = false;  ///< no force depends on time or state
@@ -222,6 +225,7 @@ private:
     WorkBook book_;
     ShaftSystem shaft_system_;
     std::unique_ptr<RowSystem> rows_;
+    ForceChanges force_changes_;
     bool rows_held_ = false;
     std::vector<std::uint32_t> joints_;  ///< components that rows_ belong to
     bool minimal_ = false;               ///< in this advance the bodies have the coordinates of their joints

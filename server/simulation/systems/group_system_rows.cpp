@@ -24,6 +24,13 @@ void GroupSystem::configure_rows()
     rows_->configure(*frame_.world, *frame_.schedule, merged_, *frame_.graph);
     const auto& blocks = frame_.schedule->of(Phase::Constrain);
     for (const BlockRow& row : merged_) joints_.push_back(frame_.world->tables()[blocks[row.block].table]->component_of_row()[row.row]);
+    forces_of_members_.clear();
+    for (const std::uint32_t g : groups_)
+    {
+        const auto& forces = frame_.groups->all[g].forces;
+        forces_of_members_.insert(forces_of_members_.end(), forces.begin(), forces.end());
+    }
+    force_changes_.configure(*frame_.world, *frame_.schedule, forces_of_members_);
 }
 
 void GroupSystem::join()

@@ -1,0 +1,110 @@
+#include "joint_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sequential.h"
+
+namespace plab::managers
+{
+namespace
+{
+
+constexpr double kStiffness = 1e6;  // of more, rounding in a chain under a load of some hundred times its links' mass makes nonsense
+constexpr int kRounds = 8;
+
+/// Whether a force would act within its bounds at the present velocities; joints always do.
+bool acts_freely(const Line& line, double gap)
+{
+    const double wanted = line.impulse - gap / line.resistance();
+    return wanted >= line.least && wanted <= line.most;
+}
+
+}  // namespace
+
+/// Sets up the matrix of the rows that act freely. Returns whether other rows do so than before.
+bool JointSolver::choose(const Problem& problem)
+{
+    bool changes = false;
+    stiffness_.resize(problem.lines.size(), 0.0);
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+    {
+        const Line& line = problem.lines[i];
+        const bool free = is_joint(line) || (is_force(line) && acts_freely(line, problem.gap(line)));
+        const double stiffness = free ? line.stiffness(kStiffness) : 0.0;
+        changes = changes || stiffness != stiffness_[i];
+        stiffness_[i] = stiffness;
+    }
+    if (!changes) return false;
+    matrix_.start(problem);
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+        if (stiffness_[i] != 0) matrix_.add(problem, i, stiffness_[i]);
+    return true;
+}
+
+/// Returns the largest violation, m/s.
+double JointSolver::find_changes(const Problem& problem)
+{
+    double worst = 0;
+    step_.assign(problem.movers.size(), Column6{});
+    changes_.assign(problem.lines.size(), 0.0);
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+    {
+        const Line& line = problem.lines[i];
+        if (stiffness_[i] == 0 && !is_force(line)) continue;
+        const double gap = problem.gap(line);
+        worst = std::max(worst, violation(line, gap));
+        changes_[i] = stiffness_[i] != 0 ? -stiffness_[i] * gap
+                                         : std::clamp(line.impulse - gap / line.resistance(), line.least, line.most) - line.impulse;
+        add_push(step_, line, changes_[i]);
+    }
+    return worst;
+}
+
+void JointSolver::hold(Problem& problem, double tolerance)
+{
+    matrix_.shape_of_rows(problem);
+    stiffness_.clear();
+    double before = HUGE_VAL;
+    for (int round = 0; round < kRounds; ++round)
+    {
+        if (choose(problem))
+        {
+            before = HUGE_VAL;
+            if (!matrix_.factor()) return;
+        }
+        const double worst = find_changes(problem);
+        if (worst <= tolerance || !(worst < 0.5 * before) || !matrix_.substitute(step_)) return;
+        before = worst;
+        for (std::size_t i = 0; i < problem.lines.size(); ++i)
+        {
+            Line& line = problem.lines[i];
+            const double old = line.impulse;
+            line.impulse = std::clamp(old + changes_[i] - stiffness_[i] * rate_of(step_, line), line.least, line.most);
+            if (line.impulse != old) problem.push(line, line.impulse - old);
+        }
+    }
+}
+
+void JointSolver::hold_without_gain(Problem& problem, double tolerance)
+{
+    constexpr int kHalvings = 4;
+    if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint)) return;
+    const auto hold_and_sum = [&]
+    {
+        hold(problem, tolerance);
+        problem.apply_impulses();
+    };
+    hold_and_sum();
+    for (int n = 1; n <= kHalvings && makes_energy(problem); ++n)
+    {
+        const double share = n < kHalvings ? 0.5 : 0.0;
+        for (Point& p : problem.points) p.impulse = p.impulse * share;
+        for (Line& line : problem.lines)
+            if (!is_joint(line)) line.impulse *= share;
+        problem.apply_impulses();
+        hold_and_sum();
+    }
+}
+
+}  // namespace plab::managers
