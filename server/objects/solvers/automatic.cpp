@@ -7,6 +7,7 @@
 
 #include "exact.h"
 #include "fixed_step.h"
+#include "plab/minimal_coordinates.h"
 #include "plab/number_text.h"
 #include "rotation_splitting.h"
 #include "runge_kutta4_parts.h"
@@ -22,6 +23,8 @@ constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 /// Of a larger group than `kManySize`, parts of |h lambda| = 0.4 cost less than implicit steps while they are at most so many: an implicit
 /// step takes about as many evaluations as there are numbers, and the cube of that in products.
 constexpr std::size_t kManySize = kExponentialSize;
+/// Up to so many numbers, a tree of joints is described by its joints, so that implicit steps may come into question.
+constexpr std::size_t kMinimalSize = 600;
 constexpr double kPart = 0.4;
 /// RungeKutta4 is stable up to |h lambda| = 2.8.
 constexpr double kLimit = 2;
@@ -153,12 +156,22 @@ private:
     void advance_stiff()
     {
         if (advance_by_exponential(h_, true, kExponentialSize, m_.exponential, system_).fine) return say(Method::Exponential);
-        const std::size_t size = FlatSystem(system_).size();
+        std::size_t size = FlatSystem(system_).size();
+        if (size > kManySize && size <= kMinimalSize && describe_by_joints()) size = FlatSystem(system_).size();
         if (size > kManySize && stiffness_ <= kPart * kMostParts) return advance_in_parts();
         if (size > kRadauSize) return advance_explicitly(0);
         say(Method::Radau5);
         const Radau5Counts counts = advance_by_radau(h_, kTolerance, kMaxSubsteps, m_.exponential.radau, system_);
         if (!trial_ && counts.reached < h_) report_radau_gave_up(start_, row_, counts);
+    }
+
+    /// A robot of six hinges has 72 numbers as bodies, and 12 as angles and rates: so few that an implicit step costs less than parts.
+    bool describe_by_joints()
+    {
+        auto* const minimal = system_.is_constrained() ? dynamic_cast<MinimalCoordinates*>(&system_) : nullptr;
+        if (!minimal) return false;
+        system_.evaluate(0, 0);  // trees of joints are recognised at the start
+        return minimal->use_minimal_coordinates().empty();
     }
 
     void advance_in_parts()

@@ -95,3 +95,61 @@ TEST_CASE("rows between bodies are action and reaction: no net force and no net 
         }
     }
 }
+
+TEST_CASE("the change that a force tells is its derivative: by displacements, and by speeds")
+{
+    const Case cases[] = {
+        {"SpringDamper", "a='a' b='b' anchor_a='0.1 0.2 0.3' anchor_b='-0.2 0.1 0.4' length='0.5' stiffness='30' damping='4'"},
+        {"SpringDamper", "b='b' anchor_a='0.1 0.2 0.3' anchor_b='-0.2 0.1 0.4' length='0.5' stiffness='30' damping='4'"},
+        {"TorsionSpring", "a='a' b='b' axis='0.6 0 0.8' stiffness='30' damping='4'"},
+        {"TorsionSpring", "a='s' b='t' stiffness='30' damping='4'"},
+        {"TorsionSpring", "a='a' b='b' along='slide' anchor='0.7 0.2 0.1' axis='0.6 0 0.8' stiffness='30' damping='4'"},
+        {"Actuator", "a='a' b='b' axis='0.6 0 0.8' gain='5' control='3' bias='2 -30 -4' gear='-1.5'"},
+        {"Actuator", "a='a' b='b' along='slide' anchor='0.7 0.2 0.1' axis='0 0.6 0.8' gain='5' control='3' bias='2 -30 -4' gear='1.5'"},
+    };
+    for (const Case& c : cases)
+    {
+        CAPTURE(std::string(c.type));
+        CAPTURE(std::string(c.more));
+        RowProbe probe(kBodies + "<component id='j' type='Constraint/" + c.type + "' " + c.more + "/>");
+        probe.throw_about(1);
+        constexpr double h = 1e-4;
+        const ConstraintRow change = probe.change();
+        CHECK(change.kind == RowKind::ForceChange);
+        CHECK(change.rate == probe.speed(change));
+        CHECK(change.bias == 0);
+        std::vector<double> forces, speeds;
+        probe.move(-2 * h);
+        for (int i = -2; i <= 2; ++i, probe.move(h))
+        {
+            const ConstraintRow now = probe.change();
+            forces.push_back(probe.force_along(now)), speeds.push_back(probe.speed(now));
+        }
+        probe.move(-3 * h);
+        const auto slope = [&](const std::vector<double>& v) { return (v[0] - 8 * v[1] + 8 * v[3] - v[4]) / (12 * h); };
+        CHECK(near(slope(forces), -change.stiffness * change.rate - change.damping * slope(speeds), 1e-7));
+        for (Vec3& v : probe.host().bodies.velocity) v *= 2;
+        for (Vec3& w : probe.host().bodies.angular_velocity) w *= 2;
+        for (double& s : probe.host().shafts.speed) s *= 2;
+        CHECK(near(probe.force_along(change) - forces[2], -change.damping * change.rate, 1e-12));
+    }
+}
+
+TEST_CASE("the change of an actuator at its limit starts from the force that it would have without")
+{
+    for (const double gear : {1.5, -1.5})
+    {
+        CAPTURE(gear);
+        const std::string law =
+            "<component id='j' type='Constraint/Actuator' a='a' b='b' axis='0.6 0 0.8' gain='50' control='3' bias='2 -30 -4' gear='" +
+            text(gear) + "' ";
+        RowProbe free(kBodies + law + "/>"), limited(kBodies + law + "force_lower='-2' force_upper='7'/>");
+        free.throw_about(1), limited.throw_about(1);
+        const ConstraintRow change = limited.change();
+        const double force = limited.force_along(change), wanted = free.force_along(free.change());
+        CHECK(force == doctest::Approx(7 * gear));
+        CHECK(change.bias == doctest::Approx(wanted - force));
+        CHECK(change.lower == doctest::Approx(gear > 0 ? -9 * gear : 0));
+        CHECK(change.upper == doctest::Approx(gear > 0 ? 0 : -9 * gear));
+    }
+}
