@@ -241,7 +241,7 @@ void set_force_target(Line& line, const ConstraintRow& row, double h, Moving mov
     const double g = h * (row.stiffness * ahead + row.damping * theta);
     if (line.count == 0 || !(g * line.mobility > kNothing))
     {
-        line.least = line.most = line.impulse = 0;
+        line.least = line.most = line.impulse = line.compliance = 0;
         return;
     }
     const double halfway = row.error + (by_mean ? ahead * line.before : 0.0);
