@@ -7,6 +7,7 @@
 #include "advance_island.h"
 #include "manager_rows.h"
 #include "plab/number_text.h"
+#include "plab/rotation.h"
 #include "soft_step.h"
 #include "solve_islands.h"
 
@@ -52,9 +53,11 @@ void AutomaticRows::describe(Schema& s)
 namespace
 {
 
-constexpr std::size_t kHeavyPoints = 16;  // times max_points
+constexpr std::size_t kHeavyPoints = 16, kServoPoints = 4;  // times max_points
 /// An island at rest, or nearly so, is solved within these Newton steps. One that tumbles costs no more than they do: sweeps finish.
 constexpr Solving kAffordable{1e-12, 12, 20, 1e-12};
+/// Where a stiff servo presses, sweeps would let it hammer: as many steps as Manager/Direct, if they are made within about 0.1 s.
+constexpr Solving kOfServos{.tolerance = 1e-12, .most_steps = 80, .most_sweeps = 20, .most_products = 1'000'000};
 /// Ends of sliding are located for a body that slides alone.
 constexpr std::size_t kSlipEnds = 4;
 /// Heaps overlap a quarter as much as with SoftStep's own default, and sway less; a row of bodies that moves comes to rest more slowly.
@@ -107,6 +110,26 @@ std::size_t worth_of_rest(const Island& island, const Bodies& bodies, Tick tick)
     return travel <= kSlow && due ? kOfSlow : 0;
 }
 
+/// Whether a force changes so much within the step that its bodies hardly move along it: h (h k + c) is above what they weigh.
+bool is_stiff(const ConstraintRow& row, const Island& island, const Bodies& bodies)
+{
+    if (row.kind != RowKind::ForceChange) return false;
+    double mobility = 0;
+    for (std::uint32_t k = 0; k < row.count; ++k)
+    {
+        const RowBlock& b = row.blocks[k];
+        const std::uint32_t i = b.participant.index;
+        if (b.participant.facet == Facet::Shaft)
+        {
+            mobility += i < island.shaft_mobility.size() ? b.angular.x * b.angular.x * island.shaft_mobility[i] : 0.0;
+            continue;
+        }
+        const Vec3 angular_B = rotate_back(bodies.orientation[i], b.angular);
+        mobility += length_squared(b.linear) * bodies.inverse_mass[i] + dot(angular_B, bodies.inverse_inertia_B[i] * angular_B);
+    }
+    return island.h * (island.h * row.stiffness + row.damping) * mobility > 1;
+}
+
 AutomaticRows::Choice choose_method(const StepContext& context, const Island& island, const Bodies& bodies, const AutomaticRows& rows,
                                     Row row)
 {
@@ -117,11 +140,12 @@ AutomaticRows::Choice choose_method(const StepContext& context, const Island& is
     const double ratio = mass_ratio(island, bodies);
     // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time. Where
     // contact points prevail, as in a heap of jointed bodies, each of them may change its state in each iteration, which costs far more.
-    // So may it where a servo presses a light link on something: against it, the link weighs many times what it does alone.
-    const bool presses = std::ranges::find(island.rows, RowKind::ForceChange, &ConstraintRow::kind) != island.rows.end();
-    const bool yields = ratio >= rows.heavy[row] || 2 * points <= joints || presses;
-    const bool direct = points + joints <= most || (yields && points <= kHeavyPoints * most), asks = !direct && points + joints <= resting;
-    return {direct, asks ? worth_of_rest(island, bodies, context.tick) : 0, points, joints, ratio};
+    // Against a contact, a link that a stiff servo presses on something weighs many times what it does alone.
+    const bool presses = std::ranges::any_of(island.rows, [&](const ConstraintRow& r) { return is_stiff(r, island, bodies); });
+    const bool yields = ratio >= rows.heavy[row] || 2 * points <= joints;
+    const bool direct = points + joints <= most || (yields && points <= kHeavyPoints * most) || (presses && points <= kServoPoints * most);
+    const bool asks = !direct && points + joints <= resting;
+    return {direct, presses, asks ? worth_of_rest(island, bodies, context.tick) : 0, points, joints, ratio};
 }
 
 /// Solves an island exactly if that shows within `products` that it rests; otherwise nothing has been done, and the result is false.
@@ -155,7 +179,7 @@ void advance_by_choice(AutomaticRows::Choice& choice, Island& island, Bodies& bo
         choices.hertz = std::max(choices.hertz, 1 / island.h);  // an eighth of the rate of the sub-steps: stiffer contacts rattle
         return report(island, advance_softly(island, bodies, shafts, choices, memory.soft));
     }
-    Exactly method(memory.direct.newton, kAffordable, island);
+    Exactly method(memory.direct.newton, choice.presses ? kOfServos : kAffordable, island);
     StepChoices choices;
     choices.slip_ends_up_to = kSlipEnds;
     report(island, advance_island(island, bodies, shafts, method, choices, memory.direct.step));

@@ -12,11 +12,16 @@ namespace
 
 constexpr double kStiffness = 1e6;  // of more, rounding in a chain under a load of some hundred times its links' mass makes nonsense
 constexpr int kRounds = 8;
+constexpr double kNotKnown = -1;  // a stiffness before the first round, for which there is no matrix yet
 
-/// Whether a force would act within its bounds at the present velocities; joints always do.
-bool acts_freely(const Line& line, double gap)
+/// What the row alone would make of its impulse at the present velocities, if it had no bounds.
+double wanted_impulse(const Problem& problem, const Line& line) { return line.impulse - problem.gap(line) / line.admittance(); }
+
+/// Whether that is within its bounds; for joints it always is.
+bool acts_freely(const Problem& problem, const Line& line)
 {
-    const double wanted = line.impulse - gap / line.resistance();
+    if (line.count == 0 || !(line.least < line.most)) return false;
+    const double wanted = wanted_impulse(problem, line);
     return wanted >= line.least && wanted <= line.most;
 }
 
@@ -26,12 +31,10 @@ bool acts_freely(const Line& line, double gap)
 bool JointSolver::choose(const Problem& problem)
 {
     bool changes = false;
-    stiffness_.resize(problem.lines.size(), 0.0);
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
     {
         const Line& line = problem.lines[i];
-        const bool free = is_joint(line) || (is_force(line) && acts_freely(line, problem.gap(line)));
-        const double stiffness = free ? line.stiffness(kStiffness) : 0.0;
+        const double stiffness = acts_freely(problem, line) ? line.stiffness(kStiffness) : 0.0;
         changes = changes || stiffness != stiffness_[i];
         stiffness_[i] = stiffness;
     }
@@ -51,11 +54,11 @@ double JointSolver::find_changes(const Problem& problem)
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
     {
         const Line& line = problem.lines[i];
-        if (stiffness_[i] == 0 && !is_force(line)) continue;
+        if (line.count == 0) continue;
         const double gap = problem.gap(line);
         worst = std::max(worst, violation(line, gap));
-        changes_[i] = stiffness_[i] != 0 ? -stiffness_[i] * gap
-                                         : std::clamp(line.impulse - gap / line.resistance(), line.least, line.most) - line.impulse;
+        changes_[i] =
+            stiffness_[i] != 0 ? -stiffness_[i] * gap : std::clamp(wanted_impulse(problem, line), line.least, line.most) - line.impulse;
         add_push(step_, line, changes_[i]);
     }
     return worst;
@@ -64,7 +67,7 @@ double JointSolver::find_changes(const Problem& problem)
 void JointSolver::hold(Problem& problem, double tolerance)
 {
     matrix_.shape_of_rows(problem);
-    stiffness_.clear();
+    stiffness_.assign(problem.lines.size(), kNotKnown);
     double before = HUGE_VAL;
     for (int round = 0; round < kRounds; ++round)
     {
@@ -100,8 +103,6 @@ void JointSolver::hold_without_gain(Problem& problem, double tolerance)
     {
         const double share = n < kHalvings ? 0.5 : 0.0;
         for (Point& p : problem.points) p.impulse = p.impulse * share;
-        for (Line& line : problem.lines)
-            if (!is_joint(line)) line.impulse *= share;
         problem.apply_impulses();
         hold_and_sum();
     }

@@ -1,5 +1,6 @@
-/// The impulses of joints and of the changes of forces with which all of these rows hold exactly, while contacts, limits and motors keep
-/// the impulses that they have: a linear problem, with a sparse matrix that for chains and trees costs time in proportion to their joints.
+/// The impulses of the rows of an island (joints, limits, motors, changes of forces) with which they hold exactly, while contacts keep the
+/// impulses that they have. Rows that act within their bounds make a linear problem, with a sparse matrix that for chains and trees costs
+/// time in proportion to their joints; which ones do so is found in rounds (an active-set method).
 ///
 /// Sweeps pass a load on from joint to joint, so a chain of light links under a heavy load stretches, and a servo that is stiff against the
 /// inertia of its links needs hundreds of them. Methods that sweep use this before and between their sweeps.
@@ -24,11 +25,10 @@ inline bool has_forces(const Problem& problem)
 class JointSolver
 {
 public:
-    /// Changes the impulses of the rows, and the velocities of the movers with them. Forces with bounds act within these. Rows that
-    /// contradict one another stay apart.
+    /// Changes the impulses of the rows, and the velocities of the movers with them. Rows that contradict one another stay apart.
     void hold(Problem& problem, double tolerance);
-    /// The same, and sums the impulses anew. Joints that hold remove energy from what the other impulses leave, but these may have been
-    /// found for joints that yield. If more energy results than there was, they are halved, and dropped in the end.
+    /// The same if there are joints, and sums the impulses anew. Rows that hold remove energy from what the contacts leave, but these may
+    /// have been found for joints that yield. If more energy results than there was, they are halved, and dropped in the end.
     void hold_without_gain(Problem& problem, double tolerance);
 
 private:
@@ -37,7 +37,7 @@ private:
 
     IslandMatrix matrix_;
     std::vector<Column6> step_;
-    std::vector<double> stiffness_, changes_;  ///< by line; a stiffness of 0: the row keeps its impulse
+    std::vector<double> stiffness_, changes_;  ///< by line; a stiffness of 0: the row is at one of its bounds
 };
 
 }  // namespace plab::managers

@@ -110,6 +110,7 @@ struct AutomaticRows
     struct Choice
     {
         bool direct = false;
+        bool presses = false;                ///< a stiff servo or spring acts
         std::size_t tries = 0;               ///< products of blocks that finding out whether it rests may take; 0: nobody asks
         std::size_t points = 0, joints = 0;  ///< contact points and rows that may yield; rows of joints
         double ratio = 1;

@@ -57,7 +57,7 @@ char piece_of(const Point& p, const Vec3& u)
 /// 1 where a row acts within its bounds, or 0.
 char piece_of(const Line& line, double gap)
 {
-    const double wanted = line.impulse - gap / line.resistance();
+    const double wanted = line.impulse - gap / line.admittance();
     return line.count > 0 && wanted >= line.least && wanted <= line.most ? 1 : 0;
 }
 
@@ -156,7 +156,7 @@ bool NewtonSolver::find_step(const Problem& problem, double kappa)
         const Line& line = problem.lines[i];
         line_laws_[i] = {};
         if (line.count == 0) continue;
-        const double gap = problem.gap(line), stiff = line.stiffness(kappa), wanted = line.impulse - gap / line.resistance();
+        const double gap = problem.gap(line), stiff = line.stiffness(kappa), wanted = line.impulse - gap / line.admittance();
         const double held = std::clamp(wanted, line.least, line.most);
         line_laws_[i] = held == wanted ? LineLaw{-stiff * gap, stiff} : LineLaw{held - line.impulse, 0};
         add_push(step_, line, line_laws_[i].change);

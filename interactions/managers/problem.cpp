@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plab/contact_mobility.h"
+#include "plab/row_speed.h"
 
 namespace plab::managers
 {
@@ -183,12 +184,7 @@ void Problem::read_given(const Bodies& bodies, const Shafts& shafts)
             for (std::uint32_t i = 0; i < line.count; ++i)
                 moves = moves || (anchors[line.mover[i]].host == block.participant.index &&
                                   anchors[line.mover[i]].shaft == (block.participant.facet == Facet::Shaft));
-            if (moves) continue;
-            if (block.participant.facet == Facet::Body)
-                line.given += dot(block.linear, bodies.velocity[block.participant.index]) +
-                              dot(block.angular, bodies.angular_velocity[block.participant.index]);
-            else if (block.participant.facet == Facet::Shaft)
-                line.given += block.angular.x * shafts.speed[block.participant.index];
+            if (!moves) line.given += speed_of(block, bodies, shafts);
         }
     }
 }

@@ -42,8 +42,8 @@ struct Line
     double least = 0, most = 0;  ///< bounds of the impulse, N s or N m s
     double impulse = 0;
 
-    /// How much nearer to its target an impulse of 1 takes the row alone, 1/kg or 1/(kg m^2).
-    double resistance() const { return mobility + compliance; }
+    /// How much nearer to its target an impulse of 1 takes the row if nothing else acts, 1/kg or 1/(kg m^2).
+    double admittance() const { return mobility + compliance; }
     /// The impulse per distance from the target of a row that acts with `kappa` times the stiffness that would close it alone if it had no
     /// compliance.
     double stiffness(double kappa) const { return compliance == 0 ? kappa / mobility : 1 / (mobility / kappa + compliance); }

@@ -26,9 +26,9 @@ double violation(const Point& p, const Vec3& u)
 double violation(const Line& line, double gap)
 {
     if (line.count == 0) return 0;
-    const double wanted = line.impulse - gap / line.resistance();
+    const double wanted = line.impulse - gap / line.admittance();
     const double held = std::clamp(wanted, line.least, line.most);
-    return held == wanted ? std::fabs(gap) * (line.mobility / line.resistance()) : std::fabs(held - line.impulse) * line.mobility;
+    return held == wanted ? std::fabs(gap) * (line.mobility / line.admittance()) : std::fabs(held - line.impulse) * line.mobility;
 }
 
 double kinetic_energy(const Problem& problem)

@@ -12,7 +12,7 @@ double relax(Problem& problem, Line& line, double relaxation)
 {
     if (line.count == 0) return 0;
     const double before = line.impulse;
-    line.impulse = std::clamp(before - relaxation * problem.gap(line) / line.resistance(), line.least, line.most);
+    line.impulse = std::clamp(before - relaxation * problem.gap(line) / line.admittance(), line.least, line.most);
     const double change = line.impulse - before;
     if (change == 0) return 0;
     problem.push(line, change);

@@ -18,6 +18,9 @@ Softness soften(double hertz, double damping_ratio, double h)
     return {omega / a, c / (1 + c), 1 / (1 + c)};
 }
 
+/// Whether position correction pulls at the row: a joint that is apart, or a limit that is passed.
+bool is_pulled(const ConstraintRow& row) { return row.kind == RowKind::Equality || (row.kind == RowKind::OneSided && row.error < 0); }
+
 }  // namespace
 
 template <int W>
@@ -282,31 +285,31 @@ void SoftIsland<W>::sweep_lines(bool soft)
         Line& line = problem_.lines[i];
         if (line.count == 0) continue;
         const ConstraintRow& row = island_.rows[line.row];
-        const bool pulled = soft && (row.kind == RowKind::Equality || (row.kind == RowKind::OneSided && row.error < 0));
+        const bool pulled = soft && is_pulled(row);
         const double bias = pulled ? sweep_.between.bias_rate * row.error : 0.0, before = line.impulse;
         const double share = pulled ? sweep_.between.mass_scale : 1.0, leak = pulled ? sweep_.between.impulse_scale : 0.0;
-        line.impulse = std::clamp(before - share * (problem_.gap(line) + bias) / line.resistance() - leak * before, line.least, line.most);
+        line.impulse = std::clamp(before - share * (problem_.gap(line) + bias) / line.admittance() - leak * before, line.least, line.most);
         problem_.push(line, line.impulse - before);
         memory_.line_greatest[i] = std::max(memory_.line_greatest[i], line.impulse);
     }
 }
 
-/// Where forces are stiff, one sweep over the rows is far from enough: joints and forces are held exactly, with the contacts as they are.
-/// `corrects`: joints that are apart close as fast as contacts that overlap.
+/// Where forces change within the step, one sweep over the rows is far from enough: they are held exactly, with the contacts as they are.
+/// `corrects`: joints that are apart, and limits that are passed, close as fast as contacts that overlap.
 template <int W>
 void SoftIsland<W>::hold_forces(bool corrects)
 {
     if (!forces_) return;
-    const double rate = corrects ? sweep_.between.bias_rate : 0.0;
     const auto close_at = [&](double speed_per_error)
     {
         for (Line& line : problem_.lines)
-            if (const ConstraintRow& row = island_.rows[line.row]; row.kind == RowKind::Equality)
-                line.target -= speed_per_error * row.error;
+            if (const ConstraintRow& row = island_.rows[line.row]; is_pulled(row)) line.target -= speed_per_error * row.error;
     };
-    if (rate != 0) close_at(rate);
+    if (corrects) close_at(sweep_.between.bias_rate);
     memory_.step.joints.hold(problem_, 1e-3 * choices_.tolerance);
-    if (rate != 0) close_at(-rate);
+    if (corrects) close_at(-sweep_.between.bias_rate);
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i)
+        memory_.line_greatest[i] = std::max(memory_.line_greatest[i], problem_.lines[i].impulse);
 }
 
 template <int W>

@@ -154,12 +154,14 @@ TEST_CASE("a servo on a block on the floor gives no more than its largest torque
 namespace
 {
 
-/// A row of links over a box, each with a servo at its hinge, told to bend down into the box.
-std::string arm(int links, double stiffness, double damping, const std::string& manager)
+/// A row of links, each with a servo at its hinge, told to bend down; over a floor with a box, or over nothing.
+std::string arm(int links, double stiffness, double damping, const std::string& manager, bool floor = true)
 {
-    std::string all = std::string(kFloor) + kBox + "<component id='link' type='Shape/Capsule' radius='0.03' length='0.2'/>" +
-                      "<component id='box2' type='Shape/Box' half_extents='0.1 0.1 0.1'/>"
-                      "<component id='free' type='State/RigidBody' mass='1' shape='box2' position='0.5 0 0.1'/>";
+    std::string all = "<component id='link' type='Shape/Capsule' radius='0.03' length='0.2'/>";
+    if (floor)
+        all += std::string(kFloor) +
+               "<component id='box2' type='Shape/Box' half_extents='0.1 0.1 0.1'/>"
+               "<component id='free' type='State/RigidBody' mass='1' shape='box2' position='0.5 0 0.1'/>";
     const double length = 0.3;
     for (int i = 0; i < links; ++i)
     {
@@ -211,4 +213,56 @@ TEST_CASE("an arm whose servos press it on a box makes no energy, keeps its join
                 CHECK(apart < (sweeps ? 5e-4 : 1e-4));
                 if (!(sweeps && manager != kSoft) || stiffness <= 100) CHECK(last < 1e-2);
             }
+}
+
+TEST_CASE("a stop and a weak motor on a block on the floor hold against a servo that is far stiffer than the block and the rotor")
+{
+    // h (h k + c) is 300 times 1 / (1 / kBlock + 1 / kRotor). The servo is told to turn to 0.5 rad, and the stop is at 0.2 rad.
+    const std::string servo =
+        joint("s", "Actuator", "b", "r", "axis='0 0 1' gain='1e4' bias='0 -1e4 -1000' control='0.5' force_lower='-20' force_upper='20'");
+    const std::string stop = joint("stop", "Limit", "b", "r", "axis='0 0 1' upper='0.2' manager='m'");
+    // 2 N m against the servo's damping, 50 N m s/rad: it turns at 0.04 rad/s, not at the 1 rad/s that it is told.
+    const std::string damper = spring(0, 50, 0);
+    const std::string motor = joint("motor", "Motor", "b", "r", "axis='0 0 1' speed='1' max_effort='2' manager='m'");
+    for (const char* type : {"Automatic", "Direct", "SequentialImpulse", "SoftStep"})
+    {
+        CAPTURE(std::string(type));
+        const std::string manager = "<component id='m' type='Manager/" + std::string(type) + "'/>";
+        const char* const named = "response.manager='m'";
+        Scene stopped(manager + rotor_on_block(named, servo + stop));
+        REQUIRE_MESSAGE(stopped.loaded(), stopped.error());
+        stopped.run(1);
+        MESSAGE(std::string(type) << ": " << stopped.real("s", "position") - 0.2 << " rad, " << relative_speed(stopped) << " rad/s");
+        CHECK(std::fabs(stopped.real("s", "position") - 0.2) < 1e-6);
+        CHECK(std::fabs(relative_speed(stopped)) < 1e-6);
+        CHECK(stopped.vec("stop", "torque").z == doctest::Approx(-20).epsilon(1e-4));
+        Scene driven(manager + rotor_on_block(named, damper + motor));
+        REQUIRE_MESSAGE(driven.loaded(), driven.error());
+        driven.run(1);
+        MESSAGE(std::string(type) << ": " << relative_speed(driven) << " rad/s");
+        CHECK(relative_speed(driven) == doctest::Approx(0.04).epsilon(type == std::string("SoftStep") ? 1e-3 : 1e-6));
+    }
+}
+
+TEST_CASE("a stiff arm that touches nothing is stepped by its joints: implicitly, and as exactly as by many short steps")
+{
+    for (const int links : {2, 6})
+    {
+        CAPTURE(links);
+        Scene usual(arm(links, 1e3, 50, "", false)),
+            fine(solver_is("DormandPrince54' relative_tolerance='1e-12") + arm(links, 1e3, 50, "", false));
+        REQUIRE_MESSAGE(usual.loaded(), usual.error());
+        REQUIRE_MESSAGE(fine.loaded(), fine.error());
+        usual.run(0.25), fine.run(0.25);
+        double apart = 0;
+        for (int i = 0; i < links; ++i)
+        {
+            const std::string id = "l" + std::to_string(i);
+            apart = std::fmax(apart, length(usual.vec(id, "position") - fine.vec(id, "position")));
+        }
+        MESSAGE(links << " links: " << apart << " m, " << std::get<std::string>(usual.get("solver", "reason")));
+        CHECK(apart < 1e-7);
+        constexpr std::int64_t kExplicit = 32 + 64;  // DormandPrince54, and RungeKutta4 in parts
+        CHECK((std::get<std::int64_t>(usual.get("solver", "methods")) & kExplicit) == 0);
+    }
 }

@@ -23,9 +23,10 @@ constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 /// Of a larger group than `kManySize`, parts of |h lambda| = 0.4 cost less than implicit steps while they are at most so many: an implicit
 /// step takes about as many evaluations as there are numbers, and the cube of that in products.
 constexpr std::size_t kManySize = kExponentialSize;
-/// Up to so many numbers, a tree of joints is described by its joints, so that implicit steps may come into question.
-constexpr std::size_t kMinimalSize = 600;
 constexpr double kPart = 0.4;
+/// Trees of joints of up to so many numbers are described by their joints where they are stiff; those of longer chains would be too many
+/// for an implicit step as well.
+constexpr std::size_t kMinimalSize = 600;
 /// RungeKutta4 is stable up to |h lambda| = 2.8.
 constexpr double kLimit = 2;
 constexpr std::int64_t kFewestParts = 4;
@@ -155,9 +156,9 @@ private:
 
     void advance_stiff()
     {
+        if (FlatSystem(system_).size() <= kMinimalSize) describe_by_joints();
         if (advance_by_exponential(h_, true, kExponentialSize, m_.exponential, system_).fine) return say(Method::Exponential);
-        std::size_t size = FlatSystem(system_).size();
-        if (size > kManySize && size <= kMinimalSize && describe_by_joints()) size = FlatSystem(system_).size();
+        const std::size_t size = FlatSystem(system_).size();
         if (size > kManySize && stiffness_ <= kPart * kMostParts) return advance_in_parts();
         if (size > kRadauSize) return advance_explicitly(0);
         say(Method::Radau5);
@@ -165,13 +166,13 @@ private:
         if (!trial_ && counts.reached < h_) report_radau_gave_up(start_, row_, counts);
     }
 
-    /// A robot of six hinges has 72 numbers as bodies, and 12 as angles and rates: so few that an implicit step costs less than parts.
-    bool describe_by_joints()
+    /// A robot of six hinges has 72 numbers as bodies, and 12 as angles and rates: that is what an implicit step costs.
+    void describe_by_joints()
     {
         auto* const minimal = system_.is_constrained() ? dynamic_cast<MinimalCoordinates*>(&system_) : nullptr;
-        if (!minimal) return false;
+        if (!minimal) return;
         system_.evaluate(0, 0);  // trees of joints are recognised at the start
-        return minimal->use_minimal_coordinates().empty();
+        (void)minimal->use_minimal_coordinates();
     }
 
     void advance_in_parts()
@@ -224,7 +225,7 @@ private:
                        " numbers costs less in short steps than in an implicit one";
             case Method::DormandPrince54:
                 return stiff + "; " + std::to_string(FlatSystem(system_).size()) + " numbers in a group are too many for implicit steps (" +
-                       std::to_string(kRadauSize) + "), so internal steps are short";
+                       std::to_string(kRadauSize) + "; after a jump " + std::to_string(kManySize) + "), so internal steps are short";
             case Method::RotationSplitting:
                 return "h |w| = " + number(spin_) + " is above 0.05";
             default:

@@ -38,6 +38,24 @@ const Case kCases[] = {
      false},
 };
 
+constexpr double kApart = 1e-4;  // s
+
+/// Calls note() at five times around the present one, kApart from one another, and comes back.
+template <class Note>
+void note_around(RowProbe& probe, const Note& note)
+{
+    probe.move(-2 * kApart);
+    for (int i = -2; i <= 2; ++i, probe.move(kApart)) note();
+    probe.move(-3 * kApart);
+}
+
+/// The derivative at the middle one of those times, by differences of fourth order.
+template <class Value>
+double slope(const Value& value)
+{
+    return (value(0) - 8 * value(1) + 8 * value(3) - value(4)) / (12 * kApart);
+}
+
 }  // namespace
 
 TEST_CASE("rows: J and bias agree with central differences, and the error with the rate of its row")
@@ -48,22 +66,20 @@ TEST_CASE("rows: J and bias agree with central differences, and the error with t
         CAPTURE(std::string(c.more));
         RowProbe probe(kBodies + "<component id='j' type='Constraint/" + c.type + "' " + c.more + "/>");
         probe.throw_about(1);
-        constexpr double h = 1e-4;
         const auto at = probe.rows();
         std::vector<std::vector<ConstraintRow>> around;
         std::vector<std::vector<double>> speeds;
-        probe.move(-2 * h);
-        for (int i = -2; i <= 2; ++i, probe.move(h))
-        {
-            around.push_back(probe.rows());
-            speeds.emplace_back();
-            for (const ConstraintRow& row : around.back()) speeds.back().push_back(probe.speed(row) - row.rate);
-        }
+        note_around(probe,
+                    [&]
+                    {
+                        around.push_back(probe.rows());
+                        speeds.emplace_back();
+                        for (const ConstraintRow& row : around.back()) speeds.back().push_back(probe.speed(row) - row.rate);
+                    });
         REQUIRE(!at.empty());
         for (std::size_t r = 0; r < at.size(); ++r)
         {
             CAPTURE(r);
-            const auto slope = [&](auto value) { return (value(0) - 8 * value(1) + 8 * value(3) - value(4)) / (12 * h); };
             const double bias = -slope([&](std::size_t i) { return speeds[i][r]; });
             CAPTURE(at[r].bias);
             CAPTURE(bias);
@@ -113,21 +129,20 @@ TEST_CASE("the change that a force tells is its derivative: by displacements, an
         CAPTURE(std::string(c.more));
         RowProbe probe(kBodies + "<component id='j' type='Constraint/" + c.type + "' " + c.more + "/>");
         probe.throw_about(1);
-        constexpr double h = 1e-4;
         const ConstraintRow change = probe.change();
         CHECK(change.kind == RowKind::ForceChange);
         CHECK(change.rate == probe.speed(change));
         CHECK(change.bias == 0);
         std::vector<double> forces, speeds;
-        probe.move(-2 * h);
-        for (int i = -2; i <= 2; ++i, probe.move(h))
-        {
-            const ConstraintRow now = probe.change();
-            forces.push_back(probe.force_along(now)), speeds.push_back(probe.speed(now));
-        }
-        probe.move(-3 * h);
-        const auto slope = [&](const std::vector<double>& v) { return (v[0] - 8 * v[1] + 8 * v[3] - v[4]) / (12 * h); };
-        CHECK(near(slope(forces), -change.stiffness * change.rate - change.damping * slope(speeds), 1e-7));
+        note_around(probe,
+                    [&]
+                    {
+                        const ConstraintRow now = probe.change();
+                        forces.push_back(probe.force_along(now)), speeds.push_back(probe.speed(now));
+                    });
+        const double force_rate = slope([&](std::size_t i) { return forces[i]; });
+        const double acceleration = slope([&](std::size_t i) { return speeds[i]; });
+        CHECK(near(force_rate, -change.stiffness * change.rate - change.damping * acceleration, 1e-7));
         for (Vec3& v : probe.host().bodies.velocity) v *= 2;
         for (Vec3& w : probe.host().bodies.angular_velocity) w *= 2;
         for (double& s : probe.host().shafts.speed) s *= 2;
