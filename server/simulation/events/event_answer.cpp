@@ -320,6 +320,7 @@ void EventLocator::answer()
     for (FoundContact& f : seen_)
         if (!is_chosen(f)) f.contact.impulse = {}, impact_.push_back(f);
     for (std::size_t i = 0; i < own; ++i) contacts_.fill_material(impact_[i]), impact_[i].contact.impulse = {};
+    join_scope(first.time);
     rate_of_approach(impact_, first.time);
     if (at_end) suppress_resting_bounce(impact_);
     stopped_.clear();

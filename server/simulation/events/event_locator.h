@@ -231,6 +231,7 @@ private:
     void respond(double time);
     void note_resting_contacts();
     void join(double time);
+    void join_scope(double time);
     double closing() const;
     void compress(double time);
     void compress_once(double time);
