@@ -322,3 +322,28 @@ TEST_CASE("a motor drives a pusher that pushes a box along the floor against fri
     CHECK(near(s.vec("motor", "force").x, .4 * 2 * kG, 1e-6));
     CHECK(s.real("rail", "position_error") < 1e-9);
 }
+
+// A step with an impact is advanced in pieces, and each of them needs the motor. Before, its manager held only whole steps.
+TEST_CASE("a motor with a largest effort exerts it also in steps with impacts")
+{
+    for (const char* resolution : {"LocalRoot", "ConservativeAdvancement", "LocalBisection", "Bisection"})
+    {
+        CAPTURE(std::string(resolution));
+        Scene s(solver_is("RungeKutta4") + gravity() + shape("round", "Sphere", "radius='0.2'") +
+                    body("rotor", 1, {.02, .02, .02}, {0, 0, 0}, "shape='round'") +
+                    body("ball", .1, {.002, .002, .002}, {0, 0, 1}, "shape='round'") + joint("rail", "Slider", "", "ball", "axis='0 0 1'") +
+                    joint("pin", "Hinge", "", "rotor", "axis='0 0 1'") + manager() +
+                    joint("motor", "Motor", "", "rotor", "axis='0 0 1' speed='1000' max_effort='0.1' manager='manager'") +
+                    "<component id='c' type='CDetection/ODE' between='*' response='Response/Impulse' response.restitution='0.9' "
+                    "resolution='Resolution/" +
+                    resolution + "'/>",
+                dt(100));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.keep_events = true;
+        s.run(2);
+        CHECK(s.count("contact.impact") > 2);
+        CHECK(near(s.vec("rotor", "angular_velocity").z, .1 * 2 / .02, 1e-12));
+        const simulation::Totals totals = s.simulation().totals();
+        CHECK(std::fabs(totals.kinetic - totals.work) < 1e-12);
+    }
+}

@@ -26,6 +26,9 @@ public:
     /// advanced along with them, and put back afterwards. A trial emits no events and freezes no object.
     void advance(std::span<const std::uint32_t> groups, double from, double to, WorkBook book, bool trial);
 
+    /// Whether a manager advances the group in this step because of its joints.
+    bool holds_joints_of(std::uint32_t group) const { return hard_.holds_joints_of(group); }
+
     BatchedAdvance& batches() { return batches_; }
     const BatchedAdvance& batches() const { return batches_; }
 

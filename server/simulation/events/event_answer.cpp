@@ -25,13 +25,14 @@ constexpr double kStill = 0x1p-30;
 
 }  // namespace
 
-/// Advances a group from the start of its piece to `time`. A group without persistent contacts that observes no other group needs only
-/// its solver.
+/// Advances a group from the start of its piece to `time`. A group without persistent contacts, and without joints for which it needs a
+/// manager, that observes no other group needs only its solver.
 void EventLocator::advance_group(std::uint32_t g, double time, WorkBook book, bool trial)
 {
     motion_.rewind(g);
     const std::span one(&g, 1);
-    if (rests_[g] == 0 && step_.groups.all[g].upstream.empty() && !meets_force_contact_)
+    const bool alone = rests_[g] == 0 && !advance_.holds_joints_of(g) && step_.groups.all[g].upstream.empty();
+    if (alone && !meets_force_contact_)
         motion_.advance_smooth(one, {}, motion_.segment_begin(g), time, book, trial);
     else
         advance_.advance(one, motion_.segment_begin(g), time, book, trial);
