@@ -1,5 +1,7 @@
 #include "advance_island.h"
 
+#include <algorithm>
+
 #include "slip_end.h"
 
 namespace plab::managers
@@ -20,6 +22,12 @@ void add_impacts_of_stops(const Problem& problem, Island& island, std::span<cons
 {
     for (std::size_t i = 0; i < impacts.size(); ++i)
         if (ConstraintRow& row = island.rows[problem.lines[i].row]; row.kind == RowKind::OneSided) row.impulse += impacts[i];
+}
+
+/// Between two ends of sliding, slip falls linearly (slip_end.h): not under stiff servos, whose forces change within the step.
+bool accelerates_evenly(const Problem& problem, const Island& island)
+{
+    return std::ranges::none_of(problem.lines, [&](const Line& line) { return is_stiff(island.rows[line.row], line.mobility, island.h); });
 }
 
 Verdict put_back(const StepMemory& memory, Bodies& bodies, Shafts& shafts)
@@ -47,7 +55,8 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     for (std::size_t i = 0; i < guess.size(); ++i) problem.points[i].impulse = guess[i];
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
 
-    const bool locates_slip_ends = !choices.or_nothing && !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to;
+    const bool locates_slip_ends = !choices.or_nothing && !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to &&
+                                   accelerates_evenly(problem, island);
     if (locates_slip_ends)
         out.join(SlipEnds(island, bodies, shafts, method, choices.slop, memory).advance());
     else

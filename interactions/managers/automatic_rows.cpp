@@ -110,10 +110,9 @@ std::size_t worth_of_rest(const Island& island, const Bodies& bodies, Tick tick)
     return travel <= kSlow && due ? kOfSlow : 0;
 }
 
-/// Whether a force changes so much within the step that its bodies hardly move along it: h (h k + c) is above what they weigh.
-bool is_stiff(const ConstraintRow& row, const Island& island, const Bodies& bodies)
+/// J M^-1 J^T of a row.
+double mobility_of(const ConstraintRow& row, const Island& island, const Bodies& bodies)
 {
-    if (row.kind != RowKind::ForceChange) return false;
     double mobility = 0;
     for (std::uint32_t k = 0; k < row.count; ++k)
     {
@@ -127,7 +126,7 @@ bool is_stiff(const ConstraintRow& row, const Island& island, const Bodies& bodi
         const Vec3 angular_B = rotate_back(bodies.orientation[i], b.angular);
         mobility += length_squared(b.linear) * bodies.inverse_mass[i] + dot(angular_B, bodies.inverse_inertia_B[i] * angular_B);
     }
-    return island.h * (island.h * row.stiffness + row.damping) * mobility > 1;
+    return mobility;
 }
 
 AutomaticRows::Choice choose_method(const StepContext& context, const Island& island, const Bodies& bodies, const AutomaticRows& rows,
@@ -141,7 +140,9 @@ AutomaticRows::Choice choose_method(const StepContext& context, const Island& is
     // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time. Where
     // contact points prevail, as in a heap of jointed bodies, each of them may change its state in each iteration, which costs far more.
     // Against a contact, a link that a stiff servo presses on something weighs many times what it does alone.
-    const bool presses = std::ranges::any_of(island.rows, [&](const ConstraintRow& r) { return is_stiff(r, island, bodies); });
+    const auto is_servo = [&](const ConstraintRow& r)
+    { return r.kind == RowKind::ForceChange && is_stiff(r, mobility_of(r, island, bodies), island.h); };
+    const bool presses = std::ranges::any_of(island.rows, is_servo);
     const bool yields = ratio >= rows.heavy[row] || 2 * points <= joints;
     const bool direct = points + joints <= most || (yields && points <= kHeavyPoints * most) || (presses && points <= kServoPoints * most);
     const bool asks = !direct && points + joints <= resting;

@@ -37,12 +37,6 @@ Column6 jacobian(const Line& line, std::uint32_t k)
     return {l.x, l.y, l.z, a.x, a.y, a.z};
 }
 
-void add_outer(double* b, const Column6& x, const Column6& y, double g)
-{
-    for (std::size_t r = 0; r < 6; ++r)
-        for (std::size_t c = 0; c < 6; ++c) b[6 * r + c] += g * x[r] * y[c];
-}
-
 }  // namespace
 
 void IslandMatrix::join(std::uint32_t i, std::uint32_t j)
@@ -125,7 +119,12 @@ void IslandMatrix::add(const Problem& problem, std::size_t i, const Mat3& G)
 void IslandMatrix::add(const Problem& problem, std::size_t i, double g)
 {
     const Line& line = problem.lines[i];
-    for (std::uint32_t k = 0; k < line.count; ++k) add_outer(matrix_.diagonal(line.mover[k]), jacobian(line, k), jacobian(line, k), g);
+    std::array<Column6, ConstraintRow::kMostBlocks> J;
+    for (std::uint32_t k = 0; k < line.count; ++k)
+    {
+        J[k] = jacobian(line, k);
+        matrix_.add_outer(matrix_.diagonal(line.mover[k]), J[k], J[k], g);
+    }
     for (std::size_t k = 0; k < 3; ++k)
     {
         const auto [x, y] = kPairsOfThree[k];
@@ -133,8 +132,8 @@ void IslandMatrix::add(const Problem& problem, std::size_t i, double g)
         const std::uint32_t mx = line.mover[x], my = line.mover[y];
         double* of_x = mx == my ? matrix_.diagonal(mx) : matrix_.block(pairs_of_line_[i][k], mx);
         double* of_y = mx == my ? matrix_.diagonal(my) : matrix_.block(pairs_of_line_[i][k], my);
-        add_outer(of_x, jacobian(line, x), jacobian(line, y), g);
-        add_outer(of_y, jacobian(line, y), jacobian(line, x), g);
+        matrix_.add_outer(of_x, J[x], J[y], g);
+        matrix_.add_outer(of_y, J[y], J[x], g);
     }
 }
 

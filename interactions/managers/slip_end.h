@@ -5,7 +5,8 @@
 /// length. Between two such instants all accelerations are constant, so the slip speed falls linearly and its zero can be
 /// computed: a shorter part of the step, in which all contacts still slide, is tried first, and the slip speeds before and after
 /// it are extrapolated to zero. The step is cut at the first zero, and the rest is solved in the same way, with at most 8 cuts.
-/// A body that slides to a stop therefore comes to rest at the right place, whatever the step length h.
+/// A body that slides to a stop therefore comes to rest at the right place, whatever the step length h. Islands with stiff servos are
+/// stepped at once: their forces change within the step, so slip does not fall linearly, and nearly each step would be cut eight times.
 #pragma once
 
 #include "stepping.h"

@@ -76,6 +76,12 @@ void take_back_speeds(const StepMemory& memory, Bodies& bodies, Shafts& shafts);
 Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& method, StepMemory& memory);
 /// Whether a row has an impulse at an instant, as in an impact: motors and forces have none.
 inline bool acts_at_once(const ConstraintRow& row) { return row.kind == RowKind::Equality || row.kind == RowKind::OneSided; }
+/// Whether a force changes so much within h (s) that its bodies hardly move along it: h (h k + c) is above what they weigh. `mobility`: J
+/// M^-1 J^T.
+inline bool is_stiff(const ConstraintRow& row, double mobility, double h)
+{
+    return row.kind == RowKind::ForceChange && h * (h * row.stiffness + row.damping) * mobility > 1;
+}
 /// How the bodies will move after a kick.
 enum class Moving : std::uint8_t
 {

@@ -243,6 +243,12 @@ void SparseBlocks::eliminate(const Pivot& p)
     update<K>(p);
 }
 
+void SparseBlocks::add_outer(double* block, std::span<const double, kMostSize> x, std::span<const double, kMostSize> y, double g)
+{
+    const BlockRow<kMost> row = row_at<kMost>(y.data());
+    for (std::size_t r = 0; r < kMostSize; ++r) row_at<kMost>(block + r * kMostSize) += g * x[r] * row;
+}
+
 bool SparseBlocks::factor(const Interruption* interruption)
 {
     for (const Pivot& p : pivots_)

@@ -81,6 +81,8 @@ public:
         const Below& b = below_[pair];
         return b.node == i ? &values_[b.offset] : &upper_[b.offset];
     }
+    /// General: adds g x y^T to a block.
+    static void add_outer(double* block, std::span<const double, kMostSize> x, std::span<const double, kMostSize> y, double g);
     /// QuasiDefinite: adds to element (r of node a, c of node b) of an edge's block.
     void add(std::uint32_t edge, std::uint32_t r, std::uint32_t c, double value)
     {
