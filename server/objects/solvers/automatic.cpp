@@ -24,13 +24,16 @@ constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 /// step takes about as many evaluations as there are numbers, and the cube of that in products.
 constexpr std::size_t kManySize = kExponentialSize;
 constexpr double kPart = 0.4;
+constexpr double kMostParts = 16;
+/// Above kRadauSize, internal steps with control of their error are the only other way, and dearer still: 80 ms instead of 9 ms a step
+/// where a chain of 100 links under a heavy ball is a taut string with |h lambda| = 7.
+constexpr double kMostPartsOfLarge = 64;
 /// Trees of joints of up to so many numbers are described by their joints where they are stiff; those of longer chains would be too many
 /// for an implicit step as well.
 constexpr std::size_t kMinimalSize = 600;
 /// RungeKutta4 is stable up to |h lambda| = 2.8.
 constexpr double kLimit = 2;
 constexpr std::int64_t kFewestParts = 4;
-constexpr double kMostParts = 16;
 constexpr Tolerance kTolerance{1e-9, 1e-12};
 constexpr std::int64_t kMaxSubsteps = 20000;
 /// Of large groups: after so many internal steps the rest of the step is made without control of its error. A bridge whose planks are as
@@ -159,7 +162,7 @@ private:
         if (FlatSystem(system_).size() <= kMinimalSize) describe_by_joints();
         if (advance_by_exponential(h_, true, kExponentialSize, m_.exponential, system_).fine) return say(Method::Exponential);
         const std::size_t size = FlatSystem(system_).size();
-        if (size > kManySize && stiffness_ <= kPart * kMostParts) return advance_in_parts();
+        if (size > kManySize && stiffness_ <= kPart * (size > kRadauSize ? kMostPartsOfLarge : kMostParts)) return advance_in_parts();
         if (size > kRadauSize) return advance_explicitly(0);
         say(Method::Radau5);
         const Radau5Counts counts = advance_by_radau(h_, kTolerance, kMaxSubsteps, m_.exponential.radau, system_);

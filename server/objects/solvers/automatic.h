@@ -2,9 +2,9 @@
 ///
 ///   uniform forces, no joints            Exact                (machine precision at any step)
 ///   stiff, linear, few numbers that move Exponential          (exact at any step)
-///   a little stiff, many numbers         RungeKutta4 in parts (as many as make each part soft; |h lambda| up to 6.4)
+///   a little stiff, many numbers         RungeKutta4 in parts (as many as make each part soft; |h lambda| up to 6.4, or 25.6 if large)
 ///   stiff otherwise                      Radau5               (rtol 1e-9)
-///   stiff and large                      DormandPrince54      (explicit: many short internal steps)
+///   stiff and large (200 numbers)        DormandPrince54      (explicit: many short internal steps)
 ///   fast spin, no joints                 RotationSplitting 4
 ///   else                                 RungeKutta4          (the same bits as Solver/RungeKutta4)
 ///
