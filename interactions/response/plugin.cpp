@@ -41,7 +41,8 @@ void add_impulse(Registrar& registrar)
         .cost("one 3x3 solve per contact and sweep")
         .limits(
             "Gauss-Seidel: the number of sweeps grows with the height of a stack and the mass ratio within it; "
-            "simultaneous impacts of several pairs are answered one after the other")
+            "simultaneous impacts of several pairs are answered one after the other; forces between joined bodies that touch something "
+            "are explicit: with stiff servos take Response/Automatic or Response/Rows")
         .source("Mirtich (1996) chapter 3; Stronge (2000) chapter 5; Moreau (1988)");
 }
 

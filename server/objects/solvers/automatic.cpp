@@ -25,7 +25,7 @@ constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 constexpr std::size_t kManySize = kExponentialSize;
 constexpr double kPart = 0.4;
 constexpr double kMostParts = 16;
-/// Above kRadauSize, internal steps with control of their error are the only other way, and dearer still: 80 ms instead of 9 ms a step
+/// Above kRadauSize, internal steps with control of their error are the only other way, and dearer still: 80 ms instead of 10 ms a step
 /// where a chain of 100 links under a heavy ball is a taut string with |h lambda| = 7.
 constexpr double kMostPartsOfLarge = 64;
 /// Trees of joints of up to so many numbers are described by their joints where they are stiff; those of longer chains would be too many
