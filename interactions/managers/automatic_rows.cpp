@@ -7,7 +7,7 @@
 #include "advance_island.h"
 #include "manager_rows.h"
 #include "plab/number_text.h"
-#include "plab/rotation.h"
+#include "plab/row_mobility.h"
 #include "soft_step.h"
 #include "solve_islands.h"
 
@@ -118,13 +118,10 @@ double mobility_of(const ConstraintRow& row, const Island& island, const Bodies&
     {
         const RowBlock& b = row.blocks[k];
         const std::uint32_t i = b.participant.index;
-        if (b.participant.facet == Facet::Shaft)
-        {
-            mobility += i < island.shaft_mobility.size() ? b.angular.x * b.angular.x * island.shaft_mobility[i] : 0.0;
-            continue;
-        }
-        const Vec3 angular_B = rotate_back(bodies.orientation[i], b.angular);
-        mobility += length_squared(b.linear) * bodies.inverse_mass[i] + dot(angular_B, bodies.inverse_inertia_B[i] * angular_B);
+        if (b.participant.facet == Facet::Body)
+            mobility += mobility_of(bodies, b);
+        else if (i < island.shaft_mobility.size())
+            mobility += b.angular.x * b.angular.x * island.shaft_mobility[i];
     }
     return mobility;
 }

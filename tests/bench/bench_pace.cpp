@@ -259,6 +259,8 @@ void scenes_table()
     row("1000 tumbled hulls of 20 corners", "1/60", 1.0 / 60, tumbled("Shape/ConvexHull", "points=\"" + twenty_corners() + "\"", 1000),
         120);
     row("40 chains of five boxes", "1/240", 1.0 / 240, chains_in_a_heap(40), 480);
+    row("100 robots of four legs, nothing named", "1/240", 1.0 / 240, four_legged(100), 480);
+    row("chain of 100 links with 1000 kg", "1/240", 1.0 / 240, heavy_chain(100), 120);
     row("200 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(200), 480);
     row("1000 balls and boxes, nothing named", "1/240", 1.0 / 240, newcomers_heap(1000), 480);
 }

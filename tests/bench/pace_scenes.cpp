@@ -190,6 +190,62 @@ std::string chains_in_a_heap(int n)
                  out + component("contact", "CDetection/ODE", "between=\"*\" resolution=\"Resolution/None\" response.friction=\"0.5\""));
 }
 
+namespace
+{
+
+std::string part(const std::string& id, const char* shape, double mass, const Vec3& at)
+{
+    return component(id, "State/RigidBody",
+                     std::string("shape=\"") + shape + "\" mass=\"" + text(mass) + "\" position=\"" + text(at) + "\"");
+}
+
+/// A hinge with a servo that turns it to `angle`.
+std::string servo(const std::string& id, const std::string& a, const std::string& b, const Vec3& at, double angle)
+{
+    const std::string between = "axis=\"0 1 0\" a=\"" + a + "\" b=\"" + b + "\" anchor=\"" + text(at) + "\"";
+    return component("h" + id, "Constraint/Hinge", between) +
+           component("m" + id, "Constraint/Actuator",
+                     between + " gain=\"60\" bias=\"0 -60 -2\" force_lower=\"-40\" force_upper=\"40\" control=\"" + text(angle) + "\"");
+}
+
+}  // namespace
+
+std::string four_legged(int n)
+{
+    std::string out = kGravity + kGround + component("trunk", "Shape/Box", "half_extents=\"0.3 0.15 0.08\"") +
+                      component("thigh", "Shape/Capsule", "radius=\"0.03\" length=\"0.2\"") +
+                      component("shin", "Shape/Capsule", "radius=\"0.025\" length=\"0.22\"");
+    const int side = std::max(1, static_cast<int>(std::ceil(std::sqrt(n))));
+    for (int i = 0; i < n; ++i)
+    {
+        const std::string t = numbered("t", i);
+        const Vec3 at{1.5 * (i % side), 1.5 * (i / side), 0.75};
+        out += part(t, "trunk", 8, at);
+        for (int leg = 0; leg < 4; ++leg)
+        {
+            const std::string id = numbered("", 4 * i + leg);
+            const Vec3 hip = at + Vec3{leg < 2 ? 0.25 : -0.25, leg % 2 == 0 ? -0.2 : 0.2, 0};
+            out += part("u" + id, "thigh", 1, hip - Vec3{0, 0, 0.15}) + part("l" + id, "shin", 0.5, hip - Vec3{0, 0, 0.45});
+            out += servo("u" + id, t, "u" + id, hip, 0.4) + servo("l" + id, "u" + id, "l" + id, hip - Vec3{0, 0, 0.3}, -0.8);
+        }
+    }
+    return scene("1/240", out + component("contact", "CDetection/ODE", "between=\"*\" response.friction=\"0.8\""));
+}
+
+std::string heavy_chain(int links)
+{
+    std::string out =
+        kGravity + component("s", "Shape/Capsule", "radius=\"0.02\" length=\"0.05\"") + component("ball", "Shape/Sphere", "radius=\"0.5\"");
+    for (int i = 0; i <= links; ++i)
+    {
+        const std::string pin = (i > 0 ? "a=\"" + numbered("b", i - 1) + "\" " : "") + ("anchor=\"" + text(Vec3{0.1 * i, 0, 0}) + "\"");
+        out += i < links ? body(i, {0.1 * (i + 0.5), 0, 0}, "shape=\"s\" mass=\"0.1\" orientation=\"axis 0 1 0 90 deg\"")
+                         : body(i, {0.1 * i + 0.5, 0, 0}, "shape=\"ball\" mass=\"1000\"");
+        out += component(numbered("j", i), "Constraint/Ball", pin + " b=\"" + numbered("b", i) + "\"");
+    }
+    return scene("1/240", out);
+}
+
 std::string twenty_corners()
 {
     std::string out;

@@ -37,6 +37,10 @@ std::string cubes_apart(int n);
 std::string tumbled(const char* type, const std::string& parameters, int n);
 /// Chains of five boxes on ball joints that fall into one heap; no algorithm is named but Resolution/None.
 std::string chains_in_a_heap(int n);
+/// Robots of four legs that drop from 0.1 m above their feet and stand: servos of 60 N m/rad and 2 N m s/rad at eight hinges each.
+std::string four_legged(int n);
+/// Links of 0.1 kg on ball joints that hang from the world with a ball of 1000 kg, released level; no algorithm is named.
+std::string heavy_chain(int links);
 /// Points on a ball of 0.26 m, for a Shape/ConvexHull.
 std::string twenty_corners();
 

@@ -148,9 +148,11 @@ void EventLocator::complete(Candidate& candidate)
         for (const std::uint32_t g : scope_) motion_.restore_end(g);
 }
 
-void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double at)
+/// Sets the normal accelerations of the contact points under the forces alone, which distinguish bouncing from coming to rest. Velocities
+/// are projected onto joints for that: a manager has made them fit where it collected its rows, and bodies have turned since. `book`: where
+/// what the projection takes is booked, if the state stays.
+void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double at, WorkBook book)
 {
-    // Normal acceleration of the contact points under the forces alone; it distinguishes bouncing from coming to rest.
     accelerated_.clear();
     const Bodies& bodies = step_.world.host().bodies;
     for (const std::uint32_t g : scope_)
@@ -158,8 +160,8 @@ void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double 
         if (step_.groups.all[g].bodies.empty()) continue;
         GroupSystem& system = motion_.system_for(std::span(&g, 1), {});
         if (forces_.any()) forces_.attach(system, std::span(&g, 1));
-        system.begin(at, step_.frame.step, {}, nullptr);
-        system.evaluate_here();
+        system.begin(at, step_.frame.step, book, nullptr);
+        system.evaluate(0, 0);
         system.set_extra_forces(nullptr);
         for (std::size_t i = 0; i < system.bodies().size(); ++i)
         {
@@ -321,8 +323,7 @@ void EventLocator::answer()
     for (FoundContact& f : seen_)
         if (!is_chosen(f)) f.contact.impulse = {}, impact_.push_back(f);
     for (std::size_t i = 0; i < own; ++i) contacts_.fill_material(impact_[i]), impact_[i].contact.impulse = {};
-    join_scope(first.time);
-    rate_of_approach(impact_, first.time);
+    rate_of_approach(impact_, first.time, step_.book());
     if (at_end) suppress_resting_bounce(impact_);
     stopped_.clear();
     for (const std::uint32_t slot : chosen_)

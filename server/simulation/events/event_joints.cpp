@@ -90,15 +90,6 @@ void EventLocator::join(double time)
     }
 }
 
-/// A manager makes velocities fit the joints where its rows were collected, and bodies have turned since. What the projection takes is
-/// booked here, as the impact's queries will project as well, and book nothing.
-void EventLocator::join_scope(double time)
-{
-    for (const std::uint32_t g : scope_)
-        if (!step_.groups.all[g].rows.empty())
-            motion_.system_for(std::span(&g, 1), {}).begin(time, step_.frame.step, step_.book(), nullptr);
-}
-
 double EventLocator::closing() const
 {
     double most = 0;

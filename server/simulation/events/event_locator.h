@@ -219,7 +219,7 @@ private:
     void log_impact(double time);
     void complete(Candidate& candidate);
     void contacts_from_clear_side(Candidate& candidate);
-    void rate_of_approach(std::vector<FoundContact>& contacts, double at);
+    void rate_of_approach(std::vector<FoundContact>& contacts, double at, WorkBook book);
     bool stop_bouncing(const Candidate& candidate, double time, double& ends);
     void record_answered(Candidate& candidate, double time);
     void record(Candidate& candidate, const std::vector<FoundContact>& contacts, double time);
@@ -231,7 +231,6 @@ private:
     void respond(double time);
     void note_resting_contacts();
     void join(double time);
-    void join_scope(double time);
     double closing() const;
     void compress(double time);
     void compress_once(double time);

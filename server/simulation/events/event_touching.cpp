@@ -35,7 +35,7 @@ bool EventLocator::answered_at(const Candidate& candidate, double time) const
 void EventLocator::accelerations_at_contacts(const Candidate& candidate, double time)
 {
     const auto held = [&](Ref r) { return step_.groups.of(r) != kNoIndex && rests_[step_.groups.of(r)] != 0; };
-    if (!held(candidate.a) && !held(candidate.b)) return rate_of_approach(pressed_, time);
+    if (!held(candidate.a) && !held(candidate.b)) return rate_of_approach(pressed_, time, {});
     // A supported body does not fall as forces alone would make it. Its mean acceleration follows from the known end of the step.
     const Bodies& bodies = step_.world.host().bodies;
     const std::uint32_t a = candidate.a.index, b = candidate.b.index;

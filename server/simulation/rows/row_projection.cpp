@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plab/rotation.h"
+#include "plab/row_mobility.h"
 #include "simulation/rows/projection_limits.h"
 #include "simulation/rows/row_system.h"
 
@@ -59,13 +59,7 @@ double RowSystem::speed_scale(const ConstraintRow& row, double dt) const
 namespace
 {
 
-/// sqrt(J M^-1 J^T) of one block on a dynamic body.
-double root_of_mobility(const Bodies& bodies, const RowBlock& b)
-{
-    const Vec3 angular_B = rotate_back(bodies.orientation[b.participant.index], b.angular);
-    return std::sqrt(length_squared(b.linear) * bodies.inverse_mass[b.participant.index] +
-                     dot(angular_B, bodies.inverse_inertia_B[b.participant.index] * angular_B));
-}
+double root_of_mobility(const Bodies& bodies, const RowBlock& b) { return std::sqrt(mobility_of(bodies, b)); }
 
 }  // namespace
 
