@@ -13,6 +13,7 @@ namespace
 constexpr double kStiffness = 1e6;  // of more, rounding in a chain under a load of some hundred times its links' mass makes nonsense
 constexpr int kRounds = 8;
 constexpr double kNotKnown = -1;  // a stiffness before the first round, for which there is no matrix yet
+constexpr std::size_t kFewProducts = 64;  // of blocks for each mover: a tree takes about 4, a net of 10 x 10 bodies 50
 
 /// What the row alone would make of its impulse at the present velocities, if it had no bounds.
 double wanted_impulse(const Problem& problem, const Line& line) { return line.impulse - problem.gap(line) / line.admittance(); }
@@ -32,13 +33,10 @@ bool JointSolver::choose(const Problem& problem)
 {
     bool changes = false;
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
-    {
-        const Line& line = problem.lines[i];
-        const double stiffness = acts_freely(problem, line) ? line.stiffness(kStiffness) : 0.0;
-        changes = changes || stiffness != stiffness_[i];
-        stiffness_[i] = stiffness;
-    }
+        changes = changes || stiffness_[i] == kNotKnown || (stiffness_[i] != 0) != acts_freely(problem, problem.lines[i]);
     if (!changes) return false;
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+        stiffness_[i] = acts_freely(problem, problem.lines[i]) ? problem.lines[i].stiffness(kStiffness) : 0.0;
     matrix_.start(problem);
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
         if (stiffness_[i] != 0) matrix_.add(problem, i, stiffness_[i]);
@@ -64,10 +62,20 @@ double JointSolver::find_changes(const Problem& problem)
     return worst;
 }
 
-void JointSolver::hold(Problem& problem, double tolerance)
+bool JointSolver::load(const Problem& problem)
 {
     matrix_.shape_of_rows(problem);
+    return matrix_.products() <= kFewProducts * problem.movers.size();
+}
+
+void JointSolver::hold(Problem& problem, double tolerance)
+{
     stiffness_.assign(problem.lines.size(), kNotKnown);
+    hold_again(problem, tolerance);
+}
+
+void JointSolver::hold_again(Problem& problem, double tolerance)
+{
     double before = HUGE_VAL;
     for (int round = 0; round < kRounds; ++round)
     {
@@ -93,6 +101,7 @@ void JointSolver::hold_without_gain(Problem& problem, double tolerance)
 {
     constexpr int kHalvings = 4;
     if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint)) return;
+    (void)load(problem);
     const auto hold_and_sum = [&]
     {
         hold(problem, tolerance);

@@ -80,7 +80,8 @@ private:
     int step_hard();
     bool scale_down();
     void sweep_lines(bool soft);
-    void hold_forces(bool corrects);
+    bool holds_rows();
+    void hold_rows(bool corrects, bool anew);
     int remove_gained_energy();
     void note_kicks(bool before);
     void count_travel();
@@ -104,7 +105,7 @@ private:
     SoftSweep sweep_;
     bool bounces_ = false;
     bool applied_ = false;  ///< the impulses have been applied in an earlier sub-step of this step
-    bool forces_ = false;   ///< some forces change within the step (RowKind::ForceChange)
+    bool holds_ = false;    ///< the rows are held exactly
     bool driven_ = false;   ///< the motion of other bodies may add energy at a contact
     double energy_ = 0;     ///< J: kinetic energy when the velocities were written last
     double most_ = 0;       ///< J: kinetic energy after the sub-step's kick, which contacts must not exceed

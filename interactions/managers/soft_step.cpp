@@ -50,8 +50,8 @@ Verdict SoftIsland<W>::run()
         kick();
         sweep_.gathers = s > 0;
         sweep_soft(contacts_, std::span<Mover>(problem_.movers), sweep_, std::span<SoftPoint<W>>(soft_));
-        if (forces_)
-            hold_forces(true);
+        if (holds_)
+            hold_rows(true, false);
         else
             sweep_lines(true);
         write();
@@ -81,6 +81,7 @@ void SoftIsland<W>::start()
     make_room(memory_.moved, problem_.movers.size());
     memory_.moved.resize(problem_.movers.size());
     memory_.line_sum.assign(problem_.lines.size(), 0.0);
+    holds_ = holds_rows();
     note_limits();
     bounces_ = bounces_ || limits_bounce_;
     if (!bounces_) return;
@@ -200,8 +201,7 @@ void SoftIsland<W>::kick()
     applied_ = true;
     most_ = problem_.read_speeds_and_apply(bodies_, shafts_);
     if (bounces_) note_kicks(false);
-    forces_ = has_forces(problem_);
-    hold_forces(true);
+    hold_rows(true, true);
 }
 
 /// The impulse that stopped an impact is no estimate for the impulses after it.
@@ -268,8 +268,8 @@ void SoftIsland<W>::relax()
     if (choices_.relax_iterations == 0) follow_move(contacts_, std::span<const Mover>(movers), moved(h_), soft);
     for (int i = 0; i < choices_.relax_iterations; ++i)
     {
-        if (i == 0) hold_forces(false);
-        if (i > 0 || !forces_) sweep_lines(false);
+        if (i == 0) hold_rows(false, false);
+        if (i > 0 || !holds_) sweep_lines(false);
         if (i == 0)
             follow_move_and_sweep(contacts_, movers, moved(h_), soft);
         else
@@ -294,19 +294,33 @@ void SoftIsland<W>::sweep_lines(bool soft)
     }
 }
 
-/// Where forces change within the step, one sweep over the rows is far from enough: they are held exactly, with the contacts as they are.
-/// `corrects`: joints that are apart, and limits that are passed, close as fast as contacts that overlap.
+/// One sweep over the rows is far from enough for joints under load and for forces that change within the step. So all rows are held exactly,
+/// with the contacts as they are, but for those of large nets without such forces.
 template <int W>
-void SoftIsland<W>::hold_forces(bool corrects)
+bool SoftIsland<W>::holds_rows()
 {
-    if (!forces_) return;
+    if (std::ranges::none_of(problem_.lines, [](const Line& line) { return line.count > 0; })) return false;
+    const bool is_cheap = memory_.step.joints.load(problem_);
+    return is_cheap || std::ranges::any_of(island_.rows, [](const ConstraintRow& row) { return row.kind == RowKind::ForceChange; });
+}
+
+/// `corrects`: joints that are apart, and limits that are passed, close as fast as contacts that overlap. `anew`: rows are others than at
+/// the last call.
+template <int W>
+void SoftIsland<W>::hold_rows(bool corrects, bool anew)
+{
+    if (!holds_) return;
     const auto close_at = [&](double speed_per_error)
     {
         for (Line& line : problem_.lines)
             if (const ConstraintRow& row = island_.rows[line.row]; is_pulled(row)) line.target -= speed_per_error * row.error;
     };
+    const double tolerance = 1e-3 * choices_.tolerance;
     if (corrects) close_at(sweep_.between.bias_rate);
-    memory_.step.joints.hold(problem_, 1e-3 * choices_.tolerance);
+    if (anew)
+        memory_.step.joints.hold(problem_, tolerance);
+    else
+        memory_.step.joints.hold_again(problem_, tolerance);
     if (corrects) close_at(-sweep_.between.bias_rate);
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
         memory_.line_greatest[i] = std::max(memory_.line_greatest[i], problem_.lines[i].impulse);

@@ -84,19 +84,25 @@ TEST_CASE("a bridge of light planks catches heavy weights")
         CHECK(exact.lowest > -0.6);
         CHECK(exact.apart < 1e-4);
     }
-    // The joints of sweeps yield by some centimetres each, but hold.
     const Outcome soft = after_two_seconds("SoftStep", -0.2);
-    CHECK(soft.lowest > -1.2);
-    CHECK(soft.apart < 0.05);
+    MESSAGE("SoftStep: lowest " << soft.lowest << " m, joints apart " << soft.apart);
+    CHECK(soft.lowest > -0.6);
+    CHECK(soft.apart < 1e-4);
 }
 
-TEST_CASE("a wrecking ball of 400 times the mass of each link of its chain hits a wall, and the chain holds")
+namespace
 {
+
+/// `manager` is an attribute of the detection; `most` is how far joints may be apart at the end of any tenth, m.
+void hit_wall(const std::string& manager, double most)
+{
+    CAPTURE(manager);
     constexpr int kLinks = 20;
     constexpr double kLink = 0.25, kBall = 0.28, kHook = 6, kLongest = kLinks * kLink + 0.3;
     std::string out =
         "<component id='gravity' type='Field/Gravity' between='*'/><component id='ground' type='State/Static' shape='Shape/Plane'/>"
-        "<component id='contact' type='CDetection/ODE' between='*' response.friction='0.6'/>";
+        "<component id='contact' type='CDetection/ODE' between='*' response.friction='0.6' " +
+        manager + "/>";
     for (int i = 0; i < kLinks; ++i)
     {
         out += "<component id='" + name("link", i) + "' type='State/RigidBody' mass='0.5' position='" +
@@ -116,7 +122,7 @@ TEST_CASE("a wrecking ball of 400 times the mass of each link of its chain hits 
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = true;  // manager.not_converged: contacts of the wall while it falls
     const double all = mechanical_energy(s);
-    double last = all;
+    double last = all, apart = 0;
     for (int tenth = 1; tenth <= 25; ++tenth)
     {
         CAPTURE(tenth);
@@ -126,6 +132,16 @@ TEST_CASE("a wrecking ball of 400 times the mass of each link of its chain hits 
         const double now = mechanical_energy(s);
         CHECK(now < last + 2e-3 * all);
         last = now;
+        for (int i = 0; i < kLinks; ++i) apart = std::max(apart, s.real(name("joint", i), "position_error"));
     }
-    for (int i = 0; i < kLinks; ++i) CHECK(s.real(name("joint", i), "position_error") < 5e-3);
+    MESSAGE(manager << ": joints apart " << apart << " m");
+    CHECK(apart < most);
+}
+
+}  // namespace
+
+TEST_CASE("a wrecking ball of 400 times the mass of each link of its chain hits a wall, and the chain holds")
+{
+    hit_wall("", 5e-3);
+    hit_wall("response.manager='Manager/SoftStep'", 5e-3);
 }

@@ -88,8 +88,7 @@ TEST_CASE("E5: a chain under a tonne, with every solver: it hangs still, so no o
 
 TEST_CASE("E5: the same chain of ropes, with every manager")
 {
-    // A tonne on a hundred links of a kilogram: all managers but Direct let it fall (4.9 m in 1 s). SoftStep does not
-    // report it.
+    // A tonne on a hundred links of a kilogram: sweeps alone let it fall (4.9 m in 1 s), and say so.
     struct Row
     {
         std::string manager;
@@ -97,7 +96,7 @@ TEST_CASE("E5: the same chain of ropes, with every manager")
         bool reported;            ///< whether a failure to hold is reported
     };
     for (const Row& row :
-         {Row{"Direct", 1.6e-13, 6.9e-14, false}, Row{"SequentialImpulse", 0.97, 4.88, true}, Row{"SoftStep", 0.70, 4.66, false}})
+         {Row{"Direct", 1.6e-13, 6.9e-14, false}, Row{"SequentialImpulse", 0.97, 4.88, true}, Row{"SoftStep", 1.8e-6, 8.2e-6, false}})
     {
         CAPTURE(row.manager);
         Scene s("<component id='manager' type='Manager/" + row.manager + "'/>" +
@@ -113,7 +112,7 @@ TEST_CASE("E5: the same chain of ropes, with every manager")
         CHECK(found.tension < 2 * row.tension);
         CHECK(found.stretch < 2 * row.stretch);
         CHECK((s.count("manager.not_converged") > 0) == row.reported);
-        if (row.manager == "Direct") continue;
+        if (row.manager != "SequentialImpulse") continue;
         CHECK(found.tension > row.tension / 2);
         CHECK(found.stretch > row.stretch / 2);
     }
