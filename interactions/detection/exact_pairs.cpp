@@ -65,7 +65,7 @@ void box_plane(const Vec3& half, const Pose& X_box, const Pose& X_plane, Contact
     {
         const Vec3 corner = X_box * Vec3{i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
         const double depth = -dot(n, corner - X_plane.p);
-        out.add({corner + n * (0.5 * depth), -n, depth, i});
+        out.add({corner + n * (0.5 * depth), -n, depth, i, CornerOf::A});
     }
 }
 
@@ -77,7 +77,7 @@ void hull_plane(const Hull& hull, const Pose& X_hull, const Pose& X_plane, Conta
     {
         const Vec3 p = X_hull * hull.vertices[i];
         const double depth = -dot(n, p - X_plane.p);
-        spread.offer({p + n * (0.5 * depth), -n, depth, i % kFeatures});
+        spread.offer({p + n * (0.5 * depth), -n, depth, i % kFeatures, CornerOf::A});
     }
     spread.take(out);
 }

@@ -21,12 +21,22 @@ constexpr double kParallelFaces = 0.995, kLeaning = 0.3;
 constexpr double kOnBorder = 1e-9, kDepthError = 1e-15, kSamePoint = 1e-6;
 constexpr std::uint32_t kCornerMask = (1u << 18) - 1, kEdgeMask = (1u << 9) - 1;
 
+bool is_corner_of_a(std::uint32_t feature) { return feature >> 18 == 0; }
+bool is_corner_of_b(std::uint32_t feature) { return feature >> 18 == 1; }
+
 /// Collects pairs of points of A and B that lie opposite one another along the normal.
 class Collector
 {
 public:
     Collector(const Solid& A, const Solid& B, const Vec3& n, bool few, ContactPoints& out)
-        : radius_a_(A.radius()), radius_b_(B.radius()), n_(n), out_(out), first_(out.all().size()), size_(A.extent() + B.extent())
+        : radius_a_(A.radius()),
+          radius_b_(B.radius()),
+          n_(n),
+          out_(out),
+          first_(out.all().size()),
+          size_(A.extent() + B.extent()),
+          a_has_corners_(has_corners(A)),
+          b_has_corners_(has_corners(B))
     {
         if (!few) spread_.emplace(n, out.margin());
     }
@@ -38,8 +48,9 @@ public:
         if (!(gap < out_.margin() || gap < 0)) return;
         const Vec3 point = (on_a + on_b + (radius_a_ - radius_b_) * n_) * 0.5;
         deepest_ = std::max(deepest_, -gap);
-        if (spread_) return spread_->offer({point, n_, -gap, feature});
-        if (fresh || !is_taken(point)) out_.add({point, n_, -gap, feature});
+        const ContactPoint found{point, n_, -gap, feature, corner_of(feature)};
+        if (spread_) return spread_->offer(found);
+        if (fresh || !is_taken(point)) out_.add(found);
     }
     double deepest() const { return deepest_; }
     /// Tolerance at borders, m, for surfaces at an angle with this sine.
@@ -51,6 +62,12 @@ public:
     const Vec3& normal() const { return n_; }
 
 private:
+    static bool has_corners(const Solid& solid) { return solid.radius() == 0 && (solid.core() == Core::Box || solid.core() == Core::Hull); }
+    CornerOf corner_of(std::uint32_t feature) const
+    {
+        if (is_corner_of_a(feature)) return a_has_corners_ ? CornerOf::A : CornerOf::Neither;
+        return is_corner_of_b(feature) && b_has_corners_ ? CornerOf::B : CornerOf::Neither;
+    }
     bool is_taken(const Vec3& point) const
     {
         const double near = kSamePoint * size_;
@@ -65,6 +82,7 @@ private:
     std::optional<Spread> spread_;  // used where there may be many points
     std::size_t first_;
     double size_;
+    bool a_has_corners_, b_has_corners_;
     double deepest_ = -HUGE_VAL;
 };
 

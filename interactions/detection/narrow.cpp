@@ -101,6 +101,7 @@ void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& 
     {
         t.normal = -t.normal;
         if (has_sides) t.feature = mirrored_feature(t.feature);
+        if (t.corner_of != CornerOf::Neither) t.corner_of = t.corner_of == CornerOf::A ? CornerOf::B : CornerOf::A;
     }
 }
 

@@ -55,13 +55,14 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     for (std::size_t i = 0; i < guess.size(); ++i) problem.points[i].impulse = guess[i];
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
 
+    const Moving moving = how_to_move(problem, island, island.h);
+    if (moving == Moving::ByMean) problem.put_corners_midway(bodies, island.h);
     const bool locates_slip_ends = !choices.or_nothing && !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to &&
                                    accelerates_evenly(problem, island);
     if (locates_slip_ends)
         out.join(SlipEnds(island, bodies, shafts, method, choices.slop, memory).advance());
     else
     {
-        const Moving moving = how_to_move(problem, island, island.h);
         kick(problem, island, bodies, shafts, island.h);
         problem.read_speeds(bodies, shafts);
         set_targets(problem, island, island.h, choices.slop, moving, memory.passing);

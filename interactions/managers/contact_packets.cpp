@@ -171,7 +171,7 @@ void PacketList<W>::load(std::span<const Point> from, std::size_t movers, Worker
     fill(
         take, [](std::uint32_t) {}, [](std::size_t, std::size_t) {});
     for (std::size_t i = 0; i < from.size(); ++i)
-        if (from[i].given != Vec3{}) set_given(i, from[i].given);
+        if (const Vec3 given = from[i].given + from[i].turning; given != Vec3{}) set_given(i, given);
 }
 
 template <int W>

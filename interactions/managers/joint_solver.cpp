@@ -12,7 +12,7 @@ namespace
 
 constexpr double kStiffness = 1e6;  // of more, rounding in a chain under a load of some hundred times its links' mass makes nonsense
 constexpr int kRounds = 8;
-constexpr double kNotKnown = -1;  // a stiffness before the first round, for which there is no matrix yet
+constexpr double kNotKnown = -1;          // a stiffness before the first round, for which there is no matrix yet
 constexpr std::size_t kFewProducts = 64;  // of blocks for each mover: a tree takes about 4, a net of 10 x 10 bodies 50
 
 /// What the row alone would make of its impulse at the present velocities, if it had no bounds.

@@ -71,6 +71,7 @@ struct Point
     Vec3 n, t1, t2;                            ///< W
     Vec3 r_a, r_b;                             ///< m, from the centres of mass to the point, in W
     Vec3 given;                                ///< m/s: contribution to u of bodies that are not movers
+    Vec3 turning;                              ///< m/s: contribution to u of what corners turn after the middle of the step
     Mat3 K;                                    ///< 1/kg
     double slip_mobility = 0;                  ///< 1/kg, largest eigenvalue of K's tangential part
     double friction = 0;

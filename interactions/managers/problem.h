@@ -71,6 +71,14 @@ public:
     void turn_with(const Bodies& bodies);
     /// Multiplies the inertias of all bodies, until they are set again. By powers of two this is exact.
     void weigh_turns(double factor);
+    /// Puts points that are corners of a turning body where they are in the middle of a step of h (s) at the present velocities; u becomes
+    /// their velocity at its end. Otherwise a body that pivots about a corner would leave it by O(h^2) in each step:
+    ///
+    ///   r_m = exp([w h / 2]) r,   u = E (v + w x r_m + turning),   turning = (h / 2) w x (w x r)        at the end of the step
+    ///
+    /// With a move by the mean velocity this is the midpoint rule (Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), VII.1):
+    /// turning is what the velocity of the corner at the end differs from v + w x r_m, so u = 0 at both ends does no work.
+    void put_corners_midway(const Bodies& bodies, double h);
     /// The rows were found again after bodies had turned.
     void turn_lines();
     /// The same for the movers and rows alone, after they have turned for h (s): sets Mover::turned. The velocities of the movers become
@@ -172,6 +180,7 @@ private:
     void apply_sums(std::size_t mover);
     void sum_by_velocity(std::size_t mover);
     void write_speed(std::size_t mover, Bodies& bodies, Shafts& shafts, bool swept = false);
+    void put_midway(Point& p, const Contact& c, const Bodies& bodies, double half) const;
     void set_mobility(Point& p) const;
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);
@@ -212,7 +221,7 @@ inline Vec3 Problem::relative_velocity(const Point& p) const
     Vec3 u;
     if (p.b != kNoIndex) u += movers[p.b].v + cross(movers[p.b].w, p.r_b);
     if (p.a != kNoIndex) u -= movers[p.a].v + cross(movers[p.a].w, p.r_a);
-    return to_contact(p, u) + p.given;
+    return to_contact(p, u) + p.given + p.turning;
 }
 
 inline void Problem::push(const Point& p, const Vec3& j)

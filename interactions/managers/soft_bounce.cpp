@@ -121,7 +121,13 @@ void SoftIsland<W>::give_back()
     write();
 }
 
-template class SoftIsland<1>;
-template class SoftIsland<4>;
+template void SoftIsland<1>::note_limits();
+template void SoftIsland<4>::note_limits();
+template void SoftIsland<1>::note_kicks(bool);
+template void SoftIsland<4>::note_kicks(bool);
+template void SoftIsland<1>::count_travel();
+template void SoftIsland<4>::count_travel();
+template void SoftIsland<1>::give_back();
+template void SoftIsland<4>::give_back();
 
 }  // namespace plab::managers

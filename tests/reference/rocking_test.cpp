@@ -11,19 +11,19 @@
 // |---------|-----------------------------------|--------------------------------------------------------------------|
 // | C23     | impact alone, all that locate     | w'/w to 6e-8 (started 1e-7 rad before it: the arms differ by that) |
 // |         | quarter period, located + Impulse | .15 h: a resting edge is stepped with order 1 (asserted)           |
-// |         | located + Rows                    | .45 h: the edge chatters                                           |
+// |         | located + Rows                    | 1.5 h^2/s: a corner is held in the middle of the step, order 2     |
 // |         | None, Speculative + either        | 1.15 h: .15 h, found at the end of a step                          |
 // | C24     | located + Impulse                 | fixed point to 12 h rad/s, contraction .5 -+ .035 at h = .001      |
 // |         | None + Rows                       | fixed point to 6 h rad/s                                           |
-// |         | Speculative, LocalRoot + Rows     | 12 h for the largest spin of a walking step; a spoke's two corners |
-// |         |                                   | may land one step apart, and between them it drops by 0.1 rad/s    |
+// |         | Speculative, LocalRoot + Rows     | 12 h                                                               |
 //
-// Why 12 h: a stance loses 2.5 h J by its steps of order 1 (measured), 2.3 h rad/s of the fixed point. A landing corner belongs to
-// the pair that is at rest, so its impact is not located but answered before its step, up to h early: 3.1 h rad/s, twice that at
+// Why 12 h: with Impulse, a stance loses 2.5 h J by its steps of order 1 (measured), 2.3 h rad/s of the fixed point. A landing corner
+// belongs to the pair that is at rest, so its impact is not located but answered before its step, up to h early: 3.1 h rad/s, twice that at
 // the fixed point (a deviation halves from step to step). And the spin is measured at the step's end, up to 3 h rad/s later. In all
 // 11.5 h; reached 10.7 h.
 //
-// Aims not reached: the fixed point to more digits. Resting contacts are held at the level of speeds, with order 1.
+// Aims not reached: the fixed point to more digits. Landing corners are not located, and Impulse holds resting contacts at the level of
+// speeds, with order 1.
 #include <algorithm>
 
 #include "rocking.h"
@@ -54,8 +54,12 @@ TEST_CASE("C23: a rocking block lands after Housner's quarter period")
         double off[3];
         int k = 0;
         for (const double h : {0.01, 0.0025, 0.000625}) off[k] = std::fabs(first_impact(algorithm, h) - kQuarter), ++k;
-        const double share = !algorithm.locates() ? 1.15 : algorithm.rows() ? 0.45 : 0.15;
-        for (k = 0; k < 3; ++k) CHECK(off[k] < share * 0.01 / (1 << (2 * k)));
+        const double share = algorithm.locates() ? 0.15 : 1.15;
+        for (k = 0; k < 3; ++k)
+        {
+            const double h = 0.01 / (1 << (2 * k));
+            CHECK(off[k] < (algorithm.locates() && algorithm.rows() ? 1.5 * h * h : share * h));
+        }
         if (algorithm.locates() && !algorithm.rows()) CHECK((off[0] / off[1] > 3 && off[0] / off[1] < 6));
     }
     CHECK(std::fabs(first_impact({"LocalRoot", "Impulse"}, 0.000625) - kQuarter) < 0.5 * (kQuarter - 0.485519587413140505));
@@ -72,14 +76,10 @@ TEST_CASE("C24: a rimless wheel converges to its limit cycle: each step halves t
             CAPTURE(h);
             const std::vector<double> w = walk(algorithm, h, 8);
             REQUIRE(w.size() >= 7);
-            const bool trembles = algorithm.rows() && !algorithm.is("None");
-            if (trembles)
-            {
-                CHECK(std::fabs(*std::max_element(w.begin() + 6, w.end()) - kFixed) < 12 * h);
-                CHECK(*std::min_element(w.begin() + 6, w.end()) > kFixed - 0.1);
-            }
-            else
-                CHECK(std::fabs(w[6] - kFixed) < (algorithm.rows() ? 6 : 12) * h);
+            const auto [low, high] = std::minmax_element(w.begin() + 6, w.end());
+            const double bound = (algorithm.rows() && algorithm.is("None") ? 6 : 12) * h;
+            CHECK(*high < kFixed + bound);
+            CHECK(*low > kFixed - bound);
             if (algorithm.rows() || h > 0.001) continue;
             const double end = w.back() * w.back(), first = w[0] * w[0] - end, second = w[1] * w[1] - end;
             CHECK(std::fabs(second / first - 0.5) < 0.035);

@@ -11,11 +11,20 @@
 namespace plab
 {
 
+/// The body with which a contact point turns, because the point is a corner of it.
+enum class CornerOf : std::uint8_t
+{
+    Neither,  ///< a point of a round surface, a crossing of edges, or not known
+    A,
+    B,
+};
+
 /// One contact point of two bodies. a < b in the order of component ids.
 struct Contact
 {
     Ref a, b;
     std::uint32_t feature = 0;  ///< identifies shapes and corner; stable while the same features touch
+    CornerOf corner_of = CornerOf::Neither;
     Vec3 point;                 ///< W, m
     Vec3 normal;                ///< W, unit, from a to b
     double depth = 0;           ///< m, penetration depth; > 0 when overlapping
