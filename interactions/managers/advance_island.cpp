@@ -56,7 +56,8 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
 
     const Moving moving = how_to_move(problem, island, island.h);
-    if (moving == Moving::ByMean) problem.put_corners_midway(bodies, island.h);
+    // Corners of a mechanism that stands on both feet may contradict its joints, where a speed changes within the step.
+    if (moving == Moving::ByMean && problem.lines.empty()) problem.put_corners_midway(bodies, island.h);
     const bool locates_slip_ends = !choices.or_nothing && !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to &&
                                    accelerates_evenly(problem, island);
     if (locates_slip_ends)

@@ -195,11 +195,15 @@ void Problem::put_corners_midway(const Bodies& bodies, double h)
     // A body on more of its corners does not turn, or its corners slide. If it stops, what they turn at its first speed is no velocity of
     // a rigid body, and they could not all stick.
     constexpr std::ptrdiff_t kOfEdge = 2;
+    constexpr double kPresses = 0x1p-30;  // of the largest impulse of the pair: less is rounding
     for (std::size_t first = 0, end = 0; first < points.size(); first = end)
     {
         while (end < points.size() && contacts_[end].a == contacts_[first].a && contacts_[end].b == contacts_[first].b) ++end;
         const std::span<const Contact> pair = contacts_.subspan(first, end - first);
-        if (std::ranges::count_if(pair, [](const Contact& c) { return c.impulse != Vec3{}; }) > kOfEdge) continue;
+        double most = 0;
+        for (const Contact& c : pair) most = std::max(most, length_squared(c.impulse));
+        const auto presses = [&](const Contact& c) { return length_squared(c.impulse) > kPresses * kPresses * most; };
+        if (std::ranges::count_if(pair, presses) > kOfEdge) continue;
         for (std::size_t i = first; i < end; ++i)
             if (contacts_[i].corner_of != CornerOf::Neither) put_midway(points[i], contacts_[i], bodies, 0.5 * h);
     }

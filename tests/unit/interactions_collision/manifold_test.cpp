@@ -73,6 +73,41 @@ TEST_CASE("an overhanging block ends exactly at the edge below it")
     }
 }
 
+TEST_CASE("a point says of which solid it is a corner, in either order, and a point of a round solid is of neither")
+{
+    const auto count = [](const std::vector<ContactPoint>& points, CornerOf of)
+    { return std::count_if(points.begin(), points.end(), [&](const ContactPoint& k) { return k.corner_of == of; }); };
+    const Collider block = collider(GeometryKind::Box, {0.5, 0.25, 0.05});
+    const Collider narrow = collider(GeometryKind::Box, {0.5, 0.2, 0.05});
+    const Pose above{{0.1, 0, 0.1 - 1e-9}, {}};
+    for (const bool swapped : {false, true})
+    {
+        CAPTURE(swapped);
+        const CornerOf upper = swapped ? CornerOf::A : CornerOf::B;
+        const auto pair = swapped ? points_by_feature(narrow, above, block, {}) : points_by_feature(block, {}, narrow, above);
+        REQUIRE(pair.size() == 4);
+        for (const ContactPoint& k : pair)
+        {
+            // The narrow block ends inside the other one at x = -0.4. Its sides cross the edge of the other one at 0.5.
+            CHECK(k.corner_of == (k.point.x < 0 ? upper : CornerOf::Neither));
+        }
+        const Pose on_plane{{0, 0, 0.05}, {}};
+        const auto stands =
+            swapped ? points_by_feature(plane(), {}, block, on_plane, 1e-6) : points_by_feature(block, on_plane, plane(), {}, 1e-6);
+        CHECK(count(stands, swapped ? CornerOf::B : CornerOf::A) == 4);
+    }
+    const Collider capsule = collider(GeometryKind::Capsule, {0.1, 0, 0.3}), cylinder = collider(GeometryKind::Cylinder, {0.1, 0, 0.3});
+    for (const Collider* round : {&capsule, &cylinder})
+    {
+        const auto lies = points_by_feature(*round, {{0, 0, 0.1}, kLying}, plane(), {}, 1e-6);
+        const auto on_block = points_by_feature(*round, {{0, 0, 0.15}, kLying}, block, {}, 1e-6);
+        REQUIRE(!lies.empty());
+        REQUIRE(!on_block.empty());
+        CHECK(count(lies, CornerOf::Neither) == static_cast<std::ptrdiff_t>(lies.size()));
+        CHECK(count(on_block, CornerOf::Neither) == static_cast<std::ptrdiff_t>(on_block.size()));
+    }
+}
+
 TEST_CASE("features stay the same while boxes slide, turn and rock a little")
 {
     const Collider slab = collider(GeometryKind::Box, {2, 2, 0.1}), cube = collider(GeometryKind::Box, {0.3, 0.3, 0.3});
