@@ -68,7 +68,7 @@ void set_impact_targets(Problem& problem, const Island& island, std::span<const 
         const double restitution = share * c.restitution;
         // With joints, the closing speed is that after settle_joints().
         if (meets(c, island.h))
-            p.least = lands(island, i)
+            p.least = problem.lines.empty() && lands(island, i)
                           ? c.depth / island.h
                           : restitution * (problem.lines.empty() ? c.approach : std::min(c.approach, std::max(0.0, -before[i].z)));
         else
