@@ -213,7 +213,7 @@ void Problem::put_corners_midway(const Bodies& bodies, double h)
 void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, double half) const
 {
     // rad in half a step: with less the body leaves its corner by 2^-41 of the lever, with more the middle of the step says little.
-    constexpr double kLittle = 0x1p-20, kMost = 0.5;
+    constexpr double kLittle = 0x1p-20, kMost = 0.05;
     const bool of_b = c.corner_of == CornerOf::B;
     const std::uint32_t own = of_b ? c.b.index : c.a.index, other = of_b ? c.a.index : c.b.index;
     const Vec3& w = bodies.angular_velocity[own];
