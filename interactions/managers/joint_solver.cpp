@@ -12,8 +12,9 @@ namespace
 
 constexpr double kStiffness = 1e6;  // of more, rounding in a chain under a load of some hundred times its links' mass makes nonsense
 constexpr int kRounds = 8;
-constexpr double kNotKnown = -1;          // a stiffness before the first round, for which there is no matrix yet
-constexpr std::size_t kFewProducts = 64;  // of blocks for each mover: a tree takes about 4, a net of 10 x 10 bodies 50
+constexpr double kNotKnown = -1;  // a stiffness before the first round, for which there is no matrix yet
+// Of blocks for each mover: a tree of joints takes some two, a small net tens, a large one hundreds.
+constexpr std::size_t kFewProducts = 64;
 
 /// What the row alone would make of its impulse at the present velocities, if it had no bounds.
 double wanted_impulse(const Problem& problem, const Line& line) { return line.impulse - problem.gap(line) / line.admittance(); }
@@ -62,11 +63,9 @@ double JointSolver::find_changes(const Problem& problem)
     return worst;
 }
 
-bool JointSolver::load(const Problem& problem)
-{
-    matrix_.shape_of_rows(problem);
-    return matrix_.products() <= kFewProducts * problem.movers.size();
-}
+void JointSolver::load(const Problem& problem) { matrix_.shape_of_rows(problem); }
+
+bool JointSolver::is_cheap(const Problem& problem) const { return matrix_.products() <= kFewProducts * problem.movers.size(); }
 
 void JointSolver::hold(Problem& problem, double tolerance)
 {
@@ -101,7 +100,7 @@ void JointSolver::hold_without_gain(Problem& problem, double tolerance)
 {
     constexpr int kHalvings = 4;
     if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint)) return;
-    (void)load(problem);
+    load(problem);
     const auto hold_and_sum = [&]
     {
         hold(problem, tolerance);

@@ -25,15 +25,17 @@ inline bool has_forces(const Problem& problem)
 class JointSolver
 {
 public:
-    /// Takes the rows of an island. Returns whether holding them costs time in proportion to its bodies, or not much more: not in a net of
-    /// many loops, which fills its matrix.
-    bool load(const Problem& problem);
+    /// Takes the rows of an island, for the next calls.
+    void load(const Problem& problem);
+    /// Whether holding the rows that were loaded costs time in proportion to the bodies, or not much more: not in a net of many loops, which
+    /// fills its matrix.
+    bool is_cheap(const Problem& problem) const;
     /// Changes the impulses of the rows, and the velocities of the movers with them. Rows that contradict one another stay apart.
     void hold(Problem& problem, double tolerance);
     /// The same where, since the last call, velocities have changed, and bodies have turned a little at most: with the matrix of that call,
     /// as long as the same rows act.
     void hold_again(Problem& problem, double tolerance);
-    /// The same if there are joints, and sums the impulses anew. Rows that hold remove energy from what the contacts leave, but these may
+    /// Loads and holds the rows if there are joints, and sums the impulses anew. Rows that hold remove energy from what the contacts leave, but these may
     /// have been found for joints that yield. If more energy results than there was, they are halved, and dropped in the end.
     void hold_without_gain(Problem& problem, double tolerance);
 

@@ -62,7 +62,7 @@ private:
     {
         constexpr int kAtOnce = 8;
         Swept out;
-        (void)joints_.load(problem);
+        joints_.load(problem);
         joints_.hold(problem, how.tolerance);
         for (const int most = std::exchange(how.most, kAtOnce); out.sweeps < most && !out.converged && !problem.interrupted();)
         {

@@ -78,6 +78,7 @@ public:
     ///
     /// With a move by the mean velocity this is the midpoint rule (Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), VII.1):
     /// turning is what the velocity of the corner at the end differs from v + w x r_m, so u = 0 at both ends does no work.
+    /// Where a step is cut at an end of sliding (slip_end.h), the levers stay those of the whole step.
     void put_corners_midway(const Bodies& bodies, double h);
     /// The rows were found again after bodies had turned.
     void turn_lines();

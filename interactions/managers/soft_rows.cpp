@@ -37,8 +37,8 @@ template <int W>
 bool SoftIsland<W>::holds_rows()
 {
     if (std::ranges::none_of(problem_.lines, [](const Line& line) { return line.count > 0; })) return false;
-    const bool is_cheap = memory_.step.joints.load(problem_);
-    return is_cheap || std::ranges::any_of(island_.rows, [](const ConstraintRow& row) { return row.kind == RowKind::ForceChange; });
+    memory_.step.joints.load(problem_);
+    return memory_.step.joints.is_cheap(problem_) || std::ranges::any_of(island_.rows, [](const ConstraintRow& row) { return row.kind == RowKind::ForceChange; });
 }
 
 /// `corrects`: joints that are apart, and limits that are passed, close as fast as contacts that overlap. `anew`: rows are others than at
