@@ -18,7 +18,7 @@ struct ContactPoint
     Vec3 normal;                ///< unit
     double depth = 0;           ///< m; < 0: a gap, within the requested margin
     std::uint32_t feature = 0;  ///< which corner or edge, < kFeatures; the same while the same features touch
-    CornerOf corner_of = CornerOf::Neither;  ///< A: of the first shape
+    Pivot pivot{};              ///< A: of the first shape
 };
 
 inline constexpr std::uint32_t kFeatures = 1u << 20;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "box_axes.h"
+#include "pivots.h"
 #include "separation.h"
 #include "spread.h"
 #include "supporting_face.h"
@@ -35,8 +36,8 @@ public:
           out_(out),
           first_(out.all().size()),
           size_(A.extent() + B.extent()),
-          a_has_corners_(has_corners(A)),
-          b_has_corners_(has_corners(B))
+          A_(A),
+          B_(B)
     {
         if (!few) spread_.emplace(n, out.margin());
     }
@@ -48,10 +49,12 @@ public:
         if (!(gap < out_.margin() || gap < 0)) return;
         const Vec3 point = (on_a + on_b + (radius_a_ - radius_b_) * n_) * 0.5;
         deepest_ = std::max(deepest_, -gap);
-        const ContactPoint found{point, n_, -gap, feature, corner_of(feature)};
+        const ContactPoint found{point, n_, -gap, feature, pivot_at(feature, on_a, on_b, point)};
         if (spread_) return spread_->offer(found);
         if (fresh || !is_taken(point)) out_.add(found);
     }
+    /// From now on, corners are offered that lie on edges: they pivot about no face.
+    void offer_on_edges() { on_faces_ = false; }
     double deepest() const { return deepest_; }
     /// Tolerance at borders, m, for surfaces at an angle with this sine.
     double tolerance(double sine) const { return std::min(kOnBorder, kDepthError / sine) * size_; }
@@ -62,11 +65,27 @@ public:
     const Vec3& normal() const { return n_; }
 
 private:
-    static bool has_corners(const Solid& solid) { return solid.radius() == 0 && (solid.core() == Core::Box || solid.core() == Core::Hull); }
-    CornerOf corner_of(std::uint32_t feature) const
+    Pivot pivot_at(std::uint32_t feature, const Vec3& on_a, const Vec3& on_b, const Vec3& point) const
     {
-        if (is_corner_of_a(feature)) return a_has_corners_ ? CornerOf::A : CornerOf::Neither;
-        return is_corner_of_b(feature) && b_has_corners_ ? CornerOf::B : CornerOf::Neither;
+        if (!on_faces_) return {};
+        if (is_corner_of_a(feature)) return pivot_at_corner(Pivot::Of::A, A_, feature & kCornerMask, on_a, point);
+        if (is_corner_of_b(feature)) return pivot_at_corner(Pivot::Of::B, B_, feature & kCornerMask, on_b, point);
+        return feature == kNearestFeature ? pivot_at_nearest(on_a, on_b, point) : pivot_at_crossing(on_a, on_b, point);
+    }
+    /// An edge that crosses the border of a face.
+    Pivot pivot_at_crossing(const Vec3& on_a, const Vec3& on_b, const Vec3& point) const
+    {
+        if (is_flat_towards(B_, -n_)) return pivot_at_edge(Pivot::Of::A, A_, on_a, point);
+        return is_flat_towards(A_, n_) ? pivot_at_edge(Pivot::Of::B, B_, on_b, point) : Pivot{};
+    }
+    /// The closest points, where one of them is the furthest corner of a solid and the other is on a face.
+    Pivot pivot_at_nearest(const Vec3& on_a, const Vec3& on_b, const Vec3& point) const
+    {
+        const auto is_furthest = [&](const Solid& solid, const Vec3& d, const Vec3& p)
+        { return length_squared(solid.support(d) - p) < kSamePoint * kSamePoint * size_ * size_; };
+        if (is_flat_towards(B_, -n_) && is_furthest(A_, n_, on_a)) return pivot_at_end(Pivot::Of::A, A_, n_, on_a, point);
+        if (is_flat_towards(A_, n_) && is_furthest(B_, -n_, on_b)) return pivot_at_end(Pivot::Of::B, B_, -n_, on_b, point);
+        return {};
     }
     bool is_taken(const Vec3& point) const
     {
@@ -82,7 +101,8 @@ private:
     std::optional<Spread> spread_;  // used where there may be many points
     std::size_t first_;
     double size_;
-    bool a_has_corners_, b_has_corners_;
+    const Solid &A_, &B_;
+    bool on_faces_ = true;
     double deepest_ = -HUGE_VAL;
 };
 
@@ -244,6 +264,7 @@ void lay_lines(const SupportingFace& X, const SupportingFace& Y, Collector& out)
             p_is_a ? out.offer(c.p, q + t * w, f) : out.offer(q + t * w, c.p, f);
         }
     };
+    out.offer_on_edges();
     lay(X, b, v, vv, true), lay(Y, a, u, uu, false);
 }
 

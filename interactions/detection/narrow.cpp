@@ -6,6 +6,7 @@
 
 #include "exact_pairs.h"
 #include "manifold.h"
+#include "pivots.h"
 #include "separation.h"
 #include "surface_contacts.h"
 
@@ -51,8 +52,13 @@ void collide_with_plane(const Collider& a, const Pose& X_a, const Pose& X_plane,
     }
 }
 
-/// Pairs that touch in a single point, such as those with a sphere.
-void add_nearest(const Separation& s, ContactPoints& out) { out.add({(s.point_a + s.point_b) * 0.5, s.normal, -s.gap, 0}); }
+/// A sphere touches in a single point.
+void add_nearest(const Solid& sphere, const Solid& B, const Separation& s, ContactPoints& out)
+{
+    const Vec3 point = (s.point_a + s.point_b) * 0.5;
+    const bool on_face = -s.gap > -out.margin() && is_flat_towards(B, -s.normal);
+    out.add({point, s.normal, -s.gap, 0, on_face ? Pivot{Pivot::Of::A, Pivot::Arm::Constant, point - sphere.center()} : Pivot{}});
+}
 
 void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, ContactPoints& out)
 {
@@ -65,7 +71,7 @@ void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, cons
     // A test of bounding spheres rejects most pairs.
     const double bounding_distance = A.extent() + A.radius() + B.extent() + B.radius() + out.margin();
     if (length_squared(B.center() - A.center()) > bounding_distance * bounding_distance) return;
-    if (a.kind() == Sphere) return add_nearest(separation_of(A, B), out);
+    if (a.kind() == Sphere) return add_nearest(A, B, separation_of(A, B), out);
     if (a.kind() == Box && b.kind() == Box) return box_box(A, B, out);
     add_manifold(A, B, separation_of(A, B, std::max(0.0, out.margin())), out);
 }
@@ -101,7 +107,7 @@ void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& 
     {
         t.normal = -t.normal;
         if (has_sides) t.feature = mirrored_feature(t.feature);
-        if (t.corner_of != CornerOf::Neither) t.corner_of = t.corner_of == CornerOf::A ? CornerOf::B : CornerOf::A;
+        if (t.pivot.of != Pivot::Of::Neither) t.pivot.of = t.pivot.of == Pivot::Of::A ? Pivot::Of::B : Pivot::Of::A;
     }
 }
 

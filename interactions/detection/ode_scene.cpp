@@ -297,7 +297,7 @@ void OdeScene::deliver(const Narrow& narrow, ContactSink& sink)
     {
         c.a = {Facet::Body, members_[found.a].body}, c.b = {Facet::Body, members_[found.b].body};
         c.feature = found.at.feature, c.point = found.at.point, c.normal = found.at.normal, c.depth = found.at.depth;
-        c.corner_of = found.at.corner_of;
+        c.pivot = found.at.pivot;
         sink.add(c);
     }
     pairs_ += narrow.pairs;

@@ -216,6 +216,27 @@ SupportingFace box_face(const Solid& box, const Vec3& d, std::span<FaceCorner> r
     return out;
 }
 
+bool is_flat_towards(const Solid& solid, const Vec3& d)
+{
+    constexpr double kFlat = 1 - 1e-12;
+    switch (solid.core())
+    {
+        case Core::Box:
+        {
+            const Vec3 l = solid.to_local_direction(d);
+            return std::max({std::fabs(l.x), std::fabs(l.y), std::fabs(l.z)}) >= kFlat;
+        }
+        case Core::Cylinder:
+            return std::fabs(dot(solid.axis(2), d)) >= kFlat;
+        case Core::Hull:
+            return find_polygon(solid.hull(), solid.to_local_direction(d), kFlat) < solid.hull().loop_normals.size();
+        case Core::Segment:
+        case Core::Point:
+            break;
+    }
+    return false;
+}
+
 SupportingFace supporting_face(const Solid& solid, const Vec3& d, double least_cosine, std::span<FaceCorner> room)
 {
     switch (solid.core())

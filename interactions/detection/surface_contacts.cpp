@@ -24,7 +24,7 @@ public:
     void offer(const Meeting& m) override
     {
         if (!(m.gap < margin_ || m.gap < 0)) return;
-        const ContactPoint contact_point{m.on_surface - m.normal * (0.5 * m.gap), m.normal, -m.gap, m.feature};
+        const ContactPoint contact_point{m.on_surface - m.normal * (0.5 * m.gap), m.normal, -m.gap, m.feature, m.pivot};
         for (std::size_t i = 0; i < count_; ++i)
         {
             ContactPoint& known = contact_points_[i];
@@ -116,7 +116,7 @@ void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& su
     if (K.core() == Core::Point && surface.kind() == ColliderKind::Triangles) number_by_patch(contact_points, surface.triangles());
     for (ContactPoint t : contact_points)
     {
-        t.point = X_surface * t.point, t.normal = rotate(X_surface.q, t.normal);
+        t.point = X_surface * t.point, t.normal = rotate(X_surface.q, t.normal), t.pivot.arm = rotate(X_surface.q, t.pivot.arm);
         out.add(t);
     }
 }

@@ -17,6 +17,7 @@ struct Meeting
     Vec3 on_solid, on_surface;
     Vec3 normal;  ///< unit
     std::uint32_t feature = 0;
+    Pivot pivot{};  ///< A: of the solid
 };
 
 /// Receives candidates that are nearer than limit().

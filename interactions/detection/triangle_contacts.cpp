@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pivots.h"
 #include "separation.h"
 #include "surface_contacts.h"
 
@@ -95,6 +96,13 @@ public:
     }
     /// Direction from the surface to the point in front of it.
     Vec3 direction() const { return flat_there() || !(distance() > 0) ? triangle(nearest_).normal : (c_ - closest_.p) / distance(); }
+    /// Whether the surface is flat there, i.e. no sharp edge or corner.
+    bool flat_there() const
+    {
+        if (closest_.at == TriangleClosestPoint::At::Face) return true;
+        if (closest_.at == TriangleClosestPoint::At::Edge) return !edge_there().sharp;
+        return !s_.sharp_corner(triangle(nearest_).corner[closest_.which]);
+    }
 
 private:
     const Surface::Triangle& triangle(std::uint32_t t) const { return s_.triangles()[t]; }
@@ -104,13 +112,6 @@ private:
         if (closest_.at == TriangleClosestPoint::At::Face) return false;
         if (closest_.at == TriangleClosestPoint::At::Edge) return edge_there().border();
         return s_.border_corner(triangle(nearest_).corner[closest_.which]);
-    }
-    /// Whether the surface is flat there, i.e. no sharp edge or corner.
-    bool flat_there() const
-    {
-        if (closest_.at == TriangleClosestPoint::At::Face) return true;
-        if (closest_.at == TriangleClosestPoint::At::Edge) return !edge_there().sharp;
-        return !s_.sharp_corner(triangle(nearest_).corner[closest_.which]);
     }
 
     const Surface& s_;
@@ -136,12 +137,12 @@ public:
         {
             // A ball completely behind the surface has not come from the front.
             const Vec3 n = distance > 0 ? (c_ - nearest.point()) / distance : -nearest.normal();
-            if (distance <= radius_) offer(-distance, n, nearest.point(), nearest.triangle());
+            if (distance <= radius_) offer(-distance, n, nearest.point(), nearest.triangle(), nearest.flat_there());
             return;
         }
         // The nearest place is always a contact; rounding may assign it to no face.
         const double outside = dot(nearest.direction(), c_ - nearest.point());
-        offer(outside, -nearest.direction(), nearest.point(), nearest.triangle());
+        offer(outside, -nearest.direction(), nearest.point(), nearest.triangle(), nearest.flat_there());
         const double limit = radius_ + out_.limit();
         if (!(outside < limit)) return;
         const Vec3 by{limit, limit, limit};
@@ -155,10 +156,11 @@ public:
 
 private:
     /// `outside`: distance of the centre, m; `n` points from the centre to the surface.
-    void offer(double outside, const Vec3& n, const Vec3& closest, std::uint32_t t)
+    void offer(double outside, const Vec3& n, const Vec3& closest, std::uint32_t t, bool on_face)
     {
         const double gap = outside - radius_;
-        if (gap < out_.limit()) out_.offer({gap, c_ + radius_ * n, closest, n, t});
+        const Pivot pivot{Pivot::Of::A, Pivot::Arm::Constant, n * (outside - 0.5 * gap)};
+        if (gap < out_.limit()) out_.offer({gap, c_ + radius_ * n, closest, n, t, on_face ? pivot : Pivot{}});
     }
 
     void offer_least(std::uint32_t t)
@@ -170,7 +172,7 @@ private:
         if (closest.at == TriangleClosestPoint::At::Face)
         {
             const double outside = dot(triangle.normal, d);
-            if (outside > 0) offer(outside, -triangle.normal, closest.p, t);
+            if (outside > 0) offer(outside, -triangle.normal, closest.p, t, true);
             return;
         }
         if (!(distance > 0)) return;
@@ -186,7 +188,7 @@ private:
             const std::uint32_t corner = triangle.corner[closest.which];
             if (!s_.sharp_corner(corner) || !s_.leaves_corner(corner, d, 0)) return;
         }
-        offer(distance, -d / distance, closest.p, t);
+        offer(distance, -d / distance, closest.p, t, false);
     }
 
     const Surface& s_;
@@ -227,7 +229,9 @@ private:
                               if (dot(t.inward[i], p - s_.point(t.corner[i])) < -beside) return;
                           if (outside < 0 && !lies_behind(p, -outside)) return;
                           const std::uint32_t feature = corner_feature(true, (t.patch & 0xffu) << 10 | (number & 0x3ffu));
-                          out_.offer({gap, p - K_.radius() * n, p - outside * n, -n, feature});
+                          const Vec3 on_surface = p - outside * n, point = on_surface + (0.5 * gap) * n;
+                          const Pivot pivot = pivot_at_corner(Pivot::Of::A, K_, number, p, point);
+                          out_.offer({gap, p - K_.radius() * n, on_surface, -n, feature, pivot});
                       });
     }
 

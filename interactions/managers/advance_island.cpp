@@ -13,8 +13,7 @@ namespace
 void add_impacts(const StepMemory& memory, Island& island)
 {
     if (island.further_impulses.empty()) return;
-    for (std::size_t i = 0; i < memory.impacts.size(); ++i)
-        island.further_impulses[i] += to_world(memory.problem.points[i], memory.impacts[i]);
+    for (std::size_t i = 0; i < memory.impacts.size(); ++i) island.further_impulses[i] += memory.impacts[i];
 }
 
 /// What a stop has done in an impact is a part of what it did in the step.
@@ -56,8 +55,8 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
 
     const Moving moving = how_to_move(problem, island, island.h);
-    // Corners of a mechanism that stands on both feet may contradict its joints, where a speed changes within the step.
-    if (moving == Moving::ByMean && problem.lines.empty()) problem.put_corners_midway(bodies, island.h);
+    // Feet of a mechanism that stands on both may contradict its joints, where a speed changes within the step.
+    if (moving == Moving::ByMean && problem.lines.empty()) problem.put_pivots_midway(bodies, island.h);
     const bool locates_slip_ends = !choices.or_nothing && !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to &&
                                    accelerates_evenly(problem, island);
     if (locates_slip_ends)
@@ -77,7 +76,7 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
         add_impulses(problem, island);
     }
     for (std::size_t i = 0; i < memory.impacts.size(); ++i)
-        if (island.contacts[i].approach > 0) island.contacts[i].impulse += to_world(problem.points[i], memory.impacts[i]);
+        if (island.contacts[i].approach > 0) island.contacts[i].impulse += memory.impacts[i];
     add_impacts_of_stops(problem, island, memory.line_impacts);
     for (std::size_t i = 0; i < island.further_impulses.size(); ++i) island.further_impulses[i] -= island.contacts[i].impulse;
     const Verdict moved = correct_positions(island, bodies, shafts, method, choices, memory);

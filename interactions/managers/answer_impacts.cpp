@@ -162,7 +162,7 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
         problem.apply_impulses();
     }
     for (const Point& p : problem.points)
-        memory.passing.push_back(p.least > kFar ? std::min(0.0, p.least) : 0.0), memory.impacts.push_back(p.impulse);
+        memory.passing.push_back(p.least > kFar ? std::min(0.0, p.least) : 0.0), memory.impacts.push_back(to_world(p, p.impulse));
     for (const Line& line : problem.lines) memory.line_impacts.push_back(line.impulse);
     problem.write_speeds(bodies, shafts);
     return out;

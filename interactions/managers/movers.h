@@ -52,6 +52,7 @@ struct Anchor
     Vec3 v, w;          ///< velocities without the impulses of this solve
     Vec3 moved_with;    ///< N m s: Momentum::turn in the last move
     double turned = 0;  ///< rad: bound on how far it has turned since Mover::turned was set last
+    Vec3 swings;        ///< rad/s: how its free rotation will have changed w by the end of the step
     Vec3 written;       ///< N m s: the part of Momentum::turn that has been written to the table already
 };
 

@@ -190,45 +190,6 @@ void Problem::read_given(const Bodies& bodies, const Shafts& shafts)
     }
 }
 
-void Problem::put_corners_midway(const Bodies& bodies, double h)
-{
-    // A body on more of its corners does not turn, or its corners slide. If it stops, what they turn at its first speed is no velocity of
-    // a rigid body, and they could not all stick.
-    constexpr std::ptrdiff_t kOfEdge = 2;
-    constexpr double kPresses = 0x1p-30;  // of the largest impulse of the pair: less is rounding
-    for (std::size_t first = 0, end = 0; first < points.size(); first = end)
-    {
-        while (end < points.size() && contacts_[end].a == contacts_[first].a && contacts_[end].b == contacts_[first].b) ++end;
-        const std::span<const Contact> pair = contacts_.subspan(first, end - first);
-        double most = 0;
-        for (const Contact& c : pair) most = std::max(most, length_squared(c.impulse));
-        const auto presses = [&](const Contact& c) { return length_squared(c.impulse) > kPresses * kPresses * most; };
-        if (std::ranges::count_if(pair, presses) > kOfEdge) continue;
-        for (std::size_t i = first; i < end; ++i)
-            if (contacts_[i].corner_of != CornerOf::Neither) put_midway(points[i], contacts_[i], bodies, 0.5 * h);
-    }
-}
-
-/// `half`: s, half of the step.
-void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, double half) const
-{
-    // rad in half a step: with less the body leaves its corner by 2^-41 of the lever, with more the middle of the step says little.
-    constexpr double kLittle = 0x1p-20, kMost = 0.05;
-    const bool of_b = c.corner_of == CornerOf::B;
-    const std::uint32_t own = of_b ? c.b.index : c.a.index, other = of_b ? c.a.index : c.b.index;
-    const Vec3& w = bodies.angular_velocity[own];
-    const double turn = length(w) * half;
-    if (!p.mobile() || bodies.motion[own] == Motion::Static || !(turn > kLittle && turn < kMost)) return;
-    Vec3 &r = of_b ? p.r_b : p.r_a, &r_other = of_b ? p.r_a : p.r_b;
-    const bool other_moves = bodies.motion[other] != Motion::Static;
-    const Vec3 passing = bodies.velocity[own] + cross(w, r) - (other_moves ? bodies.velocity[other] : Vec3{});
-    Vec3 turning = cross(w, cross(w, r));
-    if (other_moves) turning -= cross(bodies.angular_velocity[other], passing);
-    r = rotate(exp_rotation(w * half), r), r_other += passing * half;
-    p.turning = to_contact(p, turning * (of_b ? half : -half));
-    set_mobility(p);
-}
-
 void Problem::rest()
 {
     for (Anchor& m : anchors) m.v = m.w = {};

@@ -71,15 +71,20 @@ public:
     void turn_with(const Bodies& bodies);
     /// Multiplies the inertias of all bodies, until they are set again. By powers of two this is exact.
     void weigh_turns(double factor);
-    /// Puts points that are corners of a turning body where they are in the middle of a step of h (s) at the present velocities; u becomes
-    /// their velocity at its end. Otherwise a body that pivots about a corner would leave it by O(h^2) in each step:
+    /// Puts contact points where they are in the middle of a step of h (s) at the present velocities, as far as their pivots are known; u
+    /// becomes their velocity at its end. Otherwise a body that pivots or rolls would leave its path by O(h^2) in each step. With the
+    /// lever r = f + arm of a body (f: to the point of it that the arm begins at) on the face of another one, o,
     ///
-    ///   r_m = exp([w h / 2]) r,   u = E (v + w x r_m + turning),   turning = (h / 2) w x (w x r)        at the end of the step
+    ///   r_m = exp([w h / 2]) f + arm_m          n_m = exp([w_o h / 2]) n          r_o,m = r_o + (h / 2) passing
+    ///   around = w x f + (arm_m - arm) / (h / 2)          passing = v + around - v_o
+    ///   u = E (v + w x r_m - v_o - w_o x r_o,m + turning)          turning = (h / 2) (w x around - w_o x passing)
     ///
     /// With a move by the mean velocity this is the midpoint rule (Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), VII.1):
-    /// turning is what the velocity of the corner at the end differs from v + w x r_m, so u = 0 at both ends does no work.
+    /// turning is what the velocity of the point at the end differs from that with the levers of the middle, so u = 0 at both ends does
+    /// no work. Along n_m, a point that slides on a face that tilts has (h / 2) (w_o x n) . u as well; and w is not that of the impulses
+    /// alone at the end, but has changed by what free rotation does (Anchor::swings).
     /// Where a step is cut at an end of sliding (slip_end.h), the levers stay those of the whole step.
-    void put_corners_midway(const Bodies& bodies, double h);
+    void put_pivots_midway(const Bodies& bodies, double h);
     /// The rows were found again after bodies had turned.
     void turn_lines();
     /// The same for the movers and rows alone, after they have turned for h (s): sets Mover::turned. The velocities of the movers become
@@ -182,6 +187,7 @@ private:
     void sum_by_velocity(std::size_t mover);
     void write_speed(std::size_t mover, Bodies& bodies, Shafts& shafts, bool swept = false);
     void put_midway(Point& p, const Contact& c, const Bodies& bodies, double half) const;
+    void carry_midway(Point& p, const Contact& c, const Bodies& bodies, double half) const;
     void set_mobility(Point& p) const;
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);

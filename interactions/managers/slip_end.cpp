@@ -59,7 +59,6 @@ double SlipEnds::first_end(double h)
     {
         take_back_speeds(memory_, bodies_, shafts_);
         memory_.problem.scale_impulses(share);
-        tried_ = part;
         (void)try_part(part);
         double first = h;
         bool all_slide = true;
@@ -73,6 +72,21 @@ double SlipEnds::first_end(double h)
         if (all_slide) return std::clamp(first, part, h);
     }
     return h;
+}
+
+void SlipEnds::keep_impulses()
+{
+    memory_.rest.clear(), memory_.line_rest.clear();
+    for (const Point& p : memory_.problem.points) memory_.rest.push_back(p.impulse);
+    for (const Line& line : memory_.problem.lines) memory_.line_rest.push_back(line.impulse);
+}
+
+/// Not with those of the part that was tried last: of a short one, they would carry the error of sweeps multiplied.
+void SlipEnds::start_with(double share)
+{
+    Problem& problem = memory_.problem;
+    for (std::size_t i = 0; i < problem.points.size(); ++i) problem.points[i].impulse = memory_.rest[i] * share;
+    for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory_.line_rest[i] * share;
 }
 
 void SlipEnds::move(const Verdict& found, double h)
@@ -101,7 +115,8 @@ Verdict SlipEnds::advance()
         const double rest = island_.h - done_;
         keep_speeds(bodies_, shafts_, memory_);
         Verdict verdict = try_part(rest);
-        tried_ = rest, retried_ = false;
+        keep_impulses();
+        retried_ = false;
         // Slip smaller than the error that the sweeps have left is not slip.
         no_slip_ = std::max(kNoSlip * island_.size / island_.h, 10 * verdict.residual);
         const double end = cuts < kMostCuts && verdict.converged ? first_end(rest) : rest;
@@ -110,14 +125,14 @@ Verdict SlipEnds::advance()
         if (retried_)
         {
             take_back_speeds(memory_, bodies_, shafts_);
-            problem.scale_impulses(part / tried_);
+            start_with(part / rest);
             verdict = try_part(part);
         }
         out.join(verdict);
         move(verdict, part);
         if (!cut || island_.interrupted()) break;
         problem.turn_with(bodies_);
-        problem.scale_impulses((rest - part) / part);
+        start_with((rest - part) / rest);
     }
     store_impulses(problem, island_);
     for (std::size_t i = 0; i < problem.points.size(); ++i)

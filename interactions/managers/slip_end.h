@@ -30,6 +30,9 @@ private:
     double first_end(double h);
     bool slides(std::size_t i) const;
     double slip_left(std::size_t i) const;
+    /// Keeps the impulses of the rest of the step as a whole, and starts the next solve with a share of them.
+    void keep_impulses();
+    void start_with(double share);
     void move(const Verdict& found, double h);
 
     Island& island_;
@@ -40,7 +43,6 @@ private:
     StepMemory& memory_;
     double done_ = 0;       ///< s
     bool retried_ = false;  ///< first_end has tried other parts since
-    double tried_ = 0;      ///< s, length of the part that was tried last
     double no_slip_ = 0;    ///< m/s, slower slip counts as none
 };
 

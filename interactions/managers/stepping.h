@@ -41,10 +41,12 @@ struct StepMemory
     std::vector<Vec3> velocities;  ///< m/s, at the start of the step
     std::vector<Vec3> impulses;    ///< N s, from the parts of the step that are done
     std::vector<double> line_impulses;
+    std::vector<Vec3> rest;  ///< N s, of the rest of the step if nothing ends within it; of lines: N s or N m s
+    std::vector<double> line_rest;
     std::vector<Vec3> separations;     ///< contact velocities before the impacts
     std::vector<double> line_rates;    ///< of the rows before the impacts
     std::vector<double> line_impacts;  ///< N s or N m s, by line; empty if there was no impact
-    std::vector<Vec3> impacts;         ///< N s, by point; empty if there was no impact; in the directions of the points, as `impulses`
+    std::vector<Vec3> impacts;         ///< N s, W, by point; empty if there was no impact
     std::vector<double> passing;       ///< m/s, <= 0: closing speed that an impact leaves for the next step to answer
     struct Speeds
     {

@@ -33,7 +33,10 @@ Vec3 ContactPoint::velocity(const Bodies& bodies) const
 
 void ContactPoint::apply(Bodies& bodies, const Vec3& j, double normal_velocity) const
 {
-    const double v_a = dot(n_, bodies.velocity[a_]), v_b = dot(n_, bodies.velocity[b_]);
+    // The normal of a central contact meets the centre of a dynamic body; a kinematic one may turn.
+    const auto normal_speed = [&](std::uint32_t body)
+    { return dot(n_, bodies.dynamic(body) ? bodies.velocity[body] : bodies.velocity_at(body, point_)); };
+    const double v_a = normal_speed(a_), v_b = normal_speed(b_);
     const Vec3 j_W = to_world(j);
     bodies.apply_impulse(a_, -j_W, point_);
     bodies.apply_impulse(b_, j_W, point_);

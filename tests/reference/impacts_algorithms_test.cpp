@@ -129,13 +129,17 @@ std::array<double, 2> rod_on_edge(const Algorithm& algorithm, double e)
 {
     // J = (1 + e) v m / (1 + 12 (a/L)^2), arm a: 1/4 of (1 + e) v m at a = L/2, where the edge has 1 nm to hit.
     const double arm = 0.499999999;
+    // The rod turns after a plastic impact, and the round edge presses on until the end of the step, by about w^2 R h. Springs need time.
+    const double h = algorithm.springs() ? 1.0 / 60 : 1e-6, radius = algorithm.springs() ? 0.1 : 1e-3;
+    const double gap = algorithm.springs() ? 0.399 : 9.5 * h;
     Scene s(
         "<component id=\"rod.shape\" type=\"Shape/Box\" half_extents=\"0.5 0.001 0.001\"/>"
         "<component id=\"rod\" type=\"State/RigidBody\" inertia=\"1e-3 0.083333333333333333 0.083333333333333333\" "
         "shape=\"rod.shape\" " +
-            at({0, 0, 0.5}, {0, 0, -1}) + "/>" + sphere("edge", 0.1, "position=\"" + text(Vec3{arm, 0, 0}) + "\"", "Static") +
+            at({0, 0, radius + 0.001 + gap}, {0, 0, -1}) + "/>" +
+            sphere("edge", radius, "position=\"" + text(Vec3{arm, 0, 0}) + "\"", "Static") +
             contact("rod edge", algorithm, e, 0, stiffness(algorithm, 1e9, 1e12)),
-        "dt=\"1/60\"");
+        "dt=\"" + text(h) + "\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = algorithm.is("ConservativeAdvancement");  // the rod rotates close to the edge
     while (s.vec("rod", "linear_velocity").z == -1 && s.simulation().time() < 1) s.step();
@@ -150,7 +154,7 @@ TEST_CASE("C3: the end of a rod hits an edge: the effective mass is a quarter of
 {
     // Speed and spin for e = .5 and 1, and for e = 0.
     constexpr Bound<4> table[] = {{"*", "Impulse", {1e-14, 1e-14, 1e-14, 1e-14}},
-                                  {"*", "Rows", {1e-14, 1e-14, 1e-14, 1e-14}},
+                                  {"*", "Rows", {1e-14, 1e-14, 6e-10, 4e-9}},
                                   {"*", "Penalty", {6e-6, 1.6e-5, 1.2e-4, 7e-4}},
                                   {"*", "HuntCrossley", {3e-6, 1.2e-5, 5e-3, 0.03}}};
     check_algorithms(every_algorithm(), table,

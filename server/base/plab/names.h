@@ -53,7 +53,16 @@ inline std::string_view last_part(std::string_view name)
 
 inline constexpr std::size_t kFar = 1000;
 
-/// Distance from `known` to `wanted`; kFar if it is not a suggestion. A match of the last parts alone counts as one edit.
+/// Whether one of the names is a piece of the other ("Hull" of "ConvexHull"), ignoring case; less than four letters say too little.
+inline bool is_piece(std::string_view a, std::string_view b)
+{
+    const std::string_view piece = a.size() < b.size() ? a : b, whole = a.size() < b.size() ? b : a;
+    const auto same = [](char x, char y) { return lower_case(x) == lower_case(y); };
+    return piece.size() >= 4 && std::search(whole.begin(), whole.end(), piece.begin(), piece.end(), same) != whole.end();
+}
+
+/// Distance from `known` to `wanted`; kFar if it is not a suggestion. A match of the last parts alone counts as one edit, a last part
+/// that is a piece of the other as two.
 inline std::size_t score(std::string_view wanted, std::string_view known)
 {
     if (known.size() > kLongestCompared) return kFar;
@@ -65,7 +74,8 @@ inline std::size_t score(std::string_view wanted, std::string_view known)
     if (!has_parts || a.empty()) return best;
     const std::size_t most_of_part = a.size() / 4;
     const std::size_t d = edit_distance(a, b, most_of_part);
-    return d <= most_of_part ? std::min(best, d + 1) : best;
+    if (d <= most_of_part) return std::min(best, d + 1);
+    return is_piece(a, b) ? std::min<std::size_t>(best, 2) : best;
 }
 
 }  // namespace detail

@@ -11,12 +11,23 @@
 namespace plab
 {
 
-/// The body with which a contact point turns, because the point is a corner of it.
-enum class CornerOf : std::uint8_t
+/// Where a contact point goes while a body turns on a flat face of the other: it stays at an arm from a point that is fixed in the body.
+struct Pivot
 {
-    Neither,  ///< a point of a round surface, a crossing of edges, or not known
-    A,
-    B,
+    enum class Of : std::uint8_t
+    {
+        Neither,  ///< the other body is not flat there, edges cross, or it is not known
+        A,
+        B,
+    };
+    enum class Arm : std::uint8_t
+    {
+        Constant,  ///< of balls and round ends; zero at corners, which are fixed in the body themselves
+        OnRim,     ///< the radius, of a circle that is fixed in the body, that reaches furthest towards the other body
+    };
+    Of of = Of::Neither;
+    Arm kind = Arm::Constant;
+    Vec3 arm{};  ///< W, m: from the point that is fixed in the body to the contact point
 };
 
 /// One contact point of two bodies. a < b in the order of component ids.
@@ -24,10 +35,10 @@ struct Contact
 {
     Ref a, b;
     std::uint32_t feature = 0;  ///< identifies shapes and corner; stable while the same features touch
-    CornerOf corner_of = CornerOf::Neither;
     Vec3 point;                 ///< W, m
     Vec3 normal;                ///< W, unit, from a to b
     double depth = 0;           ///< m, penetration depth; > 0 when overlapping
+    Pivot pivot;
     // Filled by the host:
     std::uint64_t id = 0;            ///< stable from the beginning to the end of the contact
     double friction = 0;             ///< Coulomb coefficient

@@ -24,7 +24,8 @@ public:
     virtual void move_mean(double h) = 0;
     /// Recomputes the rows at the present state (Jacobians, errors, rates); impulses are kept.
     virtual void refresh_rows() = 0;
-    /// Recomputes the contact depths at the present state from the motion of the two surface points; normals are kept.
+    /// Recomputes the contact depths at the present state: where the pivot is known, from where the contact point is and how the face has
+    /// turned, else from the motion of the two surface points. Normals are kept.
     virtual void refresh_depths() = 0;
 };
 

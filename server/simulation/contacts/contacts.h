@@ -338,7 +338,7 @@ protected:
         for (std::size_t i = 0; i < sizeof f; i += 64) __builtin_prefetch(ahead + i, 1);
         Contact& c = f.contact;
         c.a = from.a, c.b = from.b, c.feature = from.feature, c.point = from.point, c.normal = from.normal, c.depth = from.depth;
-        c.corner_of = from.corner_of;
+        c.pivot = from.pivot;
         f.detector = detector_;
         return f;
     }

@@ -75,6 +75,8 @@ private:
     Vec3 arm(std::uint32_t body, const Vec3& point) const;
     void find_arms();
     Vec3 moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const;
+    Quat turned(std::uint32_t body) const;
+    double depth_on_face(std::size_t contact) const;
 
     GroupSystem* system_ = nullptr;
     Bodies* bodies_ = nullptr;
@@ -93,7 +95,7 @@ private:
     std::vector<Quat> started_turned_;  ///< orientations at the start
     struct Arms
     {
-        Vec3 a, b;         ///< m, in the bodies' frames
+        Vec3 a, b;         ///< m, in the bodies' frames, to the contact point or the beginning of its pivot's arm
         double depth = 0;  ///< m, at the start
     };
     std::vector<Arms> arms_;    ///< of the contacts; empty until a manager asks for their depths

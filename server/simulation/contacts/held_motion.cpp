@@ -1,7 +1,7 @@
 // The motion of the bodies of an island while a manager steps it.
 #include <cmath>
 
-#include "plab/rotation.h"
+#include "plab/pivot.h"
 #include "simulation/contacts/held_islands.h"
 
 namespace plab::simulation
@@ -48,7 +48,9 @@ void HeldMotion::find_arms()
                   for (std::size_t i = begin; i < end; ++i)
                   {
                       const Contact& c = contacts_[i];
-                      arms_[i] = {arm(c.a.index, c.point), arm(c.b.index, c.point), c.depth};
+                      const Vec3 of_a = c.pivot.of == Pivot::Of::A ? c.point - c.pivot.arm : c.point;
+                      const Vec3 of_b = c.pivot.of == Pivot::Of::B ? c.point - c.pivot.arm : c.point;
+                      arms_[i] = {arm(c.a.index, of_a), arm(c.b.index, of_b), c.depth};
                   }
               });
 }
@@ -182,7 +184,17 @@ Vec3 HeldMotion::moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point)
     if (bodies_->dynamic(body)) return (bodies_->position[body] - point) + rotate(bodies_->orientation[body], arm_B);
     if (bodies_->motion[body] == Motion::Static) return {};
     // The pose of a kinematic body is still that of the start of the step, so its displacement follows from its velocity.
-    return bodies_->velocity_at(body, point) * since_start_;
+    const Vec3 from_centre = point - bodies_->position[body];
+    return bodies_->velocity[body] * since_start_ + (rotate(turned(body), from_centre) - from_centre);
+}
+
+/// How a body has turned since the start, in W.
+Quat HeldMotion::turned(std::uint32_t body) const
+{
+    if (bodies_->motion[body] == Motion::Kinematic) return exp_rotation(bodies_->angular_velocity[body] * since_start_);
+    const std::uint32_t k = member_of_body_[body];
+    const bool is_member = bodies_->dynamic(body) && k < members_.size() && system_->bodies()[members_[k]] == body;
+    return is_member ? bodies_->orientation[body] * conjugate(started_turned_[k]) : Quat{};
 }
 
 double HeldMotion::separation_speed(std::size_t contact) const
@@ -199,9 +211,30 @@ void HeldMotion::refresh_depths()
     for (std::size_t i = 0; i < contacts_.size(); ++i)
     {
         Contact& c = contacts_[i];
+        if (c.pivot.of != Pivot::Of::Neither)
+        {
+            c.depth = depth_on_face(i);
+            continue;
+        }
         const Vec3 displacement = moved(c.b.index, arms_[i].b, c.point) - moved(c.a.index, arms_[i].a, c.point);
         c.depth = arms_[i].depth - dot(displacement, c.normal);
     }
+}
+
+/// m: from where the contact point is now and how the face has turned. The material points of a body that rolls, or is on a face that
+/// tilts, would be away from one another by O(h^2).
+double HeldMotion::depth_on_face(std::size_t contact) const
+{
+    const Contact& c = contacts_[contact];
+    const bool of_b = c.pivot.of == Pivot::Of::B;
+    const std::uint32_t own = of_b ? c.b.index : c.a.index, face = of_b ? c.a.index : c.b.index;
+    const Vec3 &arm_own = of_b ? arms_[contact].b : arms_[contact].a, &arm_face = of_b ? arms_[contact].a : arms_[contact].b;
+    const bool face_turns = bodies_->motion[face] != Motion::Static;
+    const Quat turned_face = face_turns ? turned(face) : Quat{};
+    Vec3 displacement = moved(own, arm_own, c.point - c.pivot.arm) - moved(face, arm_face, c.point);
+    if (c.pivot.arm != Vec3{}) displacement += turned_arm(c.pivot, of_b ? -c.normal : c.normal, turned(own), turned_face) - c.pivot.arm;
+    const Vec3 normal = face_turns ? rotate(turned_face, c.normal) : c.normal;
+    return arms_[contact].depth - (of_b ? dot(displacement, normal) : -dot(displacement, normal));
 }
 
 }  // namespace plab::simulation

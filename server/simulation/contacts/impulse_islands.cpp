@@ -7,17 +7,19 @@
 namespace plab::simulation
 {
 
-/// Whether corners of a persistent pair reach the other body within the step, faster than forces alone would move them there.
-bool ImpulseIslands::meets_any(const GroupSystem& system, double h) const
+/// Whether corners of a persistent pair reach the other body within the step, faster than forces alone would move them there. Evaluates
+/// the forces at the start of the step only if that decides.
+bool ImpulseIslands::meets_any(GroupSystem& system, double h) const
 {
-    double given = 0;
-    for (std::size_t i = 0; i < system.bodies().size(); ++i) given = std::max(given, length(system.acceleration(i)) * h);
-    const double least = kNoApproach * least_gyration(step_.world.host().bodies, system.bodies()) / h;
+    double least = kNoApproach * least_gyration(step_.world.host().bodies, system.bodies()) / h;
     const auto meets = [&](const FoundContact& f)
     {
         const double closing = -contacts_.normal_velocity(f.contact);
-        return closing > std::max(least, 2 * given) && closing * h > -f.contact.depth;
+        return closing > least && closing * h > -f.contact.depth;
     };
+    if (std::none_of(touching_.begin(), touching_.end(), meets)) return false;
+    system.evaluate(0, 0);
+    for (std::size_t i = 0; i < system.bodies().size(); ++i) least = std::max(least, 2 * h * length(system.acceleration(i)));
     return std::any_of(touching_.begin(), touching_.end(), meets);
 }
 
@@ -46,15 +48,18 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     members_.resize(system.bodies().size());
     std::iota(members_.begin(), members_.end(), 0u);
     const bool at_midpoint = advance_to_midpoint(system, h);
+    if (!at_midpoint && !trial) report_paradoxes(from);
+    if (!at_midpoint && meets_any(system, h))
+    {
+        stop_closing(island, from, to, book, trial);
+        system.join();
+        system.begin(from, to, book, trial ? nullptr : &step_);  // the work of forces is booked with the speeds that the impact leaves
+    }
     if (!at_midpoint) system.go_midway();
     system.evaluate_here();
     system.leave_midway();
     if (at_midpoint) update_touching(h);
-    if (!trial)
-        for (const FoundContact& f : touching_)
-            if (contacts_.is_paradox(f.contact))
-                contacts_.report_paradox(f.contact, *contacts_.find_pair(f), step_.frame.start_time + from);
-    if (!at_midpoint && meets_any(system, h)) stop_closing(island, from, to, book, trial), system.join();
+    if (at_midpoint && !trial) report_paradoxes(from);
 
     moved_.kick(system, bodies, members_, h);
     if (!trial) positions_.note_forces(system);
@@ -78,8 +83,8 @@ bool ImpulseIslands::advance_to_midpoint(GroupSystem& system, double h)
     const auto is_driven = [&](const FoundContact& f) { return midpoint_.is_driven(f.contact); };
     if (system.rows() || std::none_of(touching_.begin(), touching_.end(), turns)) return false;
     if (std::any_of(touching_.begin(), touching_.end(), is_driven)) return false;
-    system.evaluate(0, 0);
     if (meets_any(system, h)) return false;
+    system.evaluate(0, 0);
     midpoint_.advance_to_midpoint(system, members_, h);
     return true;
 }
@@ -89,6 +94,12 @@ void ImpulseIslands::update_touching(double h)
     places_.resize(touching_.size());
     std::iota(places_.begin(), places_.end(), 0u);
     midpoint_.update_contacts(places_, touching_, h);
+}
+
+void ImpulseIslands::report_paradoxes(double from)
+{
+    for (const FoundContact& f : touching_)
+        if (contacts_.is_paradox(f.contact)) contacts_.report_paradox(f.contact, *contacts_.find_pair(f), step_.frame.start_time + from);
 }
 
 /// Notes what the touching points took. An advance whose work is taken back has nothing left from its start on.

@@ -24,10 +24,11 @@ public:
                  bool trial);
 
 private:
-    bool meets_any(const GroupSystem& system, double h) const;
+    bool meets_any(GroupSystem& system, double h) const;
     void stop_closing(std::span<const std::uint32_t> island, double from, double to, WorkBook book, bool trial);
     bool advance_to_midpoint(GroupSystem& system, double h);
     void update_touching(double h);
+    void report_paradoxes(double from);
     void log_touching(std::span<const std::uint32_t> island, double from, double to, bool is_impact, WorkBook book);
     void book_rest(double work, WorkBook book);
     void keep_impulses(std::span<FoundContact> contacts, double from, double h);

@@ -119,31 +119,67 @@ double KickedBodies::move_mean(double h)
 {
     constexpr double kRounding = 1e-13;
     const double taken = -work_of_contacts(h);
-    double turned = 0, size = 0;
+    double size = 0;
+    Gain turned;
     kept_.clear();
     for (std::size_t k = 0; k < members_.size(); ++k)
     {
         const std::uint32_t b = body(k);
-        kept_.push_back({bodies_->orientation[b], bodies_->angular_velocity[b], bodies_->kinetic_energy(b)});
+        kept_.push_back({bodies_->orientation[b], bodies_->angular_velocity[b], bodies_->kinetic_energy(b), {}});
         const Speeds mean = speeds(k, true);
         bodies_->position[b] += mean.velocity * h;
-        const Vec3 lacking = bodies_->needle[b] != 0 ? bodies_->inertia_B[b] * (speeds(k, false).momentum - mean.momentum)
-                                                     : bodies_->angular_momentum[b] - mean.momentum;
-        turn_freely(*bodies_, b, bodies_->needle[b] != 0 ? rotate(bodies_->orientation[b], lacking) : lacking, h);
-        turned += bodies_->kinetic_energy(b) - kept_[k].energy, size += before_[k].energy + kept_[k].energy;
+        kept_[k].lacking = bodies_->needle[b] != 0
+                               ? rotate(bodies_->orientation[b], bodies_->inertia_B[b] * (speeds(k, false).momentum - mean.momentum))
+                               : bodies_->angular_momentum[b] - mean.momentum;
+        turn_freely(*bodies_, b, kept_[k].lacking, h);
+        turned.add(gain_of(k));
+        size += before_[k].energy + kept_[k].energy;
     }
-    if (!(turned > std::max(taken, 0.0) + kRounding * size)) return turned - taken;
+    balance_turns(h, taken, kRounding * size, turned);
+    return turned.sum() - taken;
+}
+
+/// What the rotation gains and what contacts take from the bodies would be the same in exact motion without slip. Where more is gained, or
+/// less is lost than contacts have given, the share of the mean momentum is changed; what bodies gain is nearly in proportion to it.
+void KickedBodies::balance_turns(double h, double taken, double rounding, Gain& turned)
+{
+    constexpr int kMostTries = 4;
+    constexpr double kMostShare = 1.25;  // beyond it contacts have not given because of the rotation: a moving floor has
+    double share = 1;
+    for (int tries = 0; tries < kMostTries; ++tries)
+    {
+        const double limit = std::max(taken, 0.0);
+        const bool gains = turned.sum() > limit + rounding;
+        const bool gives = taken < -rounding && turned.sum() > taken + rounding && turned.gained == 0 && turned.lost < 0;
+        if (!gains && !gives) return;
+        share *= gains ? (limit - turned.lost) / turned.gained : taken / turned.lost;
+        if (gains ? !(limit - turned.lost > rounding) : !(share < kMostShare)) break;
+        turned = turn_again(h, share, gains);
+    }
+    if (turned.sum() > std::max(taken, 0.0) + rounding) turned = turn_again(h, 0, true);
+}
+
+/// J: what the rotation has added to a body's energy.
+double KickedBodies::gain_of(std::size_t k) const { return bodies_->kinetic_energy(body(k)) - kept_[k].energy; }
+
+/// Rotates bodies anew, all or those that have gained energy, with a share of what their mean momentum differs from their own.
+KickedBodies::Gain KickedBodies::turn_again(double h, double share, bool gaining)
+{
+    Gain turned;
     for (std::size_t k = 0; k < members_.size(); ++k)
     {
         const std::uint32_t b = body(k);
-        const double gain = bodies_->kinetic_energy(b) - kept_[k].energy;
-        if (!(gain > 0)) continue;
-        turned -= gain;
+        if (gaining && !(gain_of(k) > 0))
+        {
+            turned.add(gain_of(k));
+            continue;
+        }
         bodies_->orientation[b] = kept_[k].orientation, bodies_->angular_velocity[b] = kept_[k].spin;
         bodies_->refresh_spin(b);
-        turn_freely(*bodies_, b, {}, h);
+        turn_freely(*bodies_, b, kept_[k].lacking * share, h);
+        if (share > 0) turned.add(gain_of(k));
     }
-    return turned - taken;
+    return turned;
 }
 
 }  // namespace plab::simulation

@@ -39,7 +39,8 @@ public:
     /// The same for members `begin` to `end`; several threads may move different ones.
     void move_some(std::size_t begin, std::size_t end, double h);
     /// Moves with the mean of the present velocities and those before the kick: exact for constant forces. If rotating with the mean
-    /// momentum would create energy, as after an impact, bodies rotate with the momentum after it instead.
+    /// momentum would create energy, bodies that gain some rotate with a momentum nearer to that after the kick, which creates none: with
+    /// just that after an impact, and nearly the mean where contacts take nearly what the rotation gains (a disc that rolls).
     /// Returns J: work of contacts and joints since the kick, including the energy error of the rotation.
     double move_mean(double h);
 
@@ -62,7 +63,18 @@ private:
         Quat orientation;
         Vec3 spin;
         double energy = 0;  ///< J
+        Vec3 lacking;       ///< N m s, W: what the mean momentum is less than the body's own
     };
+    /// J: of bodies that gain energy by their rotation, and of those that lose some.
+    struct Gain
+    {
+        double gained = 0, lost = 0;
+        void add(double more) { (more > 0 ? gained : lost) += more; }
+        double sum() const { return gained + lost; }
+    };
+    double gain_of(std::size_t member) const;
+    void balance_turns(double h, double taken, double rounding, Gain& turned);
+    Gain turn_again(double h, double share, bool gaining);
     std::uint32_t body(std::size_t member) const { return system_->bodies()[members_[member]]; }
 
     GroupSystem* system_ = nullptr;

@@ -102,6 +102,7 @@ void MidpointContacts::update_contacts(std::span<const std::uint32_t> places, st
     for (const std::uint32_t place : places)
     {
         Contact& c = all[place].contact;
+        c.pivot = {};  // a manager would put the point midway once more
         const auto found = std::lower_bound(midpoint_.begin(), midpoint_.end(), key(all[place]),
                                             [&](const FoundContact& f, const auto& wanted) { return key(f) < wanted; });
         const bool same = found != midpoint_.end() && key(*found) == key(all[place]) && dot(found->contact.normal, c.normal) > kSameCurve;

@@ -20,8 +20,8 @@
 /// at a time that is correct to order 2.
 ///
 /// Limits: orientations are advanced for the forces but not for the contacts, so a curve that rotates with its body (a tumbling capsule)
-/// stays at order 1. Forces that depend on velocities are evaluated with v0. Joints would not be satisfied at the midpoint, and kinematic
-/// bodies are not advanced to it, so islands that contain either are stepped without this.
+/// stays at order 1, and so do pivots (Contact::pivot) in its island. Forces that depend on velocities are evaluated with v0. Joints would
+/// not be satisfied at the midpoint, and kinematic bodies are not advanced to it, so islands that contain either are stepped without this.
 ///
 /// Source: the midpoint rule for constrained motion, Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), VII.1.
 #pragma once

@@ -73,39 +73,97 @@ TEST_CASE("an overhanging block ends exactly at the edge below it")
     }
 }
 
-TEST_CASE("a point says of which solid it is a corner, in either order, and a point of a round solid is of neither")
+TEST_CASE("a point says of which solid it is a corner, in either order, and what round solids pivot about")
 {
-    const auto count = [](const std::vector<ContactPoint>& points, CornerOf of)
-    { return std::count_if(points.begin(), points.end(), [&](const ContactPoint& k) { return k.corner_of == of; }); };
+    const auto count = [](const std::vector<ContactPoint>& points, Pivot::Of of) {
+        return std::count_if(points.begin(), points.end(),
+                             [&](const ContactPoint& k) { return k.pivot.of == of && k.pivot.arm == Vec3{}; });
+    };
     const Collider block = collider(GeometryKind::Box, {0.5, 0.25, 0.05});
     const Collider narrow = collider(GeometryKind::Box, {0.5, 0.2, 0.05});
     const Pose above{{0.1, 0, 0.1 - 1e-9}, {}};
     for (const bool swapped : {false, true})
     {
         CAPTURE(swapped);
-        const CornerOf upper = swapped ? CornerOf::A : CornerOf::B;
+        const Pivot::Of upper = swapped ? Pivot::Of::A : Pivot::Of::B;
         const auto pair = swapped ? points_by_feature(narrow, above, block, {}) : points_by_feature(block, {}, narrow, above);
         REQUIRE(pair.size() == 4);
         for (const ContactPoint& k : pair)
         {
-            // The narrow block ends inside the other one at x = -0.4. Its sides cross the edge of the other one at 0.5.
-            CHECK(k.corner_of == (k.point.x < 0 ? upper : CornerOf::Neither));
+            // The narrow block ends inside the other one at x = -0.4. Its sides cross the edge of the other one at 0.5: a pivot of either.
+            if (k.point.x < 0) CHECK(k.pivot.of == upper);
+            CHECK(k.pivot.of != Pivot::Of::Neither);
         }
         const Pose on_plane{{0, 0, 0.05}, {}};
         const auto stands =
             swapped ? points_by_feature(plane(), {}, block, on_plane, 1e-6) : points_by_feature(block, on_plane, plane(), {}, 1e-6);
-        CHECK(count(stands, swapped ? CornerOf::B : CornerOf::A) == 4);
+        CHECK(count(stands, swapped ? Pivot::Of::B : Pivot::Of::A) == 4);
     }
-    const Collider capsule = collider(GeometryKind::Capsule, {0.1, 0, 0.3}), cylinder = collider(GeometryKind::Cylinder, {0.1, 0, 0.3});
-    for (const Collider* round : {&capsule, &cylinder})
+}
+
+TEST_CASE("round solids pivot about their centres, the centres of their ends and of their rims, on a plane, a box and a hull alike")
+{
+    const Collider ball = collider(GeometryKind::Sphere, {0.1, 0, 0}), capsule = collider(GeometryKind::Capsule, {0.1, 0, 0.3}),
+                   cylinder = collider(GeometryKind::Cylinder, {0.1, 0, 0.3});
+    const Collider box = collider(GeometryKind::Box, {2, 2, 0.5}), hull(mesh_of(box_corners({2, 2, 0.5})));
+    const Quat tilted = about({0, 1, 0}, 0.4) * about({0, 0, 1}, 0.3);
+    const double sine = std::sin(0.4), cosine = std::cos(0.4);
+    struct Case
     {
-        const auto lies = points_by_feature(*round, {{0, 0, 0.1}, kLying}, plane(), {}, 1e-6);
-        const auto on_block = points_by_feature(*round, {{0, 0, 0.15}, kLying}, block, {}, 1e-6);
-        REQUIRE(!lies.empty());
-        REQUIRE(!on_block.empty());
-        CHECK(count(lies, CornerOf::Neither) == static_cast<std::ptrdiff_t>(lies.size()));
-        CHECK(count(on_block, CornerOf::Neither) == static_cast<std::ptrdiff_t>(on_block.size()));
+        const Collider* solid;
+        Pose X;
+        Pivot::Arm kind;
+        Vec3 arm;
+    };
+    const Case cases[] = {
+        {&ball, {{0, 0, 0.1}, {}}, Pivot::Arm::Constant, {0, 0, -0.1}},
+        {&capsule, {{0, 0, 0.1}, kLying}, Pivot::Arm::Constant, {0, 0, -0.1}},
+        {&capsule, {{0, 0, 0.1 + 0.3 * cosine}, tilted}, Pivot::Arm::Constant, {0, 0, -0.1}},
+        {&cylinder, {{0, 0, 0.1}, kLying}, Pivot::Arm::OnRim, {0, 0, -0.1}},
+        {&cylinder, {{0, 0, 0.1 * sine + 0.3 * cosine}, tilted}, Pivot::Arm::OnRim, {0.1 * cosine, 0, -0.1 * sine}},
+    };
+    for (const Case& k : cases)
+        for (const Collider* floor : {static_cast<const Collider*>(nullptr), &box, &hull})
+            for (const bool swapped : {false, true})
+            {
+                CAPTURE(swapped);
+                CAPTURE(floor == nullptr);
+                CAPTURE(&k - cases);
+                const Collider flat = floor ? *floor : plane();
+                const Pose below{{0.3, 0.2, floor ? -0.5 : 0}, {}};
+                const auto points =
+                    swapped ? points_by_feature(flat, below, *k.solid, k.X, 1e-6) : points_by_feature(*k.solid, k.X, flat, below, 1e-6);
+                std::size_t pressing = 0;
+                for (const ContactPoint& at : points)
+                {
+                    if (at.depth < -1e-9 || at.pivot.of == Pivot::Of::Neither) continue;
+                    ++pressing;
+                    CHECK(at.pivot.of == (swapped ? Pivot::Of::B : Pivot::Of::A));
+                    CHECK(at.pivot.kind == k.kind);
+                    CHECK(length(at.pivot.arm - k.arm) < 1e-9);
+                }
+                CHECK(pressing >= 1);
+            }
+    // A cylinder across a narrow box pivots about its axis where it crosses the sides of the box.
+    const Collider beam = collider(GeometryKind::Box, {0.2, 2, 0.5});
+    const auto across = points_by_feature(cylinder, {{0, 0, 0.1}, kLying}, beam, {{0, 0, -0.5}, {}}, 1e-6);
+    REQUIRE(across.size() == 2);
+    for (const ContactPoint& at : across)
+    {
+        CHECK(at.pivot.of == Pivot::Of::A);
+        CHECK(at.pivot.kind == Pivot::Arm::Constant);
+        CHECK(length(at.pivot.arm - Vec3{0, 0, -0.1}) < 1e-9);
     }
+    // A block that tips over the edge of another: its face turns about a point of that edge.
+    const Collider block = collider(GeometryKind::Box, {0.5, 0.2, 0.05}), table = collider(GeometryKind::Box, {1, 1, 0.5});
+    const Quat tips = about({0, 1, 0}, 0.05);
+    const auto tipping = points_by_feature(block, {Vec3{1, 0, 0} + rotate(tips, {0.1, 0, 0.05 - 1e-9}), tips}, table, {{0, 0, -0.5}, {}});
+    REQUIRE(tipping.size() == 2);
+    for (const ContactPoint& at : tipping) CHECK(at.pivot.of == Pivot::Of::B);
+    // A ball at the edge of a box pivots about no face.
+    const auto at_edge = points_by_feature(ball, {{2.07, 0, 0.07}, {}}, box, {{0, 0, -0.5}, {}}, 1e-2);
+    REQUIRE(at_edge.size() == 1);
+    CHECK(at_edge.front().pivot.of == Pivot::Of::Neither);
 }
 
 TEST_CASE("features stay the same while boxes slide, turn and rock a little")

@@ -27,6 +27,14 @@ TEST_CASE("type names are found by their last part")
     CHECK(nearest_names("Shapes/Sphere", known) == std::vector<std::string>{"Shape/Sphere"});
 }
 
+TEST_CASE("a last part that is a piece of another one's is a suggestion, after those that are nearer")
+{
+    const std::vector<std::string> known{"Shape/Bowl", "Shape/ConvexHull", "Constraint/TorsionSpring", "Constraint/SpringDamper"};
+    CHECK(nearest_names("Shape/Hull", known).front() == "Shape/ConvexHull");
+    CHECK(nearest_names("Constraint/spring", known) == std::vector<std::string>{"Constraint/SpringDamper", "Constraint/TorsionSpring"});
+    CHECK(nearest_names("Shape/Convex", known) == std::vector<std::string>{"Shape/ConvexHull"});
+}
+
 TEST_CASE("setter names")
 {
     CHECK(field_name_of_setter("SetVelocityFactor") == "velocity_factor");
