@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "manifold.h"
 #include "pivots.h"
+#include "rim_points.h"
 #include "spread.h"
 
 namespace plab::detection

@@ -6,6 +6,7 @@
 
 #include "box_axes.h"
 #include "pivots.h"
+#include "rim_points.h"
 #include "separation.h"
 #include "spread.h"
 #include "supporting_face.h"
@@ -308,19 +309,6 @@ std::uint32_t mirrored_feature(std::uint32_t f)
         default:
             return f;
     }
-}
-
-RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction)
-{
-    RimPoints out;
-    const Vec3 u = c.axis(2), middle = c.pose().p + (upper ? c.size().z : -c.size().z) * u;
-    const std::array<Vec3, 4> fixed{c.axis(0), c.axis(1), -c.axis(0), -c.axis(1)};
-    for (; out.count < 4; ++out.count) out.p[out.count] = middle + c.size().x * fixed[out.count], out.id[out.count] = out.count;
-    const Vec3 across = direction - dot(direction, u) * u;
-    const double sine = length(across);
-    // A level end has no furthest point: the choice would depend on rounding and jump from step to step.
-    if (sine > 1e-12) out.p[out.count] = middle + (c.size().x / sine) * across, out.id[out.count++] = RimPoints::kFurthest;
-    return out;
 }
 
 void add_manifold(const Solid& A, const Solid& B, const Separation& s, ContactPoints& out)

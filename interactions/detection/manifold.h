@@ -17,17 +17,6 @@
 namespace plab::detection
 {
 
-/// Points that represent the rim of one end of a cylinder: four points fixed to the body, and the point furthest in a direction,
-/// if there is a unique one.
-struct RimPoints
-{
-    static constexpr std::uint32_t kFurthest = 4;
-    std::array<Vec3, 5> p;
-    std::array<std::uint32_t, 5> id{};
-    std::uint32_t count = 0;
-};
-RimPoints rim_points(const Solid& cylinder, bool upper, const Vec3& direction);
-
 /// Feature numbers, by what meets: a corner of A or of B on the other solid, two crossing edges, or the closest points alone.
 std::uint32_t corner_feature(bool of_a, std::uint32_t corner);
 std::uint32_t crossing_feature(std::uint32_t edge_a, std::uint32_t edge_b);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "manifold.h"
+#include "rim_points.h"
 
 namespace plab::detection
 {

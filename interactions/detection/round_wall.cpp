@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "manifold.h"
 #include "surface_contacts.h"
 
 namespace plab::detection

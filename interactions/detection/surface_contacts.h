@@ -4,7 +4,7 @@
 #pragma once
 
 #include "contact_points.h"
-#include "manifold.h"
+#include "rim_points.h"
 #include "solid.h"
 
 namespace plab::detection
@@ -48,7 +48,7 @@ Separation separation_from_surface(const Collider& a, const Pose& X_a, const Col
 
 /// Calls visit(corner, number) for the corners of a solid that may be furthest in direction d, the furthest one first for
 /// cylinders: all corners of boxes and hulls, the centres of both ends of capsules, points on the rims of cylinders
-/// (manifold.h).
+/// (rim_points.h).
 template <class Visit>
 void visit_corners(const Solid& K, const Vec3& d, Visit&& visit)
 {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "manifold.h"
 #include "pivots.h"
 #include "separation.h"
 #include "surface_contacts.h"

@@ -59,6 +59,7 @@ double SlipEnds::first_end(double h)
     {
         take_back_speeds(memory_, bodies_, shafts_);
         memory_.problem.scale_impulses(share);
+        tried_ = part;
         (void)try_part(part);
         double first = h;
         bool all_slide = true;
@@ -81,10 +82,13 @@ void SlipEnds::keep_impulses()
     for (const Line& line : memory_.problem.lines) memory_.line_rest.push_back(line.impulse);
 }
 
-/// Not with those of the part that was tried last: of a short one, they would carry the error of sweeps multiplied.
-void SlipEnds::start_with(double share)
+/// Not from the present impulses if those are of a much shorter part: they would carry the error of sweeps multiplied.
+void SlipEnds::start_with(double h, double present, double rest)
 {
+    constexpr double kMostGrowth = 8;
     Problem& problem = memory_.problem;
+    if (h <= kMostGrowth * present) return problem.scale_impulses(h / present);
+    const double share = h / rest;
     for (std::size_t i = 0; i < problem.points.size(); ++i) problem.points[i].impulse = memory_.rest[i] * share;
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory_.line_rest[i] * share;
 }
@@ -116,7 +120,7 @@ Verdict SlipEnds::advance()
         keep_speeds(bodies_, shafts_, memory_);
         Verdict verdict = try_part(rest);
         keep_impulses();
-        retried_ = false;
+        tried_ = rest, retried_ = false;
         // Slip smaller than the error that the sweeps have left is not slip.
         no_slip_ = std::max(kNoSlip * island_.size / island_.h, 10 * verdict.residual);
         const double end = cuts < kMostCuts && verdict.converged ? first_end(rest) : rest;
@@ -125,14 +129,14 @@ Verdict SlipEnds::advance()
         if (retried_)
         {
             take_back_speeds(memory_, bodies_, shafts_);
-            start_with(part / rest);
+            start_with(part, tried_, rest);
             verdict = try_part(part);
         }
         out.join(verdict);
         move(verdict, part);
         if (!cut || island_.interrupted()) break;
         problem.turn_with(bodies_);
-        start_with((rest - part) / rest);
+        start_with(rest - part, part, rest);
     }
     store_impulses(problem, island_);
     for (std::size_t i = 0; i < problem.points.size(); ++i)

@@ -30,9 +30,10 @@ private:
     double first_end(double h);
     bool slides(std::size_t i) const;
     double slip_left(std::size_t i) const;
-    /// Keeps the impulses of the rest of the step as a whole, and starts the next solve with a share of them.
     void keep_impulses();
-    void start_with(double share);
+    /// Starts the next solve, of a part of h (s), from the `present` impulses, which are of a part of that length (s), or from those that
+    /// were kept of the whole `rest` (s) of the step.
+    void start_with(double h, double present, double rest);
     void move(const Verdict& found, double h);
 
     Island& island_;
@@ -43,6 +44,7 @@ private:
     StepMemory& memory_;
     double done_ = 0;       ///< s
     bool retried_ = false;  ///< first_end has tried other parts since
+    double tried_ = 0;      ///< s, length of the part that was tried last
     double no_slip_ = 0;    ///< m/s, slower slip counts as none
 };
 

@@ -76,6 +76,7 @@ private:
     void find_arms();
     Vec3 moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const;
     Quat turned(std::uint32_t body) const;
+    Pivot::Of pivot_of(const Contact& contact) const;
     double depth_on_face(std::size_t contact) const;
 
     GroupSystem* system_ = nullptr;

@@ -38,6 +38,9 @@ Vec3 HeldMotion::arm(std::uint32_t body, const Vec3& point) const
     return rotate_back(bodies_->orientation[body], point - bodies_->position[body]);
 }
 
+/// In islands with joints managers take the velocities of the material points, so depths have to be theirs as well.
+Pivot::Of HeldMotion::pivot_of(const Contact& c) const { return rows_.empty() ? c.pivot.of : Pivot::Of::Neither; }
+
 /// Few methods ask for depths, so arms are found when the first depth is asked for: the start is known then, too.
 void HeldMotion::find_arms()
 {
@@ -48,8 +51,9 @@ void HeldMotion::find_arms()
                   for (std::size_t i = begin; i < end; ++i)
                   {
                       const Contact& c = contacts_[i];
-                      const Vec3 of_a = c.pivot.of == Pivot::Of::A ? c.point - c.pivot.arm : c.point;
-                      const Vec3 of_b = c.pivot.of == Pivot::Of::B ? c.point - c.pivot.arm : c.point;
+                      const Pivot::Of pivot = pivot_of(c);
+                      const Vec3 of_a = pivot == Pivot::Of::A ? c.point - c.pivot.arm : c.point;
+                      const Vec3 of_b = pivot == Pivot::Of::B ? c.point - c.pivot.arm : c.point;
                       arms_[i] = {arm(c.a.index, of_a), arm(c.b.index, of_b), c.depth};
                   }
               });
@@ -147,7 +151,7 @@ void HeldMotion::move(double h)
 void HeldMotion::move_mean(double h)
 {
     commit(h, true, [](std::size_t, std::size_t) {});
-    (void)kicked_.move_mean(h);
+    (void)kicked_.move_mean(h, rows_.empty());
     for (std::size_t k = 0; k < roots_.size(); ++k)
     {
         const std::uint32_t s = system_->roots()[roots_[k]];
@@ -211,7 +215,7 @@ void HeldMotion::refresh_depths()
     for (std::size_t i = 0; i < contacts_.size(); ++i)
     {
         Contact& c = contacts_[i];
-        if (c.pivot.of != Pivot::Of::Neither)
+        if (pivot_of(c) != Pivot::Of::Neither)
         {
             c.depth = depth_on_face(i);
             continue;

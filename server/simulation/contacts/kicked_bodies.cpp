@@ -115,7 +115,7 @@ void KickedBodies::move_some(std::size_t begin, std::size_t end, double h)
     for (; k < end; ++k) turn_freely(*bodies_, body(k), {}, h);
 }
 
-double KickedBodies::move_mean(double h)
+double KickedBodies::move_mean(double h, bool follows_turns)
 {
     constexpr double kRounding = 1e-13;
     const double taken = -work_of_contacts(h);
@@ -135,7 +135,8 @@ double KickedBodies::move_mean(double h)
         turned.add(gain_of(k));
         size += before_[k].energy + kept_[k].energy;
     }
-    balance_turns(h, taken, kRounding * size, turned);
+    if (follows_turns) balance_turns(h, taken, kRounding * size, turned);
+    if (turned.sum() > std::max(taken, 0.0) + kRounding * size) turned = turn_again(h, 0, true);
     return turned.sum() - taken;
 }
 
@@ -156,7 +157,6 @@ void KickedBodies::balance_turns(double h, double taken, double rounding, Gain& 
         if (gains ? !(limit - turned.lost > rounding) : !(share < kMostShare)) break;
         turned = turn_again(h, share, gains);
     }
-    if (turned.sum() > std::max(taken, 0.0) + rounding) turned = turn_again(h, 0, true);
 }
 
 /// J: what the rotation has added to a body's energy.

@@ -39,10 +39,11 @@ public:
     /// The same for members `begin` to `end`; several threads may move different ones.
     void move_some(std::size_t begin, std::size_t end, double h);
     /// Moves with the mean of the present velocities and those before the kick: exact for constant forces. If rotating with the mean
-    /// momentum would create energy, bodies that gain some rotate with a momentum nearer to that after the kick, which creates none: with
-    /// just that after an impact, and nearly the mean where contacts take nearly what the rotation gains (a disc that rolls).
+    /// momentum would create energy, as after an impact, bodies rotate with the momentum after it instead. `follows_turns`: the impulses
+    /// have counted on what the rotation does to the spins, as those of contacts without joints do; then bodies rotate as nearly with the
+    /// mean as creates no energy, which is nearly the mean where contacts take what the rotation gains (a disc that rolls).
     /// Returns J: work of contacts and joints since the kick, including the energy error of the rotation.
-    double move_mean(double h);
+    double move_mean(double h, bool follows_turns = false);
 
     /// The present velocities, or the means of those before the kick and now.
     Speeds speeds(std::size_t member, bool mean) const;
