@@ -132,10 +132,11 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     set_mobility(p);
 }
 
-/// The same for a body that stands on another one: it is taken to move without turning, so all of its points can stick.
+/// The same for a body that stands on another one: it is taken to move without turning, so all of its points can stick. Which of two
+/// bodies counts as standing is the same for all points of the pair: with the pivots of each, a wall that was hit did not come to rest.
 void Problem::carry_midway(Point& p, const Contact& c, const Bodies& bodies, double half) const
 {
-    const bool b_stands = c.pivot.of == Pivot::Of::Neither ? bodies.dynamic(c.b.index) : c.pivot.of == Pivot::Of::B;
+    const bool b_stands = bodies.dynamic(c.b.index);
     const Movement own = movement_of(bodies, b_stands ? c.b : c.a), other = movement_of(bodies, b_stands ? c.a : c.b);
     if (!p.mobile() || turn_of(other.w, half) != Turn::Some) return;
     const Vec3 passing = own.v - other.v;
