@@ -66,7 +66,7 @@ public:
     const Vec3& normal() const { return n_; }
 
 private:
-    Pivot pivot_at(std::uint32_t feature, const Vec3& on_a, const Vec3& on_b, const Vec3& point) const
+    Pivot pivot_at(std::uint32_t feature, const Vec3& on_a, const Vec3& on_b, const Vec3& point)
     {
         if (!on_faces_) return {};
         if (is_corner_of_a(feature)) return pivot_at_corner(Pivot::Of::A, A_, feature & kCornerMask, on_a, point);
@@ -74,10 +74,12 @@ private:
         return feature == kNearestFeature ? pivot_at_nearest(on_a, on_b, point) : pivot_at_crossing(on_a, on_b, point);
     }
     /// An edge that crosses the border of a face.
-    Pivot pivot_at_crossing(const Vec3& on_a, const Vec3& on_b, const Vec3& point) const
+    Pivot pivot_at_crossing(const Vec3& on_a, const Vec3& on_b, const Vec3& point)
     {
-        if (is_flat_towards(B_, -n_)) return pivot_at_edge(Pivot::Of::A, A_, on_a, point);
-        return is_flat_towards(A_, n_) ? pivot_at_edge(Pivot::Of::B, B_, on_b, point) : Pivot{};
+        if (!flat_b_) flat_b_ = is_flat_towards(B_, -n_);
+        if (*flat_b_) return pivot_at_edge(Pivot::Of::A, A_, on_a, point);
+        if (!flat_a_) flat_a_ = is_flat_towards(A_, n_);
+        return *flat_a_ ? pivot_at_edge(Pivot::Of::B, B_, on_b, point) : Pivot{};
     }
     /// The closest points, where one of them is the furthest corner of a solid and the other is on a face.
     Pivot pivot_at_nearest(const Vec3& on_a, const Vec3& on_b, const Vec3& point) const
@@ -103,6 +105,7 @@ private:
     std::size_t first_;
     double size_;
     const Solid &A_, &B_;
+    std::optional<bool> flat_a_, flat_b_;  // whether the solids have a face across the normal, once asked
     bool on_faces_ = true;
     double deepest_ = -HUGE_VAL;
 };

@@ -29,6 +29,27 @@ bool accelerates_evenly(const Problem& problem, const Island& island)
     return std::ranges::none_of(problem.lines, [&](const Line& line) { return is_stiff(island.rows[line.row], line.mobility, island.h); });
 }
 
+/// Whether a stop is met in this step, with more than a small part of the speeds of its bodies: these end then, and with them what the
+/// levers would have turned.
+bool meets_stop(const Problem& problem, const Island& island)
+{
+    constexpr double kPart = 0x1p-7, kRounding = 0x1p-34;
+    const auto meets = [&](const Line& line)
+    {
+        const ConstraintRow& row = island.rows[line.row];
+        if (line.count == 0 || row.kind != RowKind::OneSided) return false;
+        const double closing = row.rate - problem.rate(line), still = kRounding * (turns_only(row) ? 1 : island.size) / island.h;
+        double speeds = 0;
+        for (std::uint32_t k = 0; k < line.count; ++k)
+        {
+            const Mover& m = problem.movers[line.mover[k]];
+            speeds += length(line.linear[k]) * length(m.v) + length(line.angular[k]) * length(m.w);
+        }
+        return closing * island.h > row.error && closing > std::max(still, kPart * speeds);
+    };
+    return std::ranges::any_of(problem.lines, meets);
+}
+
 Verdict put_back(const StepMemory& memory, Bodies& bodies, Shafts& shafts)
 {
     take_back_speeds(memory, bodies, shafts);
@@ -55,8 +76,12 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
 
     const Moving moving = how_to_move(problem, island, island.h);
-    // Feet of a mechanism that stands on both may contradict its joints, where a speed changes within the step.
-    if (moving == Moving::ByMean && problem.lines.empty()) problem.put_pivots_midway(bodies, island.h);
+    const bool is_smooth = memory.line_impacts.empty() && !meets_stop(problem, island);
+    if (moving == Moving::ByMean && (problem.lines.empty() || (is_smooth && island.motion->put_rows_midway(island.h))))
+    {
+        problem.put_pivots_midway(bodies, island.h);
+        problem.put_lines_midway(island.h);
+    }
     const bool locates_slip_ends = !choices.or_nothing && !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to &&
                                    accelerates_evenly(problem, island);
     if (locates_slip_ends)

@@ -43,7 +43,7 @@ public:
     Verdict find_impulses(Problem& problem) override
     {
         const Sweeping how{static_cast<int>(iterations_ * (1 + 9 * unknown_share(problem))), 0.1 * tolerance_, relaxation_};
-        const Swept done = has_forces(problem) ? sweep_between_joints(problem, how) : sweep_without_gain(problem, how);
+        const Swept done = holds_rows(problem) ? sweep_between_rows(problem, how) : sweep_without_gain(problem, how);
         problem.apply_impulses();
         const double residual = violation(problem);
         return {done.sweeps, residual, residual <= tolerance_, false};
@@ -51,18 +51,25 @@ public:
     Verdict find_displacements(Problem& problem, double tolerance) override
     {
         const Sweeping how{position_iterations_, tolerance, relaxation_};
-        const Swept done = has_forces(problem) ? sweep_between_joints(problem, how) : sweep(problem, how);
+        const Swept done = holds_rows(problem) ? sweep_between_rows(problem, how) : sweep(problem, how);
         problem.apply_impulses();
         return {done.sweeps, 0, true, false};
     }
 
 private:
-    /// Where forces are stiff, joints and forces are held exactly between some sweeps.
-    Swept sweep_between_joints(Problem& problem, Sweeping how)
+    /// Sweeps pass a load on from row to row, so that a chain stretches and a car drags its wheels. A tree of joints is held exactly at the
+    /// cost of a few of them; so are stiff forces, which need hundreds.
+    bool holds_rows(const Problem& problem)
+    {
+        if (std::ranges::none_of(problem.lines, [](const Line& line) { return line.count > 0 && line.least < line.most; })) return false;
+        joints_.load(problem);
+        return has_forces(problem) || joints_.is_cheap(problem);
+    }
+    /// Joints and forces are held exactly between some sweeps.
+    Swept sweep_between_rows(Problem& problem, Sweeping how)
     {
         constexpr int kAtOnce = 8;
         Swept out;
-        joints_.load(problem);
         joints_.hold(problem, how.tolerance);
         for (const int most = std::exchange(how.most, kAtOnce); out.sweeps < most && !out.converged && !problem.interrupted();)
         {
@@ -77,9 +84,6 @@ private:
     double tolerance_, relaxation_;
     JointSolver& joints_;
 };
-
-/// As a fraction of a body's size per step (or of a rad): smaller violations are not reported.
-constexpr double kMatters = 0x1p-23;
 
 int whole(std::int64_t n) { return static_cast<int>(std::min<std::int64_t>(n, 1'000'000)); }
 
@@ -130,9 +134,8 @@ void Account::add(const StepContext& context, Row row, const Island& island, dou
     contacts[row] += static_cast<std::int64_t>(island.contacts.size());
     fallbacks[row] += island.fell_back ? 1 : 0;
     residual[row] = std::max(residual[row], island.residual);
-    // A violation that moves no body by more than 2^-23 of its size in a step appears in the output only, without an event.
-    const double size = island.bodies.empty() ? 1 : island.size;
-    if (island.converged || island.residual * island.h <= kMatters * size) return;
+    // A violation that does not matter appears in the output only, without an event.
+    if (island.converged || !matters(island.residual, island, island.h)) return;
     const bool reported = last_failure[row] >= 0 && last_failure[row] + 1 >= context.tick;
     if (!reported)
         context.emit(row, "manager.not_converged", Severity::Warning,

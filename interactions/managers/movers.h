@@ -47,12 +47,14 @@ struct Anchor
 {
     std::uint32_t host = kNoIndex;  ///< row in Bodies or Shafts
     bool shaft = false;
+    bool midway = false;  ///< the inertia is that of the middle of the step, and w that of the momentum there
     double mass = 1;
     Mat3 inertia;       ///< W
     Vec3 v, w;          ///< velocities without the impulses of this solve
     Vec3 moved_with;    ///< N m s: Momentum::turn in the last move
     double turned = 0;  ///< rad: bound on how far it has turned since Mover::turned was set last
-    Vec3 swings;        ///< rad/s: how its free rotation will have changed w by the end of the step
+    Vec3 swings;        ///< rad/s: how its free rotation changes w from the middle to the end of the step
+    Quat half_turn;     ///< if midway: how it has turned freely by the middle of the step, in W
     Vec3 written;       ///< N m s: the part of Momentum::turn that has been written to the table already
 };
 

@@ -1,6 +1,7 @@
 // Contact points in the middle of the step (Problem::put_pivots_midway).
 #include <algorithm>
 
+#include "plab/free_rotation.h"
 #include "plab/pivot.h"
 #include "problem.h"
 
@@ -54,29 +55,53 @@ void turn_axes(Point& p, const Quat& by)
     p.t2 = cross(p.n, p.t1);
 }
 
-/// rad/s: how the spin w of a body without torque changes while it turns by w h. The momentum L stays, the inertia turns: L = I w.
-Vec3 swing_of(const Bodies& bodies, std::uint32_t b, const Mat3& inverse_inertia, double h)
+/// How a body turns within half of h (s) and all of it without torques, in W. Its spin at the start says too little: that of a slender
+/// body about its axis turns with it.
+std::pair<Quat, Quat> free_turns(const Bodies& bodies, std::uint32_t b, double h)
 {
-    constexpr double kLittle = 0x1p-40;  // of w: rounding
-    constexpr double kMost = 0x1p-6;     // rad in half a step: beyond it a contact that begins to slip could give more than turning loses
-    const Vec3& w = bodies.angular_velocity[b];
-    if (turn_of(w, 0.5 * h) != Turn::Some || length(w) * 0.5 * h > kMost) return {};
-    const Quat turned = exp_rotation(w * h);
-    const Vec3 swings = rotate(turned, inverse_inertia * rotate_back(turned, bodies.angular_momentum[b])) - w;
-    return length_squared(swings) > kLittle * kLittle * length_squared(w) ? swings : Vec3{};
+    constexpr double kSeries = 0.05;  // rad
+    const Quat& start = bodies.orientation[b];
+    const Mat3& inverse_B = bodies.inverse_inertia_B[b];
+    const Vec3 momentum_B = rotate_back(start, bodies.angular_momentum[b]);
+    const auto in_W = [&](const Quat& turn_B) { return start * turn_B * conjugate(start); };
+    if (length(momentum_B) * h * (inverse_B(0, 0) + inverse_B(1, 1) + inverse_B(2, 2)) < kSeries)
+        return {in_W(slow_turn(inverse_B, momentum_B, 0.5 * h)), in_W(slow_turn(inverse_B, momentum_B, h))};
+    const PrincipalAxes axes = principal_axes({start, bodies.inertia_B[b], inverse_B, bodies.mass[b], bodies.needle[b] != 0});
+    const FreeTop top(axes, transposed_times(axes.axes, momentum_B));
+    const auto to_B = [&](const Quat& turn)
+    {
+        const Vec3 axis = axes.axes * Vec3{turn.x, turn.y, turn.z};
+        return Quat{turn.w, axis.x, axis.y, axis.z};
+    };
+    return {in_W(to_B(top.turn(0.5 * h))), in_W(to_B(top.turn(h)))};
 }
 
 }  // namespace
 
+/// A slender body that turned about the middle of its axis with the inertia of the start would be given spin about the axis itself. Free
+/// rotation turns the inertia, while the momentum L stays: L = I w.
+void Problem::put_inertia_midway(std::size_t i, const Bodies& bodies, double h)
+{
+    constexpr double kLittle = 0x1p-40;  // of w: rounding
+    constexpr double kMost = 0x1p-6;     // rad in half a step: beyond it a contact that begins to slip could give more than turning loses
+    Mover& m = movers[i];
+    Anchor& anchor = anchors[i];
+    const std::uint32_t b = anchor.host;
+    anchor.swings = {};
+    if (anchor.shaft || m.isotropic) return;
+    const Vec3 &w = bodies.angular_velocity[b], &momentum = bodies.angular_momentum[b];
+    if (turn_of(w, 0.5 * h) != Turn::Some || length(w) * 0.5 * h > kMost) return;
+    const auto [half_turn, turn] = free_turns(bodies, b, h);
+    const Vec3 at_end = rotate(turn, m.inverse_inertia * rotate_back(turn, momentum));
+    anchor.midway = true, anchor.half_turn = half_turn;
+    turn_inertia(i, half_turn);
+    const Vec3 swings = at_end - m.inverse_inertia * momentum;
+    if (length_squared(swings) > kLittle * kLittle * length_squared(w)) anchor.swings = swings;
+}
+
 void Problem::put_pivots_midway(const Bodies& bodies, double h)
 {
-    bool any_swings = false;
-    for (std::size_t i = 0; i < movers.size(); ++i)
-    {
-        Vec3& swings = anchors[i].swings;
-        swings = anchors[i].shaft || movers[i].isotropic ? Vec3{} : swing_of(bodies, anchors[i].host, movers[i].inverse_inertia, h);
-        any_swings = any_swings || swings != Vec3{};
-    }
+    for (std::size_t i = 0; i < movers.size(); ++i) put_inertia_midway(i, bodies, h);
     // A body on more of its corners does not turn against what carries it, or its corners slide. If it stops, what they turn at its first
     // speed is no velocity of a rigid body, and they could not all stick.
     constexpr std::ptrdiff_t kOfEdge = 2;
@@ -96,12 +121,38 @@ void Problem::put_pivots_midway(const Bodies& bodies, double h)
                 carry_midway(p, contacts_[i], bodies, 0.5 * h);
             else if (contacts_[i].pivot.of != Pivot::Of::Neither)
                 put_midway(p, contacts_[i], bodies, 0.5 * h);
-            if (!any_swings) continue;
-            Vec3 swings;  // m/s
-            if (p.b != kNoIndex) swings += cross(anchors[p.b].swings, p.r_b);
-            if (p.a != kNoIndex) swings -= cross(anchors[p.a].swings, p.r_a);
-            if (swings != Vec3{}) p.turning += to_contact(p, swings);
+            take_midway_inertias(p);
         }
+    }
+}
+
+Quat Problem::half_turn_of(std::uint32_t mover, const Vec3& w, double half) const
+{
+    return mover != kNoIndex && anchors[mover].midway ? anchors[mover].half_turn : exp_rotation(w * half);
+}
+
+/// The mobility of a point whose bodies have the inertias of the middle of the step, and what free rotation adds to u by the end.
+void Problem::take_midway_inertias(Point& p) const
+{
+    const bool is_midway = (p.a != kNoIndex && anchors[p.a].midway) || (p.b != kNoIndex && anchors[p.b].midway);
+    if (!is_midway) return;
+    Vec3 swings;  // m/s
+    if (p.b != kNoIndex) swings += cross(anchors[p.b].swings, p.r_b);
+    if (p.a != kNoIndex) swings -= cross(anchors[p.a].swings, p.r_a);
+    if (swings != Vec3{}) p.turning += to_contact(p, swings);
+    set_mobility(p);
+}
+
+void Problem::put_lines_midway(double h)
+{
+    turn_lines();
+    for (Line& line : lines)
+    {
+        const ConstraintRow& row = rows_[line.row];
+        // The rate of a servo follows the state: that of the middle is safer than one that is extrapolated to the end.
+        if (row.kind == RowKind::Rate || row.kind == RowKind::ForceChange) continue;
+        line.turning = -0.5 * h * row.bias;
+        for (std::uint32_t k = 0; k < line.count; ++k) line.turning += dot(line.angular[k], anchors[line.mover[k]].swings);
     }
 }
 
@@ -116,7 +167,7 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     const Turn turn = on_rim || is_lever(fixed, r) ? turn_of(own.w, half) : Turn::Little, turn_of_face = turn_of(other.w, half);
     if (turn == Turn::Far || turn_of_face == Turn::Far || (turn == Turn::Little && turn_of_face == Turn::Little)) return;
     const double sign = of_b ? 1 : -1;  // of u
-    const Quat turned = exp_rotation(own.w * half), turned_face = exp_rotation(other.w * half);
+    const Quat turned = half_turn_of(of_b ? p.b : p.a, own.w, half), turned_face = half_turn_of(of_b ? p.a : p.b, other.w, half);
     const Vec3 arm = turned_arm(c.pivot, p.n * -sign, turned, turned_face);
     if (!is_near(arm, c.pivot.arm)) return;
 

@@ -194,7 +194,7 @@ void Problem::rest()
 {
     for (Anchor& m : anchors) m.v = m.w = {};
     for (Point& p : points) p.given = p.turning = {};
-    for (Line& line : lines) line.given = 0;
+    for (Line& line : lines) line.given = line.turning = 0;
 }
 
 void Problem::clear_impulses()
@@ -234,7 +234,7 @@ void Problem::apply_impulses()
 
 double Problem::rate(const Line& line) const
 {
-    double sum = line.given;
+    double sum = line.given + line.turning;
     for (std::uint32_t k = 0; k < line.count; ++k)
         sum += dot(line.linear[k], movers[line.mover[k]].v) + dot(line.angular[k], movers[line.mover[k]].w);
     return sum;

@@ -35,6 +35,7 @@ struct Line
     std::array<std::uint32_t, ConstraintRow::kMostBlocks> mover{};
     std::array<Vec3, ConstraintRow::kMostBlocks> linear, angular;
     double given = 0;
+    double turning = 0;     ///< m/s: what the rate at the end of the step differs from that with the Jacobian of its middle
     double mobility = 0;    ///< J M^-1 J^T
     double compliance = 0;  ///< like mobility, 1/kg or 1/(kg m^2)
     double target = 0;
@@ -81,10 +82,12 @@ public:
     ///
     /// With a move by the mean velocity this is the midpoint rule (Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), VII.1):
     /// turning is what the velocity of the point at the end differs from that with the levers of the middle, so u = 0 at both ends does
-    /// no work. Along n_m, a point that slides on a face that tilts has (h / 2) (w_o x n) . u as well; and w is not that of the impulses
-    /// alone at the end, but has changed by what free rotation does (Anchor::swings).
-    /// Where a step is cut at an end of sliding (slip_end.h), the levers stay those of the whole step.
+    /// no work. Along n_m, a point that slides on a face that tilts has (h / 2) (w_o x n) . u as well. Inertias are those of the middle,
+    /// too, and w has changed by what free rotation does until the end (Anchor::swings). Where a step is cut at an end of sliding
+    /// (slip_end.h), the levers stay those of the whole step.
     void put_pivots_midway(const Bodies& bodies, double h);
+    /// The same for rows, which are those of the middle of the step by now: J = J_m, turning = -(h / 2) (bias - d(rate)/dt).
+    void put_lines_midway(double h);
     /// The rows were found again after bodies had turned.
     void turn_lines();
     /// The same for the movers and rows alone, after they have turned for h (s): sets Mover::turned. The velocities of the movers become
@@ -125,7 +128,7 @@ public:
     void refresh_spins(Bodies& bodies);
 
     Vec3 relative_velocity(const Point& p) const;  ///< u, m/s
-    double rate(const Line& line) const;           ///< J v + given
+    double rate(const Line& line) const;           ///< J v + given + turning
     /// How far a row is from its target, m/s or rad/s.
     double gap(const Line& line) const
     {
@@ -186,6 +189,11 @@ private:
     void apply_sums(std::size_t mover);
     void sum_by_velocity(std::size_t mover);
     void write_speed(std::size_t mover, Bodies& bodies, Shafts& shafts, bool swept = false);
+    void put_inertia_midway(std::size_t mover, const Bodies& bodies, double h);
+    void take_midway_inertias(Point& p) const;
+    /// `w` (rad/s): of the body, or of one that is no mover; `half`: s, half of the step.
+    Quat half_turn_of(std::uint32_t mover, const Vec3& w, double half) const;
+    void turn_inertia(std::size_t mover, const Quat& by);
     void put_midway(Point& p, const Contact& c, const Bodies& bodies, double half) const;
     void carry_midway(Point& p, const Contact& c, const Bodies& bodies, double half) const;
     void set_mobility(Point& p) const;

@@ -38,9 +38,17 @@ void Problem::set_inertia(Mover& mover, Anchor& anchor, const Bodies& bodies)
     anchor.inertia = turned(R, bodies.inertia_B[b]);
 }
 
+void Problem::turn_inertia(std::size_t i, const Quat& by)
+{
+    const Mat3 R = rotation_matrix(by);
+    movers[i].inverse_inertia = turned(R, movers[i].inverse_inertia);
+    anchors[i].inertia = turned(R, anchors[i].inertia);
+}
+
 void Problem::turn_mover(std::size_t i, const Bodies& bodies)
 {
     if (anchors[i].shaft) return;
+    anchors[i].midway = false;
     if (!movers[i].isotropic) set_inertia(movers[i], anchors[i], bodies);
     // The momentum is constant while a body turns freely; the spin without impulses is what the impulses have not contributed to it.
     anchors[i].w = bodies.angular_velocity[anchors[i].host] - movers[i].inverse_inertia * anchors[i].written;
@@ -131,7 +139,8 @@ void Problem::read_speed(std::size_t i, const Bodies& bodies, const Shafts& shaf
     if (m.shaft)
         m.v = {}, m.w = {shafts.speed[m.host], 0, 0};
     else
-        m.v = bodies.velocity[m.host], m.w = bodies.angular_velocity[m.host];
+        m.v = bodies.velocity[m.host],
+        m.w = m.midway ? movers[i].inverse_inertia * bodies.angular_momentum[m.host] : bodies.angular_velocity[m.host];
 }
 
 void Problem::read_speeds(const Bodies& bodies, const Shafts& shafts)

@@ -172,7 +172,6 @@ void displace(const Problem& problem, Bodies& bodies, Shafts& shafts)
     }
 }
 
-/// Whether the error of the row is an angle.
 bool turns_only(const ConstraintRow& row)
 {
     return std::all_of(row.blocks.begin(), row.blocks.begin() + row.count, [](const RowBlock& b) { return b.linear == Vec3{}; });
@@ -297,7 +296,7 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
 
 void move(const Problem& problem, const Island& island, const Verdict& found, double h, Moving moving)
 {
-    if (!found.converged) moving = Moving::ByEnd;
+    if (!found.converged && matters(found.residual, island, h)) moving = Moving::ByEnd;
     note_move(problem, island, h, moving);
     if (moving == Moving::ByMean)
         island.motion->move_mean(h);

@@ -84,6 +84,8 @@ inline bool is_stiff(const ConstraintRow& row, double mobility, double h)
 {
     return row.kind == RowKind::ForceChange && h * (h * row.stiffness + row.damping) * mobility > 1;
 }
+/// Whether the error of the row is an angle.
+bool turns_only(const ConstraintRow& row);
 /// How the bodies will move after a kick.
 enum class Moving : std::uint8_t
 {
@@ -103,8 +105,13 @@ void set_targets(Problem& problem, const Island& island, double h, double slop, 
 /// would otherwise swing from one side to the other (exponential fitting; W. Liniger, R. Willoughby, SIAM J. Numer. Anal. 7 (1970)).
 void set_line_targets(Problem& problem, const Island& island, double h, Moving moving);
 Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory);
-/// Moves. Where the impulses have not converged it does so with the new velocities in any case: these keep gaps from closing, whereas
-/// their mean with velocities that lead into an overlap would not.
+/// Whether a violation (m/s) takes some body farther than 2^-23 of its size (or of a rad) in h (s).
+inline bool matters(double residual, const Island& island, double h)
+{
+    return !(residual * h <= 0x1p-23 * (island.bodies.empty() ? 1 : island.size));
+}
+/// Moves. Where the impulses have not converged, and this matters, it does so with the new velocities in any case: these keep gaps from
+/// closing, whereas their mean with velocities that lead into an overlap would not.
 void move(const Problem& problem, const Island& island, const Verdict& found, double h, Moving moving);
 /// Notes how far a move by h (s) takes the bodies along the rows of forces. To be called before it.
 void note_move(const Problem& problem, const Island& island, double h, Moving moving);

@@ -88,15 +88,14 @@ TEST_CASE("E5: a chain under a tonne, with every solver: it hangs still, so no o
 
 TEST_CASE("E5: the same chain of ropes, with every manager")
 {
-    // A tonne on a hundred links of a kilogram: sweeps alone let it fall (4.9 m in 1 s), and say so.
+    // A tonne on a hundred links of a kilogram: sweeps alone would let it fall (4.9 m in 1 s).
     struct Row
     {
         std::string manager;
         double tension, stretch;  ///< relative; m
-        bool reported;            ///< whether a failure to hold is reported
     };
     for (const Row& row :
-         {Row{"Direct", 1.6e-13, 6.9e-14, false}, Row{"SequentialImpulse", 0.97, 4.88, true}, Row{"SoftStep", 1.8e-6, 8.2e-6, false}})
+         {Row{"Direct", 1.6e-13, 6.9e-14}, Row{"SequentialImpulse", 2.3e-16, 9.1e-10}, Row{"SoftStep", 1.8e-6, 8.2e-6}})
     {
         CAPTURE(row.manager);
         Scene s("<component id='manager' type='Manager/" + row.manager + "'/>" +
@@ -111,10 +110,7 @@ TEST_CASE("E5: the same chain of ropes, with every manager")
                             << s.count("manager.not_converged"));
         CHECK(found.tension < 2 * row.tension);
         CHECK(found.stretch < 2 * row.stretch);
-        CHECK((s.count("manager.not_converged") > 0) == row.reported);
-        if (row.manager != "SequentialImpulse") continue;
-        CHECK(found.tension > row.tension / 2);
-        CHECK(found.stretch > row.stretch / 2);
+        CHECK(s.count("manager.not_converged") == 0);
     }
 }
 

@@ -24,6 +24,10 @@ public:
     virtual void move_mean(double h) = 0;
     /// Recomputes the rows at the present state (Jacobians, errors, rates); impulses are kept.
     virtual void refresh_rows() = 0;
+    /// Takes the rows halfway through a step of h (s) at the present speeds: Jacobians, rates and biases become those there, but for
+    /// RowKind::ForceChange; errors and impulses are kept. Returns false and changes nothing where levers turn far by then, or joints close a
+    /// loop: its rows depend on one another, and they would contradict one another where it is not quite closed.
+    virtual bool put_rows_midway(double h) = 0;
     /// Recomputes the contact depths at the present state: where the pivot is known, from where the contact point is and how the face has
     /// turned, else from the motion of the two surface points. Normals are kept.
     virtual void refresh_depths() = 0;

@@ -49,6 +49,7 @@ public:
     /// m: of a contact, at the start.
     double start_depth(std::size_t contact) const { return arms_.empty() ? contacts_[contact].depth : arms_[contact].depth; }
     void refresh_rows() override;
+    bool put_rows_midway(double h) override;
     void refresh_depths() override;
 
     /// J: work of the forces along the distance that the bodies moved.
@@ -74,6 +75,11 @@ private:
     double correction_of(std::size_t member);
     Vec3 arm(std::uint32_t body, const Vec3& point) const;
     void find_arms();
+    template <class Job>
+    void for_fresh_rows(std::span<const ConstraintRow> fresh, const Job& job);
+    bool joints_close_a_loop();
+    bool row_turns_far(const ConstraintRow& row, const ConstraintRow& midway) const;
+    std::uint32_t place_of(Ref participant) const;
     Vec3 moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const;
     Quat turned(std::uint32_t body) const;
     Pivot::Of pivot_of(const Contact& contact) const;
@@ -87,6 +93,7 @@ private:
     std::span<Contact> contacts_;
     std::span<ConstraintRow> rows_;
     bool books_ = false;
+    bool rows_are_midway_ = false;  ///< or there are none
     Workers* workers_ = nullptr;
     double worked_ = 0, since_start_ = 0;
     KickedBodies kicked_;
@@ -101,6 +108,15 @@ private:
     };
     std::vector<Arms> arms_;    ///< of the contacts; empty until a manager asks for their depths
     std::vector<double> sums_;  ///< working memory of sum_parts()
+    struct Left
+    {
+        std::uint32_t body = 0;
+        Vec3 position;
+        Quat orientation;
+        Vec3 spin;
+    };
+    std::vector<Left> left_;  ///< how bodies are at the start, while rows are collected midway
+    DisjointSets joined_;
 };
 
 class HeldIslands

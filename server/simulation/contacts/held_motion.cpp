@@ -1,4 +1,5 @@
 // The motion of the bodies of an island while a manager steps it.
+#include <algorithm>
 #include <cmath>
 
 #include "plab/pivot.h"
@@ -15,6 +16,7 @@ void HeldMotion::begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std:
     members_ = members, member_of_body_ = member_of_body, roots_ = roots, contacts_ = contacts, rows_ = rows, books_ = books;
     workers_ = &workers;
     worked_ = since_start_ = 0;
+    rows_are_midway_ = rows.empty();
     shaft_before_.resize(roots.size());
     means_.assign(members.size() + roots.size(), Mean{});
     started_.resize(members.size()), started_turned_.resize(members.size()), arms_.clear();
@@ -38,8 +40,8 @@ Vec3 HeldMotion::arm(std::uint32_t body, const Vec3& point) const
     return rotate_back(bodies_->orientation[body], point - bodies_->position[body]);
 }
 
-/// In islands with joints managers take the velocities of the material points, so depths have to be theirs as well.
-Pivot::Of HeldMotion::pivot_of(const Contact& c) const { return rows_.empty() ? c.pivot.of : Pivot::Of::Neither; }
+/// Where managers take the velocities of the material points, depths have to be theirs as well.
+Pivot::Of HeldMotion::pivot_of(const Contact& c) const { return rows_are_midway_ ? c.pivot.of : Pivot::Of::Neither; }
 
 /// Few methods ask for depths, so arms are found when the first depth is asked for: the start is known then, too.
 void HeldMotion::find_arms()
@@ -151,11 +153,26 @@ void HeldMotion::move(double h)
 void HeldMotion::move_mean(double h)
 {
     commit(h, true, [](std::size_t, std::size_t) {});
-    (void)kicked_.move_mean(h, rows_.empty());
+    (void)kicked_.move_mean(h, rows_are_midway_);
     for (std::size_t k = 0; k < roots_.size(); ++k)
     {
         const std::uint32_t s = system_->roots()[roots_[k]];
         shafts_->angle[s] += 0.5 * h * (shaft_before_[k] + shafts_->speed[s]);
+    }
+}
+
+/// Calls job(row, same) for each row with the same one of `fresh`, or with null where that is not listed. Both lists have the same order.
+template <class Job>
+void HeldMotion::for_fresh_rows(std::span<const ConstraintRow> fresh, const Job& job)
+{
+    std::size_t at = 0;
+    const auto same = [](const ConstraintRow& x, const ConstraintRow& y) { return x.component == y.component && x.feature == y.feature; };
+    for (ConstraintRow& row : rows_)
+    {
+        std::size_t found = at;
+        while (found < fresh.size() && !same(fresh[found], row)) ++found;
+        job(row, found < fresh.size() ? &fresh[found] : nullptr);
+        if (found < fresh.size()) at = found + 1;
     }
 }
 
@@ -164,23 +181,107 @@ void HeldMotion::refresh_rows()
     RowSystem* system = system_->rows();
     if (!system) return;
     system->collect(system_->context());
-    // A row that is not listed any more is far from acting. Both lists have the same order.
-    std::size_t at = 0;
-    const auto fresh = system->rows();
-    const auto same = [](const ConstraintRow& x, const ConstraintRow& y) { return x.component == y.component && x.feature == y.feature; };
-    for (ConstraintRow& row : rows_)
+    for_fresh_rows(system->rows(),
+                   [](ConstraintRow& row, const ConstraintRow* fresh)
+                   {
+                       const double impulse = row.impulse;
+                       if (fresh)
+                           row = *fresh, row.impulse = impulse;
+                       else if (row.kind == RowKind::OneSided)
+                           row.error = HUGE_VAL;  // far from acting
+                   });
+}
+
+bool HeldMotion::put_rows_midway(double h)
+{
+    RowSystem* system = system_->rows();
+    if (!system || joints_close_a_loop()) return false;
+    left_.clear();
+    const auto go_midway = [&](std::uint32_t b)
     {
-        std::size_t found = at;
-        while (found < fresh.size() && !same(fresh[found], row)) ++found;
-        if (found == fresh.size())
-        {
-            if (row.kind == RowKind::OneSided) row.error = HUGE_VAL;
-            continue;
-        }
-        const double impulse = row.impulse;
-        row = fresh[found], row.impulse = impulse;
-        at = found + 1;
+        left_.push_back({b, bodies_->position[b], bodies_->orientation[b], bodies_->angular_velocity[b]});
+        bodies_->position[b] += bodies_->velocity[b] * (0.5 * h);
+        if (bodies_->dynamic(b))
+            turn_freely(*bodies_, b, {}, 0.5 * h);
+        else
+            bodies_->orientation[b] = exp_rotation(bodies_->angular_velocity[b] * (0.5 * h)) * bodies_->orientation[b];
+    };
+    for (const std::uint32_t k : members_) go_midway(system_->bodies()[k]);
+    const auto has_gone = [&](std::uint32_t b) { return std::ranges::any_of(left_, [&](const Left& left) { return left.body == b; }); };
+    for (const ConstraintRow& row : rows_)
+        for (const RowBlock& block : std::span(row.blocks).first(row.count))
+            if (const Ref r = block.participant;
+                r.facet == Facet::Body && bodies_->motion[r.index] == Motion::Kinematic && !has_gone(r.index))
+                go_midway(r.index);
+    StepContext context = system_->context();
+    context.time += 0.5 * h;
+    system->collect(context);
+    for (const Left& left : left_)
+        bodies_->position[left.body] = left.position, bodies_->orientation[left.body] = left.orientation,
+        bodies_->angular_velocity[left.body] = left.spin;
+    bool turns_far = false;
+    for_fresh_rows(system->rows(), [&](const ConstraintRow& row, const ConstraintRow* midway)
+                   { turns_far = turns_far || (midway && row.kind != RowKind::ForceChange && row_turns_far(row, *midway)); });
+    if (turns_far) return false;
+    for_fresh_rows(system->rows(),
+                   [](ConstraintRow& row, const ConstraintRow* midway)
+                   {
+                       if (!midway || row.kind == RowKind::ForceChange) return;
+                       row.blocks = midway->blocks, row.rate = midway->rate, row.bias = midway->bias;
+                   });
+    return rows_are_midway_ = true;
+}
+
+/// Whether the levers of a row turn so far until the middle of the step that it says little. A wheel may spin as fast as it will.
+bool HeldMotion::row_turns_far(const ConstraintRow& row, const ConstraintRow& midway) const
+{
+    constexpr double kFar = 0x1p-6;  // rad: beyond it light links of a chain under load gained energy when it was slack
+    for (std::uint32_t k = 0; k < row.count; ++k)
+    {
+        const RowBlock &now = row.blocks[k], &then = midway.blocks[k];
+        const std::uint32_t b = now.participant.index;
+        if (now.participant.facet != Facet::Body || !bodies_->dynamic(b)) continue;
+        const Mat3& I = bodies_->inertia_B[b];
+        const double gyration = std::sqrt(0.5 * (I(0, 0) + I(1, 1) + I(2, 2)) * bodies_->inverse_mass[b]), linear = length(now.linear);
+        if (length(then.linear - now.linear) > kFar * linear) return true;
+        if (length(then.angular - now.angular) > kFar * (length(now.angular) + gyration * linear)) return true;
     }
+    return false;
+}
+
+/// The place of a member among them; of all other bodies and shafts the next one.
+std::uint32_t HeldMotion::place_of(Ref participant) const
+{
+    const auto others = static_cast<std::uint32_t>(members_.size() + roots_.size());
+    if (participant.facet == Facet::Body) return bodies_->dynamic(participant.index) ? member_of_body_[participant.index] : others;
+    for (std::size_t k = 0; k < roots_.size(); ++k)
+        if (system_->roots()[roots_[k]] == participant.index) return static_cast<std::uint32_t>(members_.size() + k);
+    return others;
+}
+
+/// Whether a component joins bodies that others have joined already.
+bool HeldMotion::joints_close_a_loop()
+{
+    joined_.reset(members_.size() + roots_.size() + 1);
+    for (std::size_t i = 0, end = 0; i < rows_.size(); i = end)
+    {
+        while (end < rows_.size() && rows_[end].component == rows_[i].component) ++end;
+        const std::span<const ConstraintRow> own = std::span<const ConstraintRow>(rows_).subspan(i, end - i);
+        // The rows of a component have the same participants, or fewer; a joint with one participant holds it to the world.
+        const ConstraintRow* most = nullptr;
+        for (const ConstraintRow& row : own)
+            if (row.kind == RowKind::Equality && (!most || row.count > most->count)) most = &row;
+        if (!most) continue;
+        const std::uint32_t first = place_of(most->blocks[0].participant);
+        const auto world = static_cast<std::uint32_t>(members_.size() + roots_.size());
+        for (std::uint32_t k = 1; k <= std::max(1u, most->count - 1); ++k)
+        {
+            const std::uint32_t other = most->count == 1 ? world : place_of(most->blocks[k].participant);
+            if (joined_.find(first) == joined_.find(other)) return true;
+            joined_.join(first, other);
+        }
+    }
+    return false;
 }
 
 Vec3 HeldMotion::moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const

@@ -119,6 +119,7 @@ public:
         }
     }
     void refresh_rows() override {}
+    bool put_rows_midway(double) override { return false; }
     void refresh_depths() override
     {
         for (std::size_t i = 0; i < w_->contacts.size(); ++i)

@@ -36,6 +36,7 @@ public:
     }
     void move_mean(double h) override { move(h); }
     void refresh_rows() override {}
+    bool put_rows_midway(double) override { return false; }
     void refresh_depths() override {}
 
 private:
