@@ -6,6 +6,7 @@
 //
 // Source: F. Pfeiffer, C. Glocker, "Multibody dynamics with unilateral contacts", 1996, ch. 8.
 #include <algorithm>
+#include <utility>
 
 #include "simulation/events/event_locator.h"
 
@@ -54,28 +55,52 @@ bool EventLocator::find_jointed()
     return true;
 }
 
+void EventLocator::keep(Jointed::Speeds& speeds) const
+{
+    const world::HostTables& host = step_.world.host();
+    speeds.velocity.clear(), speeds.spin.clear(), speeds.momentum.clear(), speeds.shaft.clear();
+    for (const std::uint32_t b : jointed_.bodies)
+    {
+        speeds.velocity.push_back(host.bodies.velocity[b]), speeds.spin.push_back(host.bodies.angular_velocity[b]);
+        speeds.momentum.push_back(host.bodies.angular_momentum[b]);
+    }
+    for (const std::uint32_t s : jointed_.shafts) speeds.shaft.push_back(host.shafts.speed[s]);
+}
+
+void EventLocator::put(const Jointed::Speeds& speeds)
+{
+    world::HostTables& host = step_.world.host();
+    for (std::size_t i = 0; i < jointed_.bodies.size(); ++i)
+    {
+        const std::uint32_t b = jointed_.bodies[i];
+        host.bodies.velocity[b] = speeds.velocity[i], host.bodies.angular_velocity[b] = speeds.spin[i];
+        host.bodies.angular_momentum[b] = speeds.momentum[i];
+    }
+    for (std::size_t i = 0; i < jointed_.shafts.size(); ++i) host.shafts.speed[jointed_.shafts[i]] = speeds.shaft[i];
+}
+
+/// J.
+double EventLocator::kinetic_energy_of_jointed() const
+{
+    const world::HostTables& host = step_.world.host();
+    double sum = 0;
+    for (const std::uint32_t b : jointed_.bodies) sum += host.bodies.kinetic_energy(b);
+    for (const std::uint32_t s : jointed_.shafts)
+        if (host.shafts.dynamic(s)) sum += 0.5 * host.shafts.inertia[s] * host.shafts.speed[s] * host.shafts.speed[s];
+    return sum;
+}
+
 /// Asks the response which contacts come to rest: it answers the whole impact as if there were no joints, then the velocities are put
 /// back. Compression and restitution by themselves would not show it.
 void EventLocator::note_resting_contacts()
 {
     Jointed& j = jointed_;
-    Bodies& bodies = step_.world.host().bodies;
-    j.velocity.clear(), j.spin.clear(), j.momentum.clear();
-    for (const std::uint32_t b : j.bodies)
-    {
-        j.velocity.push_back(bodies.velocity[b]), j.spin.push_back(bodies.angular_velocity[b]);
-        j.momentum.push_back(bodies.angular_momentum[b]);
-    }
     contacts_.respond(impact_, ImpactMode::Impact, 0, {});
-    for (std::size_t i = 0; i < j.bodies.size(); ++i)
-    {
-        const std::uint32_t b = j.bodies[i];
-        bodies.velocity[b] = j.velocity[i], bodies.angular_velocity[b] = j.spin[i], bodies.angular_momentum[b] = j.momentum[i];
-    }
-    j.rests.clear(), j.restitution.clear(), j.impulse.clear();
+    put(j.start);
+    j.rests.clear(), j.restitution.clear();
     for (FoundContact& f : impact_)
     {
-        j.rests.push_back(f.contact.resting ? 1 : 0), j.restitution.push_back(f.contact.restitution), j.impulse.push_back({});
+        j.rests.push_back(f.contact.resting ? 1 : 0), j.restitution.push_back(f.contact.restitution);
         f.contact.restitution = 0;
     }
 }
@@ -164,6 +189,68 @@ void EventLocator::apply_restitution(double time)
     compress(time);  // the restitution may have pressed bodies against others
 }
 
+void EventLocator::answer_jointed(double time)
+{
+    jointed_.impulse.assign(impact_.size(), Vec3{});
+    jointed_.last.assign(impact_.size(), Vec3{});
+    compress(time);
+    apply_restitution(time);
+}
+
+/// Whether a body that is moved may give energy.
+bool EventLocator::is_driven_impact() const
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    return std::ranges::any_of(
+        impact_, [&](const FoundContact& f)
+        { return bodies.motion[f.contact.a.index] == Motion::Kinematic || bodies.motion[f.contact.b.index] == Motion::Kinematic; });
+}
+
+/// With friction, applying contacts and joints in turn may end with more energy than there was: where the joints turn what friction pushes
+/// back at it, it pushes more with each turn, and restitution gives a part of all that. Without friction no energy is made, as both
+/// projections are orthogonal. Speeds between the two outcomes satisfy joints and contacts as well, and impulses between them obey
+/// Coulomb's law: of these the answer takes those nearest to the outcome with friction that have no more energy than `start` (J).
+void EventLocator::answer_without_gain(double time, double start)
+{
+    constexpr int kHalvings = 40;
+    Jointed& j = jointed_;
+    const double rough = kinetic_energy_of_jointed();
+    keep(j.rough), j.rough_impulse = j.impulse;
+    put(j.start);
+    j.friction.clear();
+    for (FoundContact& f : impact_) j.friction.push_back(std::exchange(f.contact.friction, 0.0));
+    answer_jointed(time);
+    for (std::size_t i = 0; i < impact_.size(); ++i) impact_[i].contact.friction = j.friction[i];
+    Jointed::Speeds& smooth = j.start;  // the start is not needed any more
+    keep(smooth);
+    const std::vector<Vec3> smooth_impulse = j.impulse;
+    const double without = kinetic_energy_of_jointed();
+    const auto blend = [&](double share)
+    {
+        const auto mix = [&](const auto& from, const auto& to) { return from + (to - from) * share; };
+        Bodies& bodies = step_.world.host().bodies;
+        for (std::size_t i = 0; i < j.bodies.size(); ++i)
+        {
+            bodies.velocity[j.bodies[i]] = mix(smooth.velocity[i], j.rough.velocity[i]);
+            bodies.angular_velocity[j.bodies[i]] = mix(smooth.spin[i], j.rough.spin[i]);
+            bodies.angular_momentum[j.bodies[i]] = mix(smooth.momentum[i], j.rough.momentum[i]);
+        }
+        for (std::size_t i = 0; i < j.shafts.size(); ++i)
+            step_.world.host().shafts.speed[j.shafts[i]] = mix(smooth.shaft[i], j.rough.shaft[i]);
+        for (std::size_t i = 0; i < impact_.size(); ++i) j.impulse[i] = mix(smooth_impulse[i], j.rough_impulse[i]);
+        return kinetic_energy_of_jointed();
+    };
+    double least = 0, most = 1;
+    for (int n = 0; n < kHalvings; ++n)
+    {
+        const double middle = 0.5 * (least + most);
+        (blend(middle) <= start ? least : most) = middle;
+    }
+    const double now = blend(least);
+    // Both answers have been booked from the start on.
+    step_.work[contacts_.detectors()[impact_.front().detector].response] += (now - start) - (rough - start) - (without - start);
+}
+
 void EventLocator::respond(double time)
 {
     if (!find_jointed())
@@ -171,10 +258,12 @@ void EventLocator::respond(double time)
         contacts_.respond(impact_, ImpactMode::Impact, 0, step_.book());
         return;
     }
+    constexpr double kRounding = 1e-12;
+    keep(jointed_.start);
+    const double start = kinetic_energy_of_jointed();
     note_resting_contacts();
-    jointed_.last.assign(impact_.size(), Vec3{});
-    compress(time);
-    apply_restitution(time);
+    answer_jointed(time);
+    if (kinetic_energy_of_jointed() > start * (1 + kRounding) && !is_driven_impact()) answer_without_gain(time, start);
     for (std::size_t i = 0; i < impact_.size(); ++i)
     {
         Contact& c = impact_[i].contact;

@@ -227,9 +227,30 @@ private:
     void note_paradoxes();
 
     // event_joints.cpp: impacts of bodies that joints hold.
+    struct Jointed
+    {
+        struct Speeds
+        {
+            std::vector<Vec3> velocity, spin, momentum;  ///< parallel to `bodies`
+            std::vector<double> shaft;                   ///< parallel to `shafts`
+        };
+        std::vector<std::uint32_t> groups, bodies, shafts;
+        Speeds start, rough;              ///< before the impact; after it, with friction
+        std::vector<double> restitution;  ///< parallel to the contacts in impact_
+        std::vector<double> friction;
+        std::vector<std::uint8_t> rests;
+        std::vector<Vec3> rough_impulse;  ///< N s
+        std::vector<Vec3> impulse, last;  ///< N s: sum so far; by the last call of the response
+    };
     bool find_jointed();
     void respond(double time);
     void note_resting_contacts();
+    void keep(Jointed::Speeds& speeds) const;
+    void put(const Jointed::Speeds& speeds);
+    double kinetic_energy_of_jointed() const;
+    bool is_driven_impact() const;
+    void answer_jointed(double time);
+    void answer_without_gain(double time, double start);
     void join(double time);
     double closing() const;
     void compress(double time);
@@ -269,15 +290,6 @@ private:
     DisjointSets left_islands_;
     bool any_certifies_ = false, all_certify_ = false;
 
-    struct Jointed
-    {
-        std::vector<std::uint32_t> groups, bodies, shafts;
-        std::vector<Vec3> velocity, spin, momentum;  ///< parallel to `bodies`
-        std::vector<double> speed;                   ///< parallel to `shafts`
-        std::vector<double> restitution;             ///< parallel to the contacts in impact_
-        std::vector<std::uint8_t> rests;
-        std::vector<Vec3> impulse, last;  ///< N s: sum so far; by the last call of the response
-    };
     Jointed jointed_;
     std::vector<MotionBound> motions_;   ///< by body
     std::vector<BodyExtent> extents_;    ///< by body
