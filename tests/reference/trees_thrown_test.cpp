@@ -92,3 +92,23 @@ TEST_CASE("trees of links that are thrown onto the ground gain no energy")
         }
     MESSAGE("at most " << worst << " of the energy at the start");
 }
+
+TEST_CASE("a wheel that a motor turns bounces off the ground with the friction of a wheel: the motor gives the energy")
+{
+    // It slides in the impact, so the speed along the ground becomes friction (1 + e) times that of the fall. The cart is heavy to turn.
+    constexpr double kFall = 2, kFriction = 0.1;
+    const std::string falls = "linear_velocity='" + text(Vec3{0, 0, -kFall}) + "' ";
+    Scene s(
+        body("cart", 1, {10, 10, 10}, {0, 0, 0.5}, falls) +
+            body("wheel", 1, {0.01, 0.01, 0.01}, {0, 0, 0.5},
+                 falls + "angular_velocity='0 100 0' shape='Shape/Sphere' shape.radius='0.1'") +
+            joint("axle", "Hinge", "cart", "wheel", "anchor='0 0 0.5' axis='0 1 0'") +
+            joint("motor", "Motor", "cart", "wheel", "anchor='0 0 0.5' axis='0 1 0' speed='100'") +
+            "<component id='ground' type='State/Static' shape='Shape/Plane'/><component id='contact' type='CDetection/ODE' between='wheel' "
+            "against='ground' response.friction='0.1' response.restitution='1'/>",
+        dt(240));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(0.3);  // it meets the ground at 0.2 s
+    CHECK(s.vec("wheel", "linear_velocity").z == doctest::Approx(kFall).epsilon(1e-9));
+    CHECK(s.vec("wheel", "linear_velocity").x == doctest::Approx(2 * kFriction * kFall).epsilon(1e-9));
+}

@@ -117,6 +117,7 @@ private:
     };
     std::vector<Left> left_;  ///< how bodies are at the start, while rows are collected midway
     DisjointSets joined_;
+    std::vector<std::uint32_t> place_of_root_;  ///< by host row, the place in roots_; of other shafts any number
 };
 
 class HeldIslands

@@ -207,7 +207,11 @@ bool HeldMotion::put_rows_midway(double h)
             bodies_->orientation[b] = exp_rotation(bodies_->angular_velocity[b] * (0.5 * h)) * bodies_->orientation[b];
     };
     for (const std::uint32_t k : members_) go_midway(system_->bodies()[k]);
-    const auto has_gone = [&](std::uint32_t b) { return std::ranges::any_of(left_, [&](const Left& left) { return left.body == b; }); };
+    const auto has_gone = [&](std::uint32_t b)
+    {
+        return std::any_of(left_.begin() + static_cast<std::ptrdiff_t>(members_.size()), left_.end(),
+                           [&](const Left& left) { return left.body == b; });
+    };
     for (const ConstraintRow& row : rows_)
         for (const RowBlock& block : std::span(row.blocks).first(row.count))
             if (const Ref r = block.participant;
@@ -254,15 +258,17 @@ std::uint32_t HeldMotion::place_of(Ref participant) const
 {
     const auto others = static_cast<std::uint32_t>(members_.size() + roots_.size());
     if (participant.facet == Facet::Body) return bodies_->dynamic(participant.index) ? member_of_body_[participant.index] : others;
-    for (std::size_t k = 0; k < roots_.size(); ++k)
-        if (system_->roots()[roots_[k]] == participant.index) return static_cast<std::uint32_t>(members_.size() + k);
-    return others;
+    const std::uint32_t k = place_of_root_[participant.index];
+    const bool is_root = k < roots_.size() && system_->roots()[roots_[k]] == participant.index;
+    return is_root ? static_cast<std::uint32_t>(members_.size()) + k : others;
 }
 
 /// Whether a component joins bodies that others have joined already.
 bool HeldMotion::joints_close_a_loop()
 {
     joined_.reset(members_.size() + roots_.size() + 1);
+    place_of_root_.resize(shafts_->size());
+    for (std::size_t k = 0; k < roots_.size(); ++k) place_of_root_[system_->roots()[roots_[k]]] = static_cast<std::uint32_t>(k);
     for (std::size_t i = 0, end = 0; i < rows_.size(); i = end)
     {
         while (end < rows_.size() && rows_[end].component == rows_[i].component) ++end;

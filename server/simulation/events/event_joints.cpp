@@ -2,7 +2,8 @@
 // onto the joint constraints again, and both are repeated in turn until neither changes anything (block Gauss-Seidel). That gives the
 // end of the compression phase. The restitution phase then applies e times the normal impulses of the compression, and at sliding
 // contacts e times the whole impulse (Poisson's hypothesis), and the joints distribute them by another projection. Without friction
-// this is Newton's law, u' = -e u, and e = 1 conserves the energy: the projection is orthogonal in the metric of M.
+// this is Newton's law, u' = -e u, and e = 1 conserves the energy: the projection is orthogonal in the metric of M. With friction the
+// result is checked (answer_without_gain).
 //
 // Source: F. Pfeiffer, C. Glocker, "Multibody dynamics with unilateral contacts", 1996, ch. 8.
 #include <algorithm>
@@ -197,13 +198,21 @@ void EventLocator::answer_jointed(double time)
     apply_restitution(time);
 }
 
-/// Whether a body that is moved may give energy.
+/// Whether a motor, or something whose motion is prescribed, may give energy.
 bool EventLocator::is_driven_impact() const
 {
-    const Bodies& bodies = step_.world.host().bodies;
-    return std::ranges::any_of(
-        impact_, [&](const FoundContact& f)
-        { return bodies.motion[f.contact.a.index] == Motion::Kinematic || bodies.motion[f.contact.b.index] == Motion::Kinematic; });
+    const world::HostTables& host = step_.world.host();
+    const auto is_moved = [&](Ref r)
+    { return (r.facet == Facet::Body ? host.bodies.motion[r.index] : host.shafts.motion[r.index]) == Motion::Kinematic; };
+    const auto is_motor = [&](const ConstraintRow& row)
+    {
+        return row.rate != 0 ||
+               std::any_of(row.blocks.begin(), row.blocks.begin() + row.count, [&](const RowBlock& b) { return is_moved(b.participant); });
+    };
+    const auto has_motor = [&](std::uint32_t g)
+    { return std::ranges::any_of(motion_.system_for(std::span(&g, 1), {}).rows()->rows(), is_motor); };
+    return std::ranges::any_of(impact_, [&](const FoundContact& f) { return is_moved(f.contact.a) || is_moved(f.contact.b); }) ||
+           std::ranges::any_of(jointed_.groups, has_motor);
 }
 
 /// With friction, applying contacts and joints in turn may end with more energy than there was: where the joints turn what friction pushes
