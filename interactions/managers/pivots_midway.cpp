@@ -32,7 +32,7 @@ bool is_lever(const Vec3& fixed, const Vec3& r)
     return length_squared(fixed) > kRounding * kRounding * length_squared(r);
 }
 
-/// Whether a radius has turned by less than 0.05 rad.
+/// Whether a radius or a lever has turned by less than 0.05 rad.
 bool is_near(const Vec3& arm, const Vec3& before) { return length_squared(arm - before) <= 0.05 * 0.05 * length_squared(before); }
 
 /// How a body moves, and how many halves of a step its points have yet to go from where their velocity is taken: the levers of movers are
@@ -76,6 +76,17 @@ std::pair<Quat, Quat> free_turns(const Bodies& bodies, std::uint32_t b, double h
     return {in_W(to_B(top.turn(0.5 * h))), in_W(to_B(top.turn(h)))};
 }
 
+/// Whether R A R^T differs from A by more than a share of its largest entry.
+bool changes_by_more(const Mat3& A, const Quat& turn, double share)
+{
+    const Mat3 R = rotation_matrix(turn), turned = R * A * transposed(R);
+    double largest = 0, change = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j)
+            largest = std::max(largest, std::fabs(A(i, j))), change = std::max(change, std::fabs(turned(i, j) - A(i, j)));
+    return change > share * largest;
+}
+
 }  // namespace
 
 /// A slender body that turned about the middle of its axis with the inertia of the start would be given spin about the axis itself. Free
@@ -83,15 +94,18 @@ std::pair<Quat, Quat> free_turns(const Bodies& bodies, std::uint32_t b, double h
 void Problem::put_inertia_midway(std::size_t i, const Bodies& bodies, double h)
 {
     constexpr double kLittle = 0x1p-40;  // of w: rounding
-    constexpr double kMost = 0x1p-6;     // rad in half a step: beyond it a contact that begins to slip could give more than turning loses
+    // Of its size, what the inertia may change in half a step: beyond it a contact that begins to slip could give more than turning loses.
+    // What spins about its own axis keeps its inertia, however fast.
+    constexpr double kMost = 0x1p-6;
     Mover& m = movers[i];
     Anchor& anchor = anchors[i];
     const std::uint32_t b = anchor.host;
     anchor.swings = {};
     if (anchor.shaft || m.isotropic) return;
     const Vec3 &w = bodies.angular_velocity[b], &momentum = bodies.angular_momentum[b];
-    if (turn_of(w, 0.5 * h) != Turn::Some || length(w) * 0.5 * h > kMost) return;
+    if (turn_of(w, 0.5 * h) == Turn::Little) return;
     const auto [half_turn, turn] = free_turns(bodies, b, h);
+    if (length(w) * 0.5 * h > kMost && changes_by_more(m.inverse_inertia, half_turn, kMost)) return;
     const Vec3 at_end = rotate(turn, m.inverse_inertia * rotate_back(turn, momentum));
     anchor.midway = true, anchor.half_turn = half_turn;
     turn_inertia(i, half_turn);
@@ -165,11 +179,12 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     Vec3 &r = of_b ? p.r_b : p.r_a, &r_other = of_b ? p.r_a : p.r_b;
     const Vec3 fixed = r - c.pivot.arm;
     const Turn turn = on_rim || is_lever(fixed, r) ? turn_of(own.w, half) : Turn::Little, turn_of_face = turn_of(other.w, half);
-    if (turn == Turn::Far || turn_of_face == Turn::Far || (turn == Turn::Little && turn_of_face == Turn::Little)) return;
+    if (turn_of_face == Turn::Far || (turn == Turn::Little && turn_of_face == Turn::Little)) return;
     const double sign = of_b ? 1 : -1;  // of u
     const Quat turned = half_turn_of(of_b ? p.b : p.a, own.w, half), turned_face = half_turn_of(of_b ? p.a : p.b, other.w, half);
     const Vec3 arm = turned_arm(c.pivot, p.n * -sign, turned, turned_face);
-    if (!is_near(arm, c.pivot.arm)) return;
+    // What spins about its own axis, as a capsule or a coin that rolls, takes its lever along, however fast.
+    if (!is_near(arm, c.pivot.arm) || !is_near(rotate(turned, fixed), fixed)) return;
 
     const Vec3 slides = own.v + cross(own.w, r) - other.v - cross(other.w, r_other);
     const Vec3 around = cross(own.w, fixed) + (arm - c.pivot.arm) / half;  // m/s of the point, about the centre of mass

@@ -33,14 +33,14 @@ bool is_driven(const Problem& problem)
 namespace
 {
 
-/// J: what the impulses may give because levers turn within the step: with those of its middle, velocities are not what they are at its
-/// ends.
+/// J: what impulses that satisfy the rows may give because levers turn within the step: with those of its middle, velocities u at its ends
+/// are not 0 but t. The impulses j give j (u_before + t) / 2 = j t - j W j / 2, W = J M^-1 J^T, so no more than j t.
 double given_by_turning(const Problem& problem)
 {
     double sum = 0;
-    for (const Point& p : problem.points) sum += std::fabs(dot(p.impulse, p.turning));
-    for (const Line& line : problem.lines) sum += std::fabs(line.impulse * line.turning);
-    return sum;
+    for (const Point& p : problem.points) sum += dot(p.impulse, p.turning);
+    for (const Line& line : problem.lines) sum += line.impulse * line.turning;
+    return std::max(0.0, sum);
 }
 
 }  // namespace

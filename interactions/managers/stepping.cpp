@@ -9,15 +9,6 @@
 
 namespace plab::managers
 {
-namespace
-{
-
-/// A contact that separates by itself within this many steps is not corrected.
-constexpr double kSoon = 8;
-/// Fraction of the island's size: a displacement per step below this does not count as an impact.
-constexpr double kSlow = 0x1p-34;
-
-}  // namespace
 
 void Verdict::join(const Verdict& other)
 {
@@ -175,123 +166,6 @@ void displace(const Problem& problem, Bodies& bodies, Shafts& shafts)
 bool turns_only(const ConstraintRow& row)
 {
     return std::all_of(row.blocks.begin(), row.blocks.begin() + row.count, [](const RowBlock& b) { return b.linear == Vec3{}; });
-}
-
-namespace
-{
-
-/// Errors of joints are linear in the displacements only for small turns. What remains after a correction is corrected again while it is
-/// more than this fraction of the island's size (or rad), or a chain of light links under a heavy load would come apart.
-constexpr double kJointsApart = 0x1p-11;
-/// rad: where correcting overlap turns a body by more, joints may be apart afterwards.
-constexpr double kMuch = 0x1p-6;
-constexpr int kMostCorrections = 10;
-
-/// Sets the displacements that would close the joints and stops; returns the largest of them.
-double set_displacements_of_lines(Problem& problem, const Island& island, double length)
-{
-    double worst = 0;
-    for (Line& line : problem.lines)
-    {
-        const ConstraintRow& row = island.rows[line.row];
-        line.target = -row.error;
-        const bool held = row.kind == RowKind::Equality;
-        line.least = held ? -HUGE_VAL : 0.0, line.most = !acts_at_once(row) || line.count == 0 ? 0.0 : HUGE_VAL;
-        if (line.most > 0) worst = std::max(worst, (held ? std::fabs(row.error) : -row.error) * (turns_only(row) ? length : 1));
-    }
-    return worst;
-}
-
-double displacement_of(const Contact& c, const StepChoices& choices)
-{
-    return (c.depth - choices.slop) * (c.depth > choices.slop ? choices.correction_share : 1.0);
-}
-
-constexpr double kMostTurn = 0.25;  // rad: so far errors of joints count as linear in the turns
-
-double largest_turn(const Problem& problem)
-{
-    double most = 0;
-    for (std::size_t i = 0; i < problem.movers.size(); ++i)
-        if (!problem.anchors[i].shaft) most = std::max(most, length(problem.movers[i].w));
-    return most;
-}
-
-void find_from_rest(Problem& problem, double tolerance, Method& method, Verdict& out)
-{
-    problem.rest();
-    problem.clear_impulses();
-    problem.apply_impulses();
-    out.join(method.find_displacements(problem, tolerance));
-}
-
-/// Where displacements would turn bodies so far that errors of joints are not linear, finds others with smaller turns. A taut chain of
-/// light links under a heavy load would be thrown from one side to the other to close a joint; if inertias count more than masses, the load
-/// is drawn to it instead. Inertias change nothing but which of all displacements that close the joints is found. Returns their factor.
-double keep_turns_small(Problem& problem, double tolerance, Method& method, Verdict& out)
-{
-    constexpr double kFactor = 16;
-    constexpr int kTries = 4;
-    double weight = 1;
-    for (int n = 0; n < kTries && largest_turn(problem) > kMostTurn; ++n)
-    {
-        weight *= kFactor, problem.weigh_turns(kFactor);
-        find_from_rest(problem, tolerance, method, out);
-    }
-    if (const double most = largest_turn(problem); most > kMostTurn)
-        for (Mover& m : problem.movers) m.v = m.v * (kMostTurn / most), m.w = m.w * (kMostTurn / most);
-    return weight;
-}
-
-Verdict displace_by(Problem& problem, double tolerance, Bodies& bodies, Shafts& shafts, Method& method, bool small_turns)
-{
-    problem.turn_with(bodies);
-    for (Point& p : problem.points) p.friction = 0;
-    Verdict out;
-    find_from_rest(problem, tolerance, method, out);
-    const double weight = small_turns ? keep_turns_small(problem, tolerance, method, out) : 1.0;
-    displace(problem, bodies, shafts);
-    if (weight != 1) problem.weigh_turns(1 / weight);
-    return out;
-}
-
-}  // namespace
-
-Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
-{
-    Problem& problem = memory.problem;
-    island.motion->refresh_depths();
-    if (!island.rows.empty()) island.motion->refresh_rows();
-    const double length = island.bodies.empty() ? 1 : island.size;  // islands of shafts alone have errors in rad
-    double worst = 0;
-    for (std::size_t i = 0; i < problem.points.size(); ++i)
-    {
-        const Contact& c = island.contacts[i];
-        Point& p = problem.points[i];
-        // Overlap that will separate by itself soon, or whose impact the next step answers, is left to its velocity: correcting
-        // it would lift the body.
-        const bool meets_next = i < memory.passing.size() && memory.passing[i] * island.h < -kSlow * island.size;
-        const bool leaves = c.depth > 0 && (meets_next || problem.relative_velocity(p).z * kSoon * island.h > c.depth);
-        p.least = leaves ? kFar : displacement_of(c, choices);
-        worst = std::max(worst, leaves || p.K(2, 2) == 0 ? 0.0 : p.least);
-    }
-    const double apart = set_displacements_of_lines(problem, island, length);
-    worst = std::max(worst, apart);
-    if (worst <= kPositionTolerance * length) return {};
-    if (apart > kJointsApart * length) problem.turn_lines();
-    Verdict out = displace_by(problem, kPositionTolerance * length, bodies, shafts, method, apart > kJointsApart * length);
-    const bool may_part = !island.rows.empty() && largest_turn(problem) > kMuch;
-    for (int n = 1; n < kMostCorrections && (apart > kJointsApart * length || may_part); ++n)
-    {
-        island.motion->refresh_rows();
-        if (!(set_displacements_of_lines(problem, island, length) > kJointsApart * length)) break;
-        island.motion->refresh_depths();
-        for (std::size_t i = 0; i < problem.points.size(); ++i)
-            if (Point& p = problem.points[i]; p.least > kFar) p.least = displacement_of(island.contacts[i], choices);
-        problem.turn_lines();
-        out.join(displace_by(problem, kPositionTolerance * length, bodies, shafts, method, true));
-    }
-    return out;
 }
 
 void move(const Problem& problem, const Island& island, const Verdict& found, double h, Moving moving)

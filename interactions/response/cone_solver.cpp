@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace plab::response
 {
@@ -143,7 +144,8 @@ Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, con
     return {stick.x * share, stick.y * share, normal};
 }
 
-ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double tolerance, int max_sweeps, const Interruption* interruption)
+ConeResult solve_cones(std::span<ConeContact> contacts, ContactVelocities& velocities, double tolerance, int max_sweeps,
+                       const Interruption* interruption)
 {
     ConeResult out;
     while (out.sweeps < max_sweeps && !out.converged && !(interruption && interruption->due()))
@@ -153,30 +155,84 @@ ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double t
         for (ConeContact& c : contacts)
         {
             const Vec3 before = c.impulse;
-            const Vec3 r = c.point->velocity(bodies) - c.point->K() * before;
-            c.impulse = solve_cone(c.point->K(), r, c.least, c.friction, before);
+            const Mat3& K = velocities.K(c.contact);
+            const Vec3 r = velocities.at(c.contact) - K * before;
+            c.impulse = solve_cone(K, r, c.least, c.friction, before);
             const Vec3 change = c.impulse - before;
             if (change == Vec3{}) continue;
-            const Vec3 kick = c.point->K() * change;
-            c.point->apply(bodies, change, c.impulse.z > 0 ? c.least : r.z);
+            const Vec3 kick = K * change;
+            velocities.apply(c.contact, change, c.impulse.z > 0 ? c.least : r.z);
             largest = std::max({largest, std::fabs(kick.x), std::fabs(kick.y), std::fabs(kick.z)});
         }
         out.converged = largest <= tolerance;
     }
-    for (const ConeContact& c : contacts) out.residual = std::max(out.residual, c.least - c.point->velocity(bodies).z);
+    for (const ConeContact& c : contacts) out.residual = std::max(out.residual, c.least - velocities.at(c.contact).z);
     return out;
 }
 
-double energy_gained(std::span<const ConeContact> contacts, std::span<const Vec3> before, const Bodies& bodies)
+namespace
+{
+
+struct Outcome
+{
+    Vec3 impulse, velocity;
+};
+
+/// What share of the way from the first outcome to the second gains no energy, sum of j . (u + u') / 2, which is a convex parabola of it.
+double share_without_gain(std::span<const Outcome> first, std::span<const Outcome> second, std::span<const Vec3> before)
+{
+    double a = 0, b = 0, c = 0;
+    for (std::size_t k = 0; k < first.size(); ++k)
+    {
+        const Vec3 j = first[k].impulse, dj = second[k].impulse - j;
+        const Vec3 u = before[k] + first[k].velocity, du = second[k].velocity - first[k].velocity;
+        a += dot(dj, du), b += dot(dj, u) + dot(j, du), c += dot(j, u);
+    }
+    if (!std::isfinite(a) || !std::isfinite(b) || !(a > 0) || c > 0) return 0;
+    const double root = std::sqrt(b * b - 4 * a * c);
+    return std::clamp(b > 0 ? -2 * c / (b + root) : (root - b) / (2 * a), 0.0, 1.0);
+}
+
+}  // namespace
+
+ConeResult reduce_friction(std::span<ConeContact> contacts, std::span<const Vec3> before, ContactVelocities& velocities, double tolerance,
+                           int max_sweeps, const Interruption* interruption)
+{
+    const auto outcome = [&](const ConeContact& c) { return Outcome{c.impulse, velocities.at(c.contact)}; };
+    std::vector<Outcome> rough, smooth;
+    std::vector<double> friction;
+    for (ConeContact& c : contacts)
+    {
+        rough.push_back(outcome(c)), friction.push_back(c.friction);
+        c.friction = 0, c.impulse = {};
+    }
+    velocities.put_back();
+    ConeResult out = solve_cones(contacts, velocities, tolerance, max_sweeps, interruption);
+    for (const ConeContact& c : contacts) smooth.push_back(outcome(c));
+    const double share = share_without_gain(smooth, rough, before);
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+    {
+        ConeContact& c = contacts[k];
+        const Vec3 more = (rough[k].impulse - c.impulse) * share;
+        c.friction = friction[k];
+        if (!(share > 0) || more == Vec3{}) continue;
+        c.impulse += more;
+        velocities.apply(c.contact, more, velocities.at(c.contact).z + (velocities.K(c.contact) * more).z);
+    }
+    return out;
+}
+
+double energy_gained(std::span<const ConeContact> contacts, std::span<const Vec3> before, const ContactVelocities& velocities)
 {
     double gain = 0, size = 0;
     for (std::size_t k = 0; k < contacts.size(); ++k)
     {
         const ConeContact& c = contacts[k];
-        gain += 0.5 * dot(c.impulse, before[k] + c.point->velocity(bodies));
+        gain += 0.5 * dot(c.impulse, before[k] + velocities.at(c.contact));
         size += length(c.impulse) * length(before[k]);
     }
-    return gain > 1e-12 * size ? gain : 0.0;
+    if (gain <= 1e-12 * size) return 0;
+    return std::isfinite(gain) ? gain : HUGE_VAL;
 }
 
 }  // namespace plab::response

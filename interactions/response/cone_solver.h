@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "contact_point.h"
+#include "contact_velocities.h"
 #include "plab/interruption.h"
 
 namespace plab::response
@@ -18,7 +18,7 @@ namespace plab::response
 
 struct ConeContact
 {
-    const ContactPoint* point = nullptr;
+    std::uint32_t contact = 0;
     double friction = 0;
     double least = 0;  ///< b: smallest u_n that is allowed afterwards, m/s
     Vec3 impulse;      ///< j, N s in contact coordinates; on entry the initial guess, which has been applied already
@@ -35,12 +35,19 @@ struct ConeResult
 /// near that of `last` is searched for if the fixed-point iteration does not converge.
 Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, const Vec3& last = {});
 
-/// Changes the velocities in `bodies`. Ends when no impulse changes the velocity of its contact by more than `tolerance` (m/s),
+/// Changes the velocities. Ends when no impulse changes the velocity of its contact by more than `tolerance` (m/s),
 /// or when the step is interrupted.
-ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double tolerance, int max_sweeps,
+ConeResult solve_cones(std::span<ConeContact> contacts, ContactVelocities& velocities, double tolerance, int max_sweeps,
                        const Interruption* interruption = nullptr);
 
+/// For impulses that gain energy although nothing bounces. Where bodies wedge, friction may press harder in each sweep, without end. Finds
+/// the impulses without friction, which gain none, as a sweep is a projection then, and goes from these as far towards the given ones as no
+/// energy is gained: contacts and Coulomb's law hold in between, too. `velocities` are those with the given impulses; `before`: u without
+/// them.
+ConeResult reduce_friction(std::span<ConeContact> contacts, std::span<const Vec3> before, ContactVelocities& velocities, double tolerance,
+                           int max_sweeps, const Interruption* interruption = nullptr);
+
 /// J: the energy that the impulses have added beyond rounding, the sum of j . (u + u') / 2. `before`: u of each contact without them.
-double energy_gained(std::span<const ConeContact> contacts, std::span<const Vec3> before, const Bodies& bodies);
+double energy_gained(std::span<const ConeContact> contacts, std::span<const Vec3> before, const ContactVelocities& velocities);
 
 }  // namespace plab::response

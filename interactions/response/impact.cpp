@@ -13,6 +13,8 @@ namespace
 constexpr double kSameSpeed = 1e-9;
 /// Fraction of the fastest approach that may remain where bodies are trapped between others.
 constexpr double kStill = 1e-6;
+/// Links of a mechanism that are pressed against one another pass an impact on for ever: each acts on all of their contacts.
+constexpr int kMostOfJoined = 60;
 /// What a power series of a slip path and a contact of a cone solver cost, in visits of a sweep, by counted instructions.
 constexpr std::int64_t kSeriesVisits = 40, kConeVisits = 5;
 
@@ -21,15 +23,15 @@ class ImpactSequence
 {
 public:
     ImpactSequence(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact)
-        : settings_(settings), work_(work), bodies_(bodies), contacts_(impact.contacts)
+        : settings_(settings), work_(work), velocities_(work.velocities), bodies_(bodies), contacts_(impact.contacts)
     {
     }
     void run(Impact& impact);
 
 private:
-    void prepare();
+    void prepare(const Impact& impact);
     void group();
-    double closing_speed(std::uint32_t contact) const { return -work_.points[contact].velocity(bodies_).z; }
+    double closing_speed(std::uint32_t contact) const { return -velocities_.at(contact).z; }
     double closing_speed(const PairManifold& manifold) const;
     void choose(std::uint32_t fastest, double speed);
     bool share_body(const PairManifold& p, const PairManifold& q) const;
@@ -38,11 +40,12 @@ private:
     void hit_point(std::uint32_t contact, double restitution);
     void hit_at_once();
     void choose_all();
-    void save_bodies();
-    double try_at_once(double share);
+    bool try_at_once(double share);
+    void count(int sweeps);
 
     const ImpactSettings& settings_;
     Workspace& work_;
+    ContactVelocities& velocities_;
     Bodies& bodies_;
     std::span<Contact> contacts_;
     double threshold_ = 0;     // m/s, a closing speed up to this counts as zero
@@ -50,12 +53,12 @@ private:
     std::int64_t visits_ = 0;  // contacts visited by them
 };
 
-void ImpactSequence::prepare()
+void ImpactSequence::prepare(const Impact& impact)
 {
     for (Contact& c : contacts_) c.impulse = {};
-    work_.gather(contacts_, bodies_);
+    work_.gather(impact, bodies_);
     double speed = 0;
-    for (const std::uint32_t i : work_.order) speed = std::max(speed, length(work_.points[i].velocity(bodies_)));
+    for (const std::uint32_t i : work_.order) speed = std::max(speed, length(velocities_.at(i)));
     threshold_ = std::max(settings_.tolerance, 0x1p-46 * speed);
 }
 
@@ -86,6 +89,7 @@ double ImpactSequence::closing_speed(const PairManifold& manifold) const
 bool ImpactSequence::share_body(const PairManifold& p, const PairManifold& q) const
 {
     const Contact &x = contacts_[work_.order[p.first]], &y = contacts_[work_.order[q.first]];
+    if (velocities_.are_joined()) return true;
     const auto same = [&](Ref r, Ref t) { return r == t && bodies_.dynamic(r.index); };
     return same(x.a, y.a) || same(x.a, y.b) || same(x.b, y.a) || same(x.b, y.b);
 }
@@ -131,79 +135,73 @@ void ImpactSequence::hit(bool plastic)
     const PairManifold& first = work_.manifolds[work_.together.front()];
     if (work_.together.size() == 1 && first.end - first.first == 1)
         return hit_point(work_.order[first.first], restitution_of(first, plastic));
-    work_.hit.clear();
+    work_.hit.clear(), work_.restitution.clear();
     for (const std::uint32_t p : work_.together)
     {
         const PairManifold& manifold = work_.manifolds[p];
         const double restitution = restitution_of(manifold, plastic);
-        for (std::uint32_t k = manifold.first; k < manifold.end; ++k) work_.hit.push_back({work_.order[k], restitution});
+        for (std::uint32_t k = manifold.first; k < manifold.end; ++k)
+            work_.hit.push_back(work_.order[k]), work_.restitution.push_back(restitution);
     }
     hit_at_once();
 }
 
 void ImpactSequence::hit_point(std::uint32_t contact, double restitution)
 {
-    const ContactPoint& point = work_.points[contact];
-    const ImpactResult r = solve_impact(point.K(), point.velocity(bodies_), contacts_[contact].friction, restitution);
-    point.apply(bodies_, r.impulse, r.velocity.z);
-    contacts_[contact].impulse += point.to_world(r.impulse);
+    const ImpactResult r = solve_impact(velocities_.K(contact), velocities_.at(contact), contacts_[contact].friction, restitution);
+    velocities_.apply(contact, r.impulse, r.velocity.z);
+    contacts_[contact].impulse += velocities_.to_world(contact, r.impulse);
     ++spent_, visits_ += 1 + kSeriesVisits * r.series;
 }
 
-void ImpactSequence::save_bodies()
-{
-    work_.saved.clear();
-    for (const HitContact& h : work_.hit)
-        for (const Ref r : {contacts_[h.contact].a, contacts_[h.contact].b})
-            if (std::none_of(work_.saved.begin(), work_.saved.end(), [&](const HitBody& b) { return b.body == r.index; }))
-                work_.saved.push_back(
-                    {r.index, bodies_.velocity[r.index], bodies_.angular_velocity[r.index], bodies_.angular_momentum[r.index]});
-}
-
 /// Answers several points simultaneously, u_n' >= -e u_n at each: a box that lands flat bounces flat. With friction, Newton's
-/// law may return more energy than there was; then less is returned, and finally none.
+/// law may return more energy than there was; then less is returned, finally none, and at last friction acts less.
 void ImpactSequence::hit_at_once()
 {
     constexpr int kTrials = 6;
-    save_bodies();
-    const auto gives_back = [](const HitContact& h) { return h.restitution > 0; };
-    const bool bounces = std::any_of(work_.hit.begin(), work_.hit.end(), gives_back);
-    double share = 1;
-    for (int trial = 1; try_at_once(share) > 0 && bounces && share > 0; ++trial)
+    velocities_.keep(work_.hit);
+    const bool bounces = std::ranges::any_of(work_.restitution, [](double e) { return e > 0; });
+    double share = bounces ? 1 : 0;
+    bool gains = try_at_once(share);
+    for (int trial = 1; gains && share > 0; ++trial)
     {
-        for (const HitBody& b : work_.saved)
-        {
-            bodies_.velocity[b.body] = b.velocity;
-            bodies_.angular_velocity[b.body] = b.spin;
-            bodies_.angular_momentum[b.body] = b.momentum;
-        }
+        velocities_.put_back();
         share = trial < kTrials ? 0.5 * share : 0.0;
+        gains = try_at_once(share);
     }
-    for (std::size_t k = 0; k < work_.hit.size(); ++k)
-        contacts_[work_.hit[k].contact].impulse += work_.cones[k].point->to_world(work_.cones[k].impulse);
+    if (gains)
+        count(reduce_friction(work_.cones, work_.before, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption)
+                  .sweeps);
+    for (const ConeContact& c : work_.cones) contacts_[c.contact].impulse += velocities_.to_world(c.contact, c.impulse);
 }
 
-/// Returns the energy gained beyond rounding, J: the sum of j . (u + u') / 2.
-double ImpactSequence::try_at_once(double share)
+void ImpactSequence::count(int sweeps)
+{
+    spent_ += sweeps, visits_ += kConeVisits * static_cast<std::int64_t>(work_.cones.size()) * sweeps;
+}
+
+/// Returns whether energy is gained beyond rounding.
+bool ImpactSequence::try_at_once(double share)
 {
     work_.cones.clear();
     work_.before.clear();
-    for (const HitContact& h : work_.hit)
+    for (std::size_t k = 0; k < work_.hit.size(); ++k)
     {
-        const Vec3 u = work_.points[h.contact].velocity(bodies_);
+        const std::uint32_t i = work_.hit[k];
+        const Vec3 u = velocities_.at(i);
         work_.before.push_back(u);
-        work_.cones.push_back({&work_.points[h.contact], contacts_[h.contact].friction, u.z < 0 ? -share * h.restitution * u.z : 0.0, {}});
+        work_.cones.push_back({i, contacts_[i].friction, u.z < 0 ? -share * work_.restitution[k] * u.z : 0.0, {}});
     }
-    const int sweeps = solve_cones(work_.cones, bodies_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps;
-    spent_ += sweeps, visits_ += kConeVisits * static_cast<std::int64_t>(work_.cones.size()) * sweeps;
-    return energy_gained(work_.cones, work_.before, bodies_);
+    count(solve_cones(work_.cones, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps);
+    return energy_gained(work_.cones, work_.before, velocities_) > 0;
 }
 
 void ImpactSequence::run(Impact& impact)
 {
-    prepare();
+    prepare(impact);
     group();
-    const std::int64_t budget = settings_.max_iterations * static_cast<std::int64_t>(std::max<std::size_t>(1, work_.manifolds.size()));
+    const int most = velocities_.are_joined() ? std::min(kMostOfJoined, settings_.max_iterations) : settings_.max_iterations;
+    const std::int64_t budget = most * static_cast<std::int64_t>(std::max<std::size_t>(1, work_.manifolds.size()));
     bool plastic = false;
     double hardest = 0;  // m/s
     for (impact.iterations = 0; spent_ < budget && !(settings_.interruption && settings_.interruption->due()); ++impact.iterations)

@@ -12,6 +12,8 @@ namespace
 {
 /// Fraction of the approach speed: slip below this is a rounding error.
 constexpr double kNoSlip = 1e-14;
+/// Fraction of K_nn: where joints leave a point one line to move along and friction holds it there, the normal impulse does less.
+constexpr double kJammed = 1e-9;
 /// Fraction of K: a slip direction that turns more slowly counts as constant.
 constexpr double kStraightSlip = 1e-14;
 
@@ -80,7 +82,8 @@ void Collision::finish_phase()
 
 bool Collision::go_straight(const Vec3& force, double to_stick)
 {
-    const Vec3 rate = law_.K * force;
+    Vec3 rate = law_.K * force;
+    if (std::fabs(rate.z) <= kJammed * law_.K(2, 2)) rate.z = 0;
     while (!done_)
     {
         const double to_end = to_phase_end(rate.z);

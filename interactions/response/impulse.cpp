@@ -9,24 +9,26 @@ namespace plab::response
 namespace
 {
 
-void take_back(std::span<ConeContact> cones, Bodies& bodies)
+void take_back(Workspace& work)
 {
-    for (ConeContact& c : cones)
+    for (ConeContact& c : work.cones)
     {
         if (c.impulse == Vec3{}) continue;
-        c.point->apply(bodies, -c.impulse, (c.point->velocity(bodies) - c.point->K() * c.impulse).z);
+        work.velocities.apply(c.contact, -c.impulse, (work.velocities.at(c.contact) - work.velocities.K(c.contact) * c.impulse).z);
         c.impulse = {};
     }
 }
 
 /// Starts the sweeps from the impulses of the last step. These may be too large; if the sweeps end early and leave an energy
 /// gain, they start again from zero impulses, from where each sweep only removes energy.
-ConeResult solve_without_gain(const ImpactSettings& settings, Workspace& work, Bodies& bodies)
+ConeResult solve_without_gain(const ImpactSettings& settings, Workspace& work)
 {
-    const ConeResult warm = solve_cones(work.cones, bodies, settings.tolerance, settings.max_iterations, settings.interruption);
-    if (warm.converged || energy_gained(work.cones, work.before, bodies) == 0) return warm;
-    take_back(work.cones, bodies);
-    ConeResult cold = solve_cones(work.cones, bodies, settings.tolerance, settings.max_iterations, settings.interruption);
+    const auto solve = [&]
+    { return solve_cones(work.cones, work.velocities, settings.tolerance, settings.max_iterations, settings.interruption); };
+    const ConeResult warm = solve();
+    if (warm.converged || energy_gained(work.cones, work.before, work.velocities) == 0) return warm;
+    take_back(work);
+    ConeResult cold = solve();
     cold.sweeps += warm.sweeps;
     return cold;
 }
@@ -36,22 +38,21 @@ ConeResult solve_without_gain(const ImpactSettings& settings, Workspace& work, B
 void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact)
 {
     const auto contacts = impact.contacts;
-    work.gather(contacts, bodies);
-    work.sort_by_id(contacts, bodies);
+    work.gather(impact, bodies);
+    work.sort_by_id(contacts);
+    ContactVelocities& velocities = work.velocities;
     work.cones.clear();
     for (const std::uint32_t i : work.order)
     {
         const Contact& c = contacts[i];
-        const ContactPoint& point = work.points[i];
         // A gap may close within the step, but not further.
         const double least = c.turning + (c.depth < 0 && impact.dt > 0 ? c.depth / impact.dt : 0.0);
-        const Vec3 guess = point.to_contact(c.impulse);
-        if (guess != Vec3{}) point.apply(bodies, guess, point.velocity(bodies).z + (point.K() * guess).z);
-        work.cones.push_back({&point, c.friction, least, guess});
+        const Vec3 guess = velocities.to_contact(i, c.impulse);
+        if (guess != Vec3{}) velocities.apply(i, guess, velocities.at(i).z + (velocities.K(i) * guess).z);
+        work.cones.push_back({i, c.friction, least, guess});
     }
-    const ConeResult result = solve_without_gain(settings, work, bodies);
-    for (std::size_t k = 0; k < work.order.size(); ++k)
-        contacts[work.order[k]].impulse = work.cones[k].point->to_world(work.cones[k].impulse);
+    const ConeResult result = solve_without_gain(settings, work);
+    for (const ConeContact& c : work.cones) contacts[c.contact].impulse = velocities.to_world(c.contact, c.impulse);
     impact.visits = static_cast<std::int64_t>(work.cones.size()) * result.sweeps;
     impact.iterations = result.sweeps, impact.residual = result.residual, impact.converged = result.converged;
 }
@@ -86,9 +87,9 @@ void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bod
         respond_impact(settings, work, bodies, impact);
     else
         respond_rest(settings, work, bodies, impact);
-    for (std::size_t i = 0; i < impact.contacts.size(); ++i)
+    for (std::uint32_t i = 0; i < impact.contacts.size(); ++i)
     {
-        const Vec3 u = work.points[i].velocity(bodies);
+        const Vec3 u = work.velocities.at(i);
         impact.contacts[i].slip = std::hypot(u.x, u.y);
     }
     add_to_outputs(rows, row, context.tick, impact);

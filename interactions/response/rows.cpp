@@ -13,10 +13,18 @@ constexpr int kMostSweeps = 20000, kLeastSweeps = 20;
 /// Upper bound on the number of contacts visited in one impact; a closing speed that then remains is reported as the residual.
 constexpr std::int64_t kMostVisits = 1'000'000;
 
-/// Answers all contacts simultaneously, with the fraction `share` of the restitution. Returns the energy gained beyond rounding,
-/// J; `visits` grows by the number of contacts visited.
-double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bodies, const BounceLimit& bounce, double share,
-                  double tolerance, ConeResult& result, std::int64_t& visits)
+/// So many contacts at once take that many sweeps at most. Where joints hold bodies, each visit changes the velocities of all contacts.
+int most_sweeps(const Workspace& work)
+{
+    const auto hit = static_cast<std::int64_t>(std::max<std::size_t>(1, work.order.size()));
+    const std::int64_t cost = work.velocities.are_joined() ? hit * hit : hit;
+    return static_cast<int>(std::clamp<std::int64_t>(kMostVisits / cost, kLeastSweeps, kMostSweeps));
+}
+
+/// Answers all contacts simultaneously, with the fraction `share` of the restitution. Returns whether energy is gained beyond rounding;
+/// `visits` grows by the number of contacts visited.
+bool try_impact(Workspace& work, std::span<const Contact> contacts, const BounceLimit& bounce, double share, double tolerance,
+                ConeResult& result, std::int64_t& visits)
 {
     work.cones.clear();
     for (std::size_t k = 0; k < work.order.size(); ++k)
@@ -24,23 +32,11 @@ double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bo
         const Contact& c = contacts[work.order[k]];
         const double closing = -work.before[k].z, rebound = share * c.restitution * closing;
         const double least = closing > 0 && !rests(c, rebound, bounce) ? rebound : 0.0;
-        work.cones.push_back({&work.points[work.order[k]], c.friction, least, {}});
+        work.cones.push_back({work.order[k], c.friction, least, {}});
     }
-    const auto hit = static_cast<std::int64_t>(work.cones.size());
-    const std::int64_t most = std::clamp<std::int64_t>(kMostVisits / std::max<std::int64_t>(1, hit), kLeastSweeps, kMostSweeps);
-    result = solve_cones(work.cones, bodies, tolerance, static_cast<int>(most));
-    visits += hit * result.sweeps;
-    return energy_gained(work.cones, work.before, bodies);
-}
-
-/// Restores the velocities by applying the opposite impulses.
-void take_back(Workspace& work, Bodies& bodies)
-{
-    for (std::size_t k = work.cones.size(); k-- > 0;)
-    {
-        const ConeContact& c = work.cones[k];
-        c.point->apply(bodies, -c.impulse, c.point->velocity(bodies).z - (c.point->K() * c.impulse).z);
-    }
+    result = solve_cones(work.cones, work.velocities, tolerance, most_sweeps(work));
+    visits += static_cast<std::int64_t>(work.cones.size()) * result.sweeps;
+    return energy_gained(work.cones, work.before, work.velocities) > 0;
 }
 
 }  // namespace
@@ -72,27 +68,36 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
     const BounceLimit bounce{rows.rest_height[row], rows.rest_speed[row]};
     const auto contacts = impact.contacts;
     for (Contact& c : contacts) c.impulse = {};
-    work.gather(contacts, bodies);
-    work.sort_by_id(contacts, bodies);
+    work.gather(impact, bodies);
+    work.sort_by_id(contacts);
     double speed = 0;
     for (const Vec3& u : work.before) speed = std::max(speed, length(u));
     const double tolerance = kRowTolerance * speed;
-    // With friction, Newton's restitution may return more energy than there was; then less is returned, and finally none.
+    // With friction, Newton's restitution may return more energy than there was; then less is returned, finally none, and at last friction
+    // acts less.
     ConeResult result;
     double share = 1;
     impact.iterations = 0, impact.visits = 0;
-    for (int trial = 1; try_impact(work, contacts, bodies, bounce, share, tolerance, result, impact.visits) > 0 && share > 0; ++trial)
+    work.velocities.keep(work.order);
+    bool gains = try_impact(work, contacts, bounce, share, tolerance, result, impact.visits);
+    for (int trial = 1; gains && share > 0; ++trial)
     {
-        take_back(work, bodies);
+        work.velocities.put_back();
         impact.iterations += result.sweeps;
         share = trial < kTrials && impact.visits < kMostVisits ? 0.5 * share : 0.0;
+        gains = try_impact(work, contacts, bounce, share, tolerance, result, impact.visits);
+    }
+    if (gains)
+    {
+        impact.iterations += result.sweeps;
+        result = reduce_friction(work.cones, work.before, work.velocities, tolerance, most_sweeps(work));
+        impact.visits += static_cast<std::int64_t>(work.cones.size()) * result.sweeps;
     }
     for (std::size_t k = 0; k < work.order.size(); ++k)
     {
         Contact& c = contacts[work.order[k]];
-        const ContactPoint& point = work.points[work.order[k]];
-        c.impulse = point.to_world(work.cones[k].impulse);
-        const Vec3 u = point.velocity(bodies);
+        c.impulse = work.velocities.to_world(work.order[k], work.cones[k].impulse);
+        const Vec3 u = work.velocities.at(work.order[k]);
         c.slip = std::hypot(u.x, u.y);
         c.resting = rests(c, std::max(0.0, u.z), bounce);
     }

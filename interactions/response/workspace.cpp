@@ -23,21 +23,19 @@ void describe_impact_law(Schema& s, Column<double>& friction, Column<double>& re
         .at_most(1);
 }
 
-void Workspace::gather(std::span<const Contact> contacts, const Bodies& bodies)
+void Workspace::gather(const Impact& impact, Bodies& bodies)
 {
-    points.clear(), order.clear();
-    for (std::uint32_t i = 0; i < contacts.size(); ++i)
-    {
-        points.emplace_back(contacts[i], bodies);
-        if (points.back().moves()) order.push_back(i);
-    }
+    velocities.begin(impact.contacts, bodies, impact.mobility);
+    order.clear();
+    for (std::uint32_t i = 0; i < impact.contacts.size(); ++i)
+        if (velocities.moves(i)) order.push_back(i);
 }
 
-void Workspace::sort_by_id(std::span<const Contact> contacts, const Bodies& bodies)
+void Workspace::sort_by_id(std::span<const Contact> contacts)
 {
     std::sort(order.begin(), order.end(), [&](auto i, auto j) { return contacts[i].id < contacts[j].id; });
     before.clear();
-    for (const std::uint32_t i : order) before.push_back(points[i].velocity(bodies));
+    for (const std::uint32_t i : order) before.push_back(velocities.at(i));
 }
 
 }  // namespace plab::response

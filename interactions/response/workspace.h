@@ -34,34 +34,22 @@ struct PairManifold
     std::uint64_t id = 0;              ///< smallest contact id
 };
 
-/// A contact that takes part in an impact at several points; and a body's state before that impact.
-struct HitContact
-{
-    std::uint32_t contact = 0;
-    double restitution = 0;
-};
-struct HitBody
-{
-    std::uint32_t body = 0;
-    Vec3 velocity, spin, momentum;
-};
-
 /// Working memory of one response, kept from call to call to avoid allocations.
 struct Workspace
 {
     std::vector<std::uint32_t> order;     ///< contacts by pair of bodies, then id
     std::vector<PairManifold> manifolds;  ///< by id
-    std::vector<ContactPoint> points;     ///< per contact
+    ContactVelocities velocities;
     std::vector<ConeContact> cones;
     std::vector<Vec3> before;             ///< m/s, contact velocities before an impact
     std::vector<std::uint32_t> together;  ///< manifolds that are hit simultaneously
-    std::vector<HitContact> hit;          ///< contacts of those manifolds
-    std::vector<HitBody> saved;           ///< bodies of those manifolds, before the impact
+    std::vector<std::uint32_t> hit;       ///< contacts of those manifolds
+    std::vector<double> restitution;      ///< parallel to `hit`
 
-    /// Sets `points`, and `order` to the contacts whose bodies can move, in the order of `contacts`.
-    void gather(std::span<const Contact> contacts, const Bodies& bodies);
+    /// Sets `velocities`, and `order` to the contacts that can move, in the order of `impact.contacts`.
+    void gather(const Impact& impact, Bodies& bodies);
     /// Sorts `order` by id, and sets `before` to the present velocities in that order.
-    void sort_by_id(std::span<const Contact> contacts, const Bodies& bodies);
+    void sort_by_id(std::span<const Contact> contacts);
 };
 
 /// Adds an answered impact to the outputs of its step, which begin again at zero in each step.

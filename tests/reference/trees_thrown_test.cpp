@@ -16,8 +16,16 @@ namespace
 
 std::string numbered(const char* name, int i) { return name + std::to_string(i); }
 
-/// Capsules that hang on one another's ends by ball joints and hinges, 1.5 m high; they collide with the ground alone.
-std::string thrown_tree(std::uint64_t seed, double friction, double restitution)
+struct Tree
+{
+    double friction = 0, restitution = 0;
+    bool collides =
+        false;             ///< links that no joint holds to one another collide: where several hang on one end, they overlap from the start
+    std::string how = "";  ///< attributes of the detection
+};
+
+/// Capsules that hang on one another's ends by ball joints and hinges, 1.5 m high.
+std::string thrown_tree(std::uint64_t seed, const Tree& tree)
 {
     const auto between = [&](double least, double most) { return least + (most - least) * next_uniform(seed); };
     const Vec3 middle{0, 0, 1.5}, velocity{between(-2, 2), between(-2, 2), between(-2, 2)},
@@ -43,6 +51,9 @@ std::string thrown_tree(std::uint64_t seed, double friction, double restitution)
             const bool hinge = between(0, 1) < 0.5;
             out += joint(numbered("joint", i), hinge ? "Hinge" : "Ball", numbered("link", parent.link), numbered("link", i),
                          "anchor='" + text(parent.at) + "'" + (hinge ? " axis='" + text(rotate(q, {1, 0, 0})) + "'" : std::string()));
+            if (tree.collides)
+                out += "<component id='" + numbered("apart", i) + "' type='Collision/Exclude' a='" + numbered("link", parent.link) +
+                       "' b='" + numbered("link", i) + "'/>";
         }
         out += "<component id='" + numbered("link", i) + "' type='State/RigidBody' mass='" + text(mass) + "' position='" + text(centre) +
                "' orientation='" + text(q) + "' linear_velocity='" + text(velocity + cross(spin, centre - middle)) +
@@ -51,10 +62,10 @@ std::string thrown_tree(std::uint64_t seed, double friction, double restitution)
         ends.push_back({i, centre + axis * half}), ends.push_back({i, centre - axis * half});
         all += numbered(" link", i);
     }
-    return out + gravity() +
-           "<component id='ground' type='State/Static' shape='Shape/Plane'/><component id='apart' type='Collision/Exclude' within='" +
-           all.substr(1) + "'/><component id='contact' type='CDetection/ODE' between='*' response.friction='" + text(friction) +
-           "' response.restitution='" + text(restitution) + "'/>";
+    return out + gravity() + "<component id='ground' type='State/Static' shape='Shape/Plane'/>" +
+           (tree.collides ? std::string() : "<component id='apart' type='Collision/Exclude' within='" + all.substr(1) + "'/>") +
+           "<component id='contact' type='CDetection/ODE' between='*' " + tree.how + " response.friction='" + text(tree.friction) +
+           "' response.restitution='" + text(tree.restitution) + "'/>";
 }
 
 /// The most that the energy rises above the least that there was, as a share of what there was at the start.
@@ -79,17 +90,38 @@ double rise(const std::string& scene)
 TEST_CASE("trees of links that are thrown onto the ground gain no energy")
 {
     // Impacts of jointed bodies with friction gave up to five times what there was.
-    constexpr double kMost = 6e-3;  // 4e-3 in one of 48: what is left is of the rows of joints that turn far in a step
+    constexpr double kMost = 1e-3;
     double worst = 0;
     for (std::uint64_t seed = 1; seed <= 7; ++seed)
         for (const auto& [friction, restitution] : {std::pair(0.8, 0.5), std::pair(0.3, 0.0)})
         {
             CAPTURE(seed);
             CAPTURE(friction);
-            const double gained = rise(thrown_tree(seed, friction, restitution));
+            const double gained = rise(thrown_tree(seed, {friction, restitution}));
             CHECK(gained < kMost);
             worst = std::max(worst, gained);
         }
+    MESSAGE("at most " << worst << " of the energy at the start");
+}
+
+TEST_CASE("trees of links that collide with one another, and overlap from the start, gain next to none")
+{
+    // What joints keep in overlap was pushed at in each step, and lifted: by 26 to 1600 % with the defaults.
+    constexpr double kMost = 3e-2;
+    const char* const direct = "resolution='Resolution/None' response='Response/Rows' response.manager='Manager/Direct'";
+    const char* const sweeps = "resolution='Resolution/None' response='Response/Rows' response.manager='Manager/SequentialImpulse'";
+    double worst = 0;
+    for (const char* how : {"", direct, sweeps})
+        for (std::uint64_t seed = 1; seed <= 4; ++seed)
+            for (const auto& [friction, restitution] : {std::pair(0.8, 0.5), std::pair(0.0, 0.5)})
+            {
+                CAPTURE(std::string(how));
+                CAPTURE(seed);
+                CAPTURE(friction);
+                const double gained = rise(thrown_tree(seed, {friction, restitution, true, how}));
+                CHECK(gained < kMost);
+                worst = std::max(worst, gained);
+            }
     MESSAGE("at most " << worst << " of the energy at the start");
 }
 

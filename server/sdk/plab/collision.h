@@ -182,6 +182,11 @@ struct Impact
     ImpactMode mode = ImpactMode::Impact;
     double dt = 0;  ///< s, Rest only: the step during which gaps may close
     std::span<Contact> contacts;
+    /// 1/kg, W: where joints hold bodies of these n contacts, n x n blocks by rows. Block (i, j) times an impulse at contact j (on b) is the
+    /// change of the velocity of b's point relative to a's at contact i, joints included. Of a contact without friction, column j is known
+    /// for impulses along its normal only. The host applies the impulses (Contact::impulse) then, and the response leaves the velocities
+    /// of the bodies as they are. Empty: bodies are free, and the response applies its impulses itself.
+    std::span<const Mat3> mobility;
     int iterations = 0;       ///< out
     std::int64_t visits = 0;  ///< out: number of contacts processed, counted anew in each sweep: the work of the response
     double residual = 0;      ///< out: m/s, largest remaining violation of normal speed

@@ -110,8 +110,9 @@ public:
     SurfaceLaw response_law(std::uint32_t detector) const;
     /// m/s, separation speed.
     double normal_velocity(const Contact& contact) const;
-    /// Applies impulses by each detector's response. `dt`: s, time in which gaps may close (ImpactMode::Rest).
-    void respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book);
+    /// Applies impulses by each detector's response. `dt`: s, time in which gaps may close (ImpactMode::Rest). With the `mobility` of contacts
+    /// of one detector whose bodies joints hold (Impact::mobility), impulses are found only.
+    void respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book, std::span<const Mat3> mobility = {});
 
     // Events ---------------------------------------------------------------------------------------------------------------
     Event contact_event(const char* kind, const PairState& pair, double time) const;

@@ -39,7 +39,7 @@ double ContactBook::kinetic_energy(const std::vector<FoundContact>& contacts) co
     return sum;
 }
 
-void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book)
+void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book, std::span<const Mat3> mobility)
 {
     // Each detector's contacts go to its own response; detectors are handled in id order.
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
@@ -53,7 +53,7 @@ void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, 
         ComponentCall answer(step_, response);
         answer.context.dt = dt, answer.context.interruption = step_.frame.interruption;
         Impact impact;
-        impact.mode = mode, impact.dt = dt, impact.contacts = impact_contacts_;
+        impact.mode = mode, impact.dt = dt, impact.contacts = impact_contacts_, impact.mobility = mobility;
         answer.arguments.impact = &impact;
         const double before = book.work ? kinetic_energy(contacts) : 0.0;
         step_.meter.enter(step_.meter.of_component(response));

@@ -250,6 +250,15 @@ void EventLocator::keep_if_it_cannot_leave(Contact& c) const
     const double speed = contacts_.normal_velocity(c);
     const double height = std::max(c.depth, overlap_tolerance(c.a, c.b));
     if (speed <= 0 || (c.normal_acceleration < 0 && speed * speed < -2 * c.normal_acceleration * height)) c.resting = true;
+    keep_if_it_would_sink(c);
+}
+
+/// What presses a link of a mechanism may be other contacts: by itself it would be accelerated away. Such a rebound, answered where the
+/// step ends or where its piece begins, would let it sink a bit more in each step.
+void EventLocator::keep_if_it_would_sink(Contact& c) const
+{
+    constexpr double kSoon = 8;  // steps, in which it does not get out of the overlap
+    if (c.normal_acceleration >= 0 && contacts_.normal_velocity(c) * kSoon * step_.frame.step < c.depth) c.resting = true;
 }
 
 /// Whether the pair's sequence of bounces ends within the step (zeno.h), or has become too long: then restitution is set to zero and
@@ -345,6 +354,8 @@ void EventLocator::answer()
     log_impact(first.time);
     if (first.stuck)
         for (std::size_t i = 0; i < own; ++i) keep_if_it_cannot_leave(impact_[i].contact);
+    if (first.at_end)
+        for (std::size_t i = 0; i < own; ++i) keep_if_it_would_sink(impact_[i].contact);
     for (const std::uint32_t slot : chosen_) record_answered(candidates_[slot], time);
     ++step_.report.events;
 }

@@ -180,8 +180,17 @@ void EventLocator::take(std::uint32_t slot, double until)
     chosen_.push_back(slot);
     const Bodies& bodies = step_.world.host().bodies;
     const Ref a = candidates_[slot].a, b = candidates_[slot].b;
+    const auto choose = [&](std::uint32_t body)
+    {
+        if (bodies.dynamic(body) && !std::exchange(met_[body].chosen, true)) met_bodies_.push_back(body);
+    };
     for (const Ref r : {a, b})
-        if (bodies.dynamic(r.index) && !std::exchange(met_[r.index].chosen, true)) met_bodies_.push_back(r.index);
+    {
+        choose(r.index);
+        // What hits one body of a mechanism acts on all of them: a step ladder falls on both feet.
+        const std::uint32_t g = step_.groups.of(r);
+        if (g != kNoIndex && !step_.groups.all[g].rows.empty()) std::ranges::for_each(step_.groups.all[g].bodies, choose);
+    }
     // A response by rows solves an island as a whole anyway.
     if (!candidates_[slot].pressed || contacts_.detectors()[candidates_[slot].detector].by_rows) return;
     const auto is_fixed = [&](Ref r) { return !bodies.dynamic(r.index) || met_[r.index].relief != Vec3{}; };

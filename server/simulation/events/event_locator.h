@@ -215,6 +215,7 @@ private:
     void go_on(double time);
     void suppress_resting_bounce(std::vector<FoundContact>& contacts) const;
     void keep_if_it_cannot_leave(Contact& c) const;
+    void keep_if_it_would_sink(Contact& c) const;
     void answer();
     void log_impact(double time);
     void complete(Candidate& candidate);
@@ -235,28 +236,23 @@ private:
             std::vector<double> shaft;                   ///< parallel to `shafts`
         };
         std::vector<std::uint32_t> groups, bodies, shafts;
-        Speeds start, rough;              ///< before the impact; after it, with friction
-        std::vector<double> restitution;  ///< parallel to the contacts in impact_
-        std::vector<double> friction;
-        std::vector<std::uint8_t> rests;
-        std::vector<Vec3> rough_impulse;  ///< N s
-        std::vector<Vec3> impulse, last;  ///< N s: sum so far; by the last call of the response
+        Speeds start;                ///< before an impulse for trial
+        std::vector<Vec3> before;    ///< m/s, W: of the contacts then
+        double speed = 0;            ///< m/s: the largest of these
+        std::vector<Mat3> mobility;  ///< W of event_joints.cpp
     };
     bool find_jointed();
     void respond(double time);
-    void note_resting_contacts();
+    bool respond_once(std::uint32_t detector, double time);
     void keep(Jointed::Speeds& speeds) const;
     void put(const Jointed::Speeds& speeds);
-    double kinetic_energy_of_jointed() const;
-    bool is_driven_impact() const;
-    void answer_jointed(double time);
-    void answer_without_gain(double time, double start);
-    void join(double time);
+    void join(double time, WorkBook book);
+    void join_group(std::uint32_t group, double time, WorkBook book);
     double closing() const;
-    void compress(double time);
-    void compress_once(double time);
-    void add_impulses(double share, bool of_all);
-    void apply_restitution(double time);
+    Vec3 relative_velocity(const Contact& contact) const;
+    void apply_impulse(const Contact& contact, const Vec3& impulse);
+    void find_column(std::size_t contact, const Vec3& axis, double time);
+    std::span<const Mat3> find_mobility(double time);
 
     StepState& step_;
     GroupMotion& motion_;
@@ -312,7 +308,7 @@ private:
     double rest_time_ = 0;               ///< s, time at which the pair that is being recorded comes to rest
     std::vector<std::uint8_t> paradox_;  ///< parallel to impact_: not an impact, but the answer to Painleve's paradox
     bool meets_force_contact_ = false;
-    std::vector<FoundContact> seen_, impact_, at_end_;
+    std::vector<FoundContact> seen_, impact_, at_end_, part_;
 };
 
 }  // namespace plab::simulation

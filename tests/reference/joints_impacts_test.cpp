@@ -1,0 +1,88 @@
+// Located impacts of bodies that joints hold: the impact law acts on the mechanism as a whole.
+#include <cmath>
+
+#include "support/joints.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+std::string ground_with(double friction, double restitution)
+{
+    return "<component id='ground' type='State/Static' shape='Shape/Plane'/><component id='contact' type='CDetection/ODE' between='*' "
+           "response.friction='" +
+           text(friction) + "' response.restitution='" + text(restitution) + "'/>";
+}
+
+std::string moving(const Vec3& velocity, const Vec3& spin)
+{
+    return "linear_velocity='" + text(velocity) + "' angular_velocity='" + text(spin) + "' ";
+}
+
+}  // namespace
+
+TEST_CASE("two bodies that a joint fixes to one another bounce with friction as one body does")
+{
+    const Vec3 middle{0.4, 0, 0.3}, velocity{0.5, 0.3, -2}, spin{1, 2, -3};
+    const Vec3 of_ball{0, 0, 0.3}, of_load{0.6, 0, 0.3};
+    const auto state = [&](const Vec3& at) { return moving(velocity + cross(spin, at - middle), spin); };
+    const std::string ball = "shape='Shape/Sphere' shape.radius='0.1' ";
+    Scene two(body("ball", 1, {0.02, 0.03, 0.04}, of_ball, state(of_ball) + ball) +
+                  body("load", 2, {0.05, 0.06, 0.07}, of_load, state(of_load)) + joint("weld", "Fixed", "ball", "load", "") +
+                  ground_with(0.4, 0.7),
+              dt(960));
+    // Inertias add, and 1 kg at 0.4 m and 2 kg at 0.2 m from the common centre add 0.24 kg m^2.
+    Scene one(body("both", 3, {0.07, 0.33, 0.35}, middle, state(middle) + ball + "shape.position='-0.4 0 0'") + ground_with(0.4, 0.7),
+              dt(960));
+    for (Scene* s : {&two, &one})
+    {
+        REQUIRE_MESSAGE(s->loaded(), s->error());
+        s->run(0.25);
+    }
+    const Vec3 mean = (two.vec("ball", "linear_velocity") + two.vec("load", "linear_velocity") * 2) * (1.0 / 3);
+    CHECK(one.vec("both", "linear_velocity").z > -1.1);  // it has bounced
+    CHECK(length(mean - one.vec("both", "linear_velocity")) < 1e-8);
+    CHECK(length(two.vec("ball", "angular_velocity") - one.vec("both", "angular_velocity")) < 1e-8);
+}
+
+TEST_CASE("a lever bounces with friction as Stronge's law says, and jams where friction holds it")
+{
+    // Its end moves along one line only, so slip ends when the end stops, and turns round with it. The normal impulse returns the share e^2
+    // of its work, friction holds back on both ways: w' / w = -e sqrt((x - mu h) / (x + mu h)), x and h from the hinge to the contact.
+    constexpr double kX = 0.6, kH = 0.3, kSpin = 2, kRestitution = 0.8;
+    for (const double friction : {0.0, 0.3, 0.8, 1.9, 2.5})
+    {
+        CAPTURE(friction);
+        // It starts a bit above: where it meets the ground, the contact is at (x, -h).
+        const double radius = 0.05, rise = 0.05, down = kH - radius;
+        const double length = std::hypot(kX, down), angle = std::asin(down / length) - rise;
+        const Vec3 hinge{0, 0, kH}, tip{length * std::cos(angle), 0, kH - length * std::sin(angle)};
+        Scene s(body("lever", 1, {0.1, 0.1, 0.1}, tip,
+                     moving(cross(Vec3{0, kSpin, 0}, tip - hinge), {0, kSpin, 0}) + "shape='Shape/Sphere' shape.radius='0.05' ") +
+                    joint("hinge", "Hinge", "", "lever", "anchor='" + text(hinge) + "' axis='0 1 0'") + ground_with(friction, kRestitution),
+                dt(480));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.warnings_expected = friction > kX / kH;
+        s.run(0.1);
+        const double left = std::max(0.0, (kX - friction * kH) / (kX + friction * kH));
+        CHECK(s.vec("lever", "angular_velocity").y == doctest::Approx(-kRestitution * kSpin * std::sqrt(left)).epsilon(1e-8));
+    }
+}
+
+TEST_CASE("a step ladder that falls on both feet at once bounces without a loss, and stays symmetric")
+{
+    const std::string falls = moving({0, 0, -1}, {}), foot = "shape='Shape/Sphere' shape.radius='0.05' ";
+    Scene s(body("left", 1, {0.1, 0.2, 0.3}, {-0.3, 0, 0.2}, falls + foot + "shape.position='-0.2 0 -0.1'") +
+                body("right", 1, {0.1, 0.2, 0.3}, {0.3, 0, 0.2}, falls + foot + "shape.position='0.2 0 -0.1'") +
+                joint("hinge", "Hinge", "left", "right", "anchor='0 0 0.4' axis='0 1 0'") + ground_with(0, 1),
+            dt(480));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(0.1);
+    const Vec3 left = s.vec("left", "linear_velocity"), right = s.vec("right", "linear_velocity");
+    CHECK(left.z > 0);
+    CHECK(std::fabs(left.x + right.x) + std::fabs(left.z - right.z) < 1e-11);
+    const double turning = s.vec("left", "angular_velocity").y;
+    CHECK(length_squared(left) + 0.2 * turning * turning == doctest::Approx(1).epsilon(1e-9));
+}
