@@ -107,24 +107,32 @@ bool leave_kept_overlap(Problem& problem, double worst)
     return any;
 }
 
-/// Finds displacements that reach no farther than a chain of bodies would pass on: those of points that joints keep in overlap are given
-/// up, and at last those of all points, so that joints alone are closed.
+/// Leaves the overlap of movers with one another, or of all points.
+void leave_overlap(Problem& problem, bool of_movers_only)
+{
+    for (Point& p : problem.points)
+        if (!of_movers_only || (p.a != kNoIndex && p.b != kNoIndex)) p.least = kFar;
+}
+
+/// Finds displacements that reach no farther than a chain of bodies would pass on. Points that joints keep in overlap are given up, and if
+/// others are always missed then, all of them, so that joints alone are closed. Where bodies would have to go far, so are those of movers
+/// with one another; what is beyond reach even then is left to the next steps.
 void find_within_reach(Problem& problem, double worst, double tolerance, Method& method, Verdict& out)
 {
     constexpr int kTries = 3;
     find_from_rest(problem, tolerance, method, out);
     if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint) || problem.points.empty()) return;
-    const double reach = worst * static_cast<double>(problem.movers.size() + 1);
-    const auto is_far = [&] { return largest_shift(problem) > reach || largest_turn(problem) > kMostTurn; };
-    for (int n = 1; n <= kTries; ++n)
+    for (int n = 1; n <= kTries && leave_kept_overlap(problem, worst); ++n)
     {
-        const bool some = leave_kept_overlap(problem, worst);
-        if (!some && !is_far()) return;
-        if (!some || n == kTries)
-            for (Point& p : problem.points) p.least = kFar;
+        if (n == kTries) leave_overlap(problem, false);
         find_from_rest(problem, tolerance, method, out);
     }
-    if (const double far = largest_shift(problem); far > reach) scale(problem, reach / far);
+    const double reach = worst * static_cast<double>(problem.movers.size() + 1);
+    const auto beyond = [&] { return std::max(largest_shift(problem) / reach, largest_turn(problem) / kMostTurn); };
+    if (!(beyond() > 1)) return;
+    leave_overlap(problem, true);
+    find_from_rest(problem, tolerance, method, out);
+    if (const double times = beyond(); times > 1) scale(problem, 1 / times);
 }
 
 Verdict displace_by(Problem& problem, double worst, double tolerance, Bodies& bodies, Shafts& shafts, Method& method, bool small_turns)

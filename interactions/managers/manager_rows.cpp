@@ -43,8 +43,13 @@ public:
     Verdict find_impulses(Problem& problem) override
     {
         const Sweeping how{static_cast<int>(iterations_ * (1 + 9 * unknown_share(problem))), 0.1 * tolerance_, relaxation_};
-        const Swept done = holds_rows(problem) ? sweep_between_rows(problem, how) : sweep_without_gain(problem, how);
-        problem.apply_impulses();
+        Swept done = sweep_rows(problem, how);
+        if (gains_by_turning(problem))
+        {
+            problem.forget_turning();
+            const int before = done.sweeps;
+            done = sweep_rows(problem, how), done.sweeps += before;
+        }
         const double residual = violation(problem);
         return {done.sweeps, residual, residual <= tolerance_, false};
     }
@@ -64,6 +69,12 @@ private:
         if (std::ranges::none_of(problem.lines, [](const Line& line) { return line.count > 0 && line.least < line.most; })) return false;
         joints_.load(problem);
         return has_forces(problem) || joints_.is_cheap(problem);
+    }
+    Swept sweep_rows(Problem& problem, const Sweeping& how)
+    {
+        const Swept done = holds_rows(problem) ? sweep_between_rows(problem, how) : sweep_without_gain(problem, how);
+        problem.apply_impulses();
+        return done;
     }
     /// Joints and forces are held exactly between some sweeps.
     Swept sweep_between_rows(Problem& problem, Sweeping how)

@@ -170,6 +170,12 @@ void Problem::put_lines_midway(double h)
     }
 }
 
+void Problem::forget_turning()
+{
+    for (Point& p : points) p.turning = {};
+    for (Line& line : lines) line.turning = 0;
+}
+
 /// `half`: s, half of the step.
 void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, double half) const
 {

@@ -88,6 +88,8 @@ public:
     void put_pivots_midway(const Bodies& bodies, double h);
     /// The same for rows, which are those of the middle of the step by now: J = J_m, turning = -(h / 2) (bias - d(rate)/dt).
     void put_lines_midway(double h);
+    /// Takes back what these two know of the turning of levers: the levers stay those of the middle.
+    void forget_turning();
     /// The rows were found again after bodies had turned.
     void turn_lines();
     /// The same for the movers and rows alone, after they have turned for h (s): sets Mover::turned. The velocities of the movers become

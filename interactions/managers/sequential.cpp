@@ -34,12 +34,12 @@ namespace
 {
 
 /// J: what impulses that satisfy the rows may give because levers turn within the step: with those of its middle, velocities u at its ends
-/// are not 0 but t. The impulses j give j (u_before + t) / 2 = j t - j W j / 2, W = J M^-1 J^T, so no more than j t.
+/// are not 0 but t = -turning. The impulses j give j (u_before + t) / 2 = j t - j W j / 2, W = J M^-1 J^T, so no more than j t.
 double given_by_turning(const Problem& problem)
 {
     double sum = 0;
-    for (const Point& p : problem.points) sum += dot(p.impulse, p.turning);
-    for (const Line& line : problem.lines) sum += line.impulse * line.turning;
+    for (const Point& p : problem.points) sum -= dot(p.impulse, p.turning);
+    for (const Line& line : problem.lines) sum -= line.impulse * line.turning;
     return std::max(0.0, sum);
 }
 
@@ -49,6 +49,13 @@ bool makes_energy(const Problem& problem)
 {
     if (is_driven(problem)) return false;
     return kinetic_energy(problem) > kinetic_energy_without(problem) * (1 + 1e-9) + given_by_turning(problem);
+}
+
+bool gains_by_turning(const Problem& problem)
+{
+    constexpr double kMost = 0x1p-6;
+    if (problem.lines.empty() || problem.points.empty() || is_driven(problem)) return false;
+    return kinetic_energy(problem) > kinetic_energy_without(problem) * (1 + kMost);
 }
 
 template <int W>

@@ -44,5 +44,9 @@ bool is_driven(const Line& line);
 /// Whether the present impulses raise the kinetic energy beyond rounding although nothing (restitution, a motor, a kinematic
 /// body) is entitled to add any.
 bool makes_energy(const Problem& problem);
+/// Whether impulses of joints and contacts, which do no work in exact motion, give the bodies more than a small part of what they have:
+/// where a contact can hardly move its bodies, large impulses along levers that turn within the step do. Problem::forget_turning() helps:
+/// without turning, the solution is a projection.
+bool gains_by_turning(const Problem& problem);
 
 }  // namespace plab::managers

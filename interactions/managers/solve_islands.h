@@ -5,6 +5,7 @@
 
 #include "island_team.h"
 #include "newton.h"
+#include "sequential.h"
 #include "stepping.h"
 
 namespace plab::managers
@@ -19,7 +20,15 @@ public:
         // What correct_positions() leaves alone need not be held more exactly in a step.
         how_.enough = kPositionTolerance * (island.bodies.empty() ? 1 : island.size) / island.h;
     }
-    Verdict find_impulses(Problem& problem) override { return verdict(newton_.solve(problem, how_)); }
+    Verdict find_impulses(Problem& problem) override
+    {
+        Verdict out = verdict(newton_.solve(problem, how_));
+        if (!gains_by_turning(problem)) return out;
+        problem.forget_turning();
+        const int before = out.iterations;
+        out = verdict(newton_.solve(problem, how_)), out.iterations += before;
+        return out;
+    }
     Verdict find_displacements(Problem& problem, double tolerance) override
     {
         Solving how = how_;

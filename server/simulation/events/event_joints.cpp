@@ -136,10 +136,7 @@ void EventLocator::find_column(std::size_t j, const Vec3& axis, double time)
     for (std::size_t i = 0; i < n; ++i)
     {
         const Vec3 u = (relative_velocity(part_[i].contact) - jointed_.before[i]) * (1 / size);
-        Mat3& K = jointed_.mobility[i * n + j];
-        for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 3; ++column)
-                K(row, column) += (row == 0 ? u.x : row == 1 ? u.y : u.z) * (column == 0 ? axis.x : column == 1 ? axis.y : axis.z);
+        jointed_.mobility[i * n + j] = jointed_.mobility[i * n + j] + outer(u, axis);
     }
     put(jointed_.start);
 }
@@ -178,6 +175,7 @@ bool EventLocator::respond_once(std::uint32_t detector, double time)
     if (part_.empty()) return false;
     const std::span<const Mat3> mobility = find_mobility(time);
     contacts_.respond(part_, ImpactMode::Impact, 0, step_.book(), mobility);
+    if (!mobility.empty()) put(jointed_.start);  // a response that does not know of the mobility has changed them
     double work = 0;
     bool any = false;
     for (const FoundContact& f : part_)
