@@ -258,7 +258,9 @@ void EventLocator::keep_if_it_cannot_leave(Contact& c) const
 void EventLocator::keep_if_it_would_sink(Contact& c) const
 {
     constexpr double kSoon = 8;  // steps, in which it does not get out of the overlap
-    if (c.normal_acceleration >= 0 && contacts_.normal_velocity(c) * kSoon * step_.frame.step < c.depth) c.resting = true;
+    const double h = step_.frame.step;
+    if (!(c.normal_acceleration * h * h > overlap_tolerance(c.a, c.b))) return;
+    if (contacts_.normal_velocity(c) * kSoon * h < c.depth) c.resting = true;
 }
 
 /// Whether the pair's sequence of bounces ends within the step (zeno.h), or has become too long: then restitution is set to zero and
