@@ -135,6 +135,20 @@ bool is_warm(const Problem& problem)
            std::any_of(problem.lines.begin(), problem.lines.end(), [](const Line& line) { return line.impulse != 0; });
 }
 
+/// Whether friction is at its bound at a point that hardly slips: a load that contacts share in another way than they have to.
+bool is_strained(const Problem& problem)
+{
+    constexpr double kBound = 0.99, kSlow = 0x1p-4;
+    return std::ranges::any_of(problem.points,
+                               [&](const Point& p)
+                               {
+                                   const Vec3& j = p.impulse;
+                                   if (!p.frictional() || !(j.z > 0) || std::hypot(j.x, j.y) < kBound * p.friction * j.z) return false;
+                                   const Vec3 u = problem.relative_velocity(p);
+                                   return std::hypot(u.x, u.y) < kSlow * p.K(2, 2) * j.z;
+                               });
+}
+
 }  // namespace
 
 bool NewtonSolver::find_step(const Problem& problem, double kappa)
@@ -278,6 +292,33 @@ void NewtonSolver::polish(Problem& problem, double best, double kappa, const Sol
     }
 }
 
+/// Forgets how contacts shared their load. Where more of them stick than hold their bodies, a mechanism that moves asks of them what rigid
+/// bodies cannot do by a trifle (the wheels of a car are not parallel to the last digit): then friction is at its bounds here and there, and
+/// in each step at other places, where Newton's method goes round in circles. From no load, soft contacts that become stiffer share it
+/// evenly. Leaves everything as it was unless it comes close.
+bool NewtonSolver::start_anew(Problem& problem, const Solving& how, Solved& out)
+{
+    constexpr std::size_t kMostPoints = 64;
+    constexpr int kRounds = 4, kSteps = 60;
+    constexpr double kFirst = 100, kGrowth = 8;
+    if (problem.points.empty() || problem.points.size() > kMostPoints || is_large(problem)) return false;
+    remember(problem);
+    guess_points_ = best_points_, guess_lines_ = best_lines_;
+    for (Point& p : problem.points) p.impulse = {};
+    problem.apply_impulses();
+    Solving own = how;
+    own.most_steps = out.steps + kSteps;
+    double kappa = kFirst;
+    for (int i = 0; i < kRounds && out.steps < own.most_steps; ++i, kappa *= kGrowth)
+    {
+        if (!lagrangian_.round(problem, matrix_, kappa, false, how.tolerance, out.steps)) break;
+        if (newton(problem, own, out) || violation(problem) <= how.close) return true;
+    }
+    best_points_ = guess_points_, best_lines_ = guess_lines_;
+    recall(problem);
+    return false;
+}
+
 /// Rounds of the augmented Lagrangian with growing stiffness, until Newton's method on the law itself converges.
 void NewtonSolver::approach(Problem& problem, const Solving& how, Solved& out)
 {
@@ -362,12 +403,18 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
         if (!out.ended) matrix_.shape(problem);
         const std::size_t affordable = how.most_products / std::max<std::size_t>(1, matrix_.products());
         exact.most_steps = static_cast<int>(std::min(affordable, static_cast<std::size_t>(how.most_steps)));
-        if (!out.ended && is_warm(problem)) out.ended = newton(problem, exact, out);
+        if (!out.ended && is_warm(problem))
+        {
+            const bool strained = is_strained(problem);
+            out.ended = strained && start_anew(problem, exact, out);
+            if (!out.ended) out.ended = newton(problem, exact, out);
+            if (!out.ended && !strained) out.ended = start_anew(problem, exact, out);
+        }
         if (!out.ended) approach(problem, exact, out);
         set_tolerance();
     }
     out.residual = violation(problem);
-    out.converged = out.residual <= std::max(exact.tolerance, out.ended ? how.enough : 0.0);
+    out.converged = out.residual <= std::max(exact.tolerance, out.ended ? std::max(how.enough, how.close) : 0.0);
     if (out.converged) return out;
     out.fell_back = true;
     if (how.rounds == 0) return out;

@@ -47,6 +47,8 @@ struct Solving
     /// m/s: the violation that is left where Newton's method gets no further: points that barely press open and close, and rows may
     /// contradict one another by rounding, as where both feet of a mechanism stand.
     double enough = 0;
+    /// m/s: the violation up to which a solution that shares loads evenly is taken, where Newton's method finds none that is exact.
+    double close = 0;
     std::size_t most_products = SIZE_MAX;  ///< of blocks, in all factorisations: about 0.1 us each
 };
 struct Solved
@@ -82,6 +84,7 @@ private:
     bool changes_pieces(const Problem& problem);
     bool newton(Problem& problem, const Solving& how, Solved& out);
     void polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out);
+    bool start_anew(Problem& problem, const Solving& how, Solved& out);
     void approach(Problem& problem, const Solving& how, Solved& out);
     bool settles_by_sweeps(Problem& problem, double guess, const Solving& how, Solved& out);
     void finish_by_sweeps(Problem& problem, const Solving& how, Solved& out);

@@ -18,7 +18,8 @@ public:
     Exactly(NewtonSolver& newton, const Solving& how, const Island& island) : newton_(newton), how_(how)
     {
         // What correct_positions() leaves alone need not be held more exactly in a step.
-        how_.enough = kPositionTolerance * (island.bodies.empty() ? 1 : island.size) / island.h;
+        const double fast = (island.bodies.empty() ? 1 : island.size) / island.h;
+        how_.enough = kPositionTolerance * fast, how_.close = kClose * fast;
     }
     Verdict find_impulses(Problem& problem) override
     {
@@ -32,11 +33,12 @@ public:
     Verdict find_displacements(Problem& problem, double tolerance) override
     {
         Solving how = how_;
-        how.tolerance = 0.1 * tolerance, how.enough = tolerance;
+        how.tolerance = 0.1 * tolerance, how.enough = how.close = tolerance;
         return verdict(newton_.solve(problem, how));
     }
 
 private:
+    static constexpr double kClose = 0x1p-20;  ///< of the size of the bodies in a step
     static Verdict verdict(const Solved& s) { return {s.steps + s.sweeps, s.residual, s.converged, s.fell_back}; }
 
     NewtonSolver& newton_;

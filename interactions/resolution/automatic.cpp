@@ -1,5 +1,6 @@
 #include "automatic.h"
 
+#include <limits>
 #include <string>
 
 #include "plab/number_text.h"
@@ -44,6 +45,13 @@ void AutomaticRows::describe(Schema& s)
         .at_most(1e6);
     s.param(max_points, "max_points", unit::one, "likewise, contact points of an island").or_else(64).positive().at_most(1e7);
     s.param(max_located, "max_located", unit::one, "likewise, dynamic bodies of the scene").or_else(2000).positive().at_most(1e7);
+    s.param(dwell, "dwell", unit::second,
+            "after a step with a larger island or more bodies, time without one before impacts are located again")
+        .or_else(0.25)
+        .not_negative();
+    s.state(large_until, "large_until", unit::second, "end of the last step that began with a larger island or more bodies; -inf: none has")
+        .or_else(-std::numeric_limits<double>::infinity())
+        .may_be_infinite();
     s.output(resolved, "resolved", unit::one, "how the impacts of the last step were found");
     s.output(reason, "reason", unit::one, "why");
 }
@@ -52,7 +60,9 @@ void choose_search(const StepContext& context, Row row, AutomaticRows& rows, Con
 {
     const bool small = load.island_bodies <= rows.max_bodies[row] && load.island_points <= rows.max_points[row],
                few = load.bodies <= rows.max_located[row];
-    if (small && few)
+    if (!small || !few) rows.large_until[row] = context.time + context.dt;
+    const bool settled = context.time >= rows.large_until[row] + rows.dwell[row] * (1 - 1e-9);
+    if (settled)
         load.search = ImpactSearch::Locate;
     else
         load.search = load.has_manager && load.travel > kFast ? ImpactSearch::Speculate : ImpactSearch::AtEnd;
@@ -60,6 +70,7 @@ void choose_search(const StepContext& context, Row row, AutomaticRows& rows, Con
     const bool first = rows.resolved[row].empty();
     rows.resolved[row] = name_of(load.search);
     rows.reason[row] = rows.resolved[row] + ": " + (few ? island_text(load) : std::to_string(load.bodies) + " bodies move");
+    if (small && few && !settled) rows.reason[row] += ", for less than " + rounded_text(rows.dwell[row], 3) + " s";
     if (load.search != ImpactSearch::Locate)
         rows.reason[row] += load.search == ImpactSearch::Speculate
                                 ? ", and a body moves by " + rounded_text(load.travel, 2) + " of its size in a step"

@@ -9,6 +9,9 @@
 /// that fly or rest apart: a thousand balls that bounce on a floor are located, a heap of nine is not. Fast: within a
 /// step a body moves by more than a quarter of its radius, or a point of a thin body by more than an eighth of its thickness.
 ///
+/// After a step with a large island, impacts are located again only when none has been large for `dwell`: the feet of a robot that lands
+/// lift off for a few steps at a time, and each of its impacts costs as much as a step of all that its joints hold.
+///
 /// The choice follows from the state at the start of the step alone, so that rewinds, trials and replays make the same one. `resolved`
 /// names it and `reason` says why; resolution.chosen reports each change.
 #pragma once
@@ -25,6 +28,8 @@ struct AutomaticRows
     Column<double> acceleration;                  // m/s^2
     Column<std::int64_t> max_bodies, max_points;  // of an island
     Column<std::int64_t> max_located;             // bodies of the scene
+    Column<double> dwell;                         // s
+    Column<double> large_until;                   // s: end of the last step that began with a large island; -inf: there was none
     Column<std::string> resolved, reason;
 
     void describe(Schema& schema);

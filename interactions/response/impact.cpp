@@ -10,7 +10,7 @@ namespace plab::response
 namespace
 {
 /// Pairs whose closing speeds differ by less than this fraction count as equally fast.
-constexpr double kSameSpeed = 1e-9;
+constexpr double kSameSpeed = 1e-6;
 /// Fraction of the fastest approach that may remain where bodies are trapped between others.
 constexpr double kStill = 1e-6;
 /// Links of a mechanism that are pressed against one another pass an impact on for ever: each acts on all of their contacts.
@@ -170,8 +170,10 @@ void ImpactSequence::hit_at_once()
         gains = try_at_once(share);
     }
     if (gains)
-        count(reduce_friction(work_.cones, work_.before, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption)
-                  .sweeps);
+        count(
+            work_.solver
+                .reduce_friction(work_.cones, work_.before, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption)
+                .sweeps);
     for (const ConeContact& c : work_.cones) contacts_[c.contact].impulse += velocities_.to_world(c.contact, c.impulse);
 }
 
@@ -192,7 +194,7 @@ bool ImpactSequence::try_at_once(double share)
         work_.before.push_back(u);
         work_.cones.push_back({i, contacts_[i].friction, u.z < 0 ? -share * work_.restitution[k] * u.z : 0.0, {}});
     }
-    count(solve_cones(work_.cones, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps);
+    count(work_.solver.solve(work_.cones, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps);
     return energy_gained(work_.cones, work_.before, velocities_) > 0;
 }
 

@@ -9,7 +9,7 @@ namespace plab::simulation
 namespace
 {
 /// Two events that are less than this fraction of the step apart count as simultaneous if one body takes part in both.
-constexpr double kSameTime = 1e-13;
+constexpr double kSameTime = 1e-10;
 
 }  // namespace
 
