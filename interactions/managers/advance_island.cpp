@@ -102,8 +102,6 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     }
     for (std::size_t i = 0; i < memory.impacts.size(); ++i)
         if (island.contacts[i].approach > 0) island.contacts[i].impulse += memory.impacts[i];
-    if (getenv("DBG")) { fprintf(stderr, "island t0 %.6f h %.6f points %zu conv %d res %g fell %d it %d impacts %zu slipends %d moving %d\n", 0.0, island.h, problem.points.size(), out.converged, out.residual, out.fell_back, out.iterations, memory.impacts.size(), locates_slip_ends, (int)moving);
-      for (std::size_t i = 0; i < problem.points.size(); ++i) { const Point& p = problem.points[i]; const Contact& c = island.contacts[i]; const Vec3 u = problem.relative_velocity(p); fprintf(stderr, "   %u-%u at %.4f %.4f %.4f guess %.4g %.4g %.4g j %.9g %.9g %.9g u %.2g %.2g %.2g depth %.2g\n", c.a.index, c.b.index, c.point.x, c.point.y, c.point.z, guess[i].x, guess[i].y, guess[i].z, p.impulse.x, p.impulse.y, p.impulse.z, u.x, u.y, u.z, c.depth); } }
     add_impacts_of_stops(problem, island, memory.line_impacts);
     for (std::size_t i = 0; i < island.further_impulses.size(); ++i) island.further_impulses[i] -= island.contacts[i].impulse;
     const Verdict moved = correct_positions(island, bodies, shafts, method, choices, memory);

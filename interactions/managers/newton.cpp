@@ -214,6 +214,7 @@ void NewtonSolver::remember(const Problem& problem)
     best_points_.clear(), best_lines_.clear();
     for (const Point& p : problem.points) best_points_.push_back(p.impulse);
     for (const Line& line : problem.lines) best_lines_.push_back(line.impulse);
+    guess_points_.reserve(best_points_.size()), guess_lines_.reserve(best_lines_.size());
 }
 
 void NewtonSolver::recall(Problem& problem) const
@@ -293,15 +294,15 @@ void NewtonSolver::polish(Problem& problem, double best, double kappa, const Sol
 }
 
 /// Forgets how contacts shared their load. Where more of them stick than hold their bodies, a mechanism that moves asks of them what rigid
-/// bodies cannot do by a trifle (the wheels of a car are not parallel to the last digit): then friction is at its bounds here and there, and
-/// in each step at other places, where Newton's method goes round in circles. From no load, soft contacts that become stiffer share it
+/// bodies cannot do by a trifle (the wheels of a car are not parallel to the last digit): then friction is at its bounds here and there,
+/// and in each step at other places, where Newton's method goes round in circles. From no load, soft contacts that become stiffer share it
 /// evenly. Leaves everything as it was unless it comes close.
 bool NewtonSolver::start_anew(Problem& problem, const Solving& how, Solved& out)
 {
     constexpr std::size_t kMostPoints = 64;
     constexpr int kRounds = 4, kSteps = 60;
     constexpr double kFirst = 100, kGrowth = 8;
-    if (problem.points.empty() || problem.points.size() > kMostPoints || is_large(problem)) return false;
+    if (problem.lines.empty() || problem.points.empty() || problem.points.size() > kMostPoints || is_large(problem)) return false;
     remember(problem);
     guess_points_ = best_points_, guess_lines_ = best_lines_;
     for (Point& p : problem.points) p.impulse = {};
@@ -312,7 +313,11 @@ bool NewtonSolver::start_anew(Problem& problem, const Solving& how, Solved& out)
     for (int i = 0; i < kRounds && out.steps < own.most_steps; ++i, kappa *= kGrowth)
     {
         if (!lagrangian_.round(problem, matrix_, kappa, false, how.tolerance, out.steps)) break;
-        if (newton(problem, own, out) || violation(problem) <= how.close) return true;
+        if (newton(problem, own, out)) return true;
+        if (violation(problem) > how.close) continue;
+        // A trifle of slip is none, but joints would come apart.
+        joints_.hold_without_gain(problem, how.tolerance);
+        if (violation(problem) <= how.close) return true;
     }
     best_points_ = guess_points_, best_lines_ = guess_lines_;
     recall(problem);
@@ -405,10 +410,16 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
         exact.most_steps = static_cast<int>(std::min(affordable, static_cast<std::size_t>(how.most_steps)));
         if (!out.ended && is_warm(problem))
         {
+            const auto anew = [&]
+            {
+                const int before = out.steps;
+                out.ended = start_anew(problem, exact, out);
+                exact.most_steps += out.steps - before;
+            };
             const bool strained = is_strained(problem);
-            out.ended = strained && start_anew(problem, exact, out);
+            if (strained) anew();
             if (!out.ended) out.ended = newton(problem, exact, out);
-            if (!out.ended && !strained) out.ended = start_anew(problem, exact, out);
+            if (!out.ended && !strained) anew();
         }
         if (!out.ended) approach(problem, exact, out);
         set_tolerance();

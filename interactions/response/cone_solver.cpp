@@ -13,7 +13,8 @@ namespace
 /// Number of directions in a scan.
 constexpr int kSamples = 128;
 constexpr double kStep = 6.283185307179586 / kSamples;
-/// After so many sweeps, and whenever their number has doubled, the contacts that touch are solved at once.
+/// After so many sweeps, and whenever their number has doubled, the contacts that touch are solved at once where joints hold bodies, as
+/// their contacts then depend on one another and share impulses in many ways.
 constexpr int kFirstSweeps = 4;
 
 /// A contact that slides along the direction (c, s): j = j_n (-mu c, -mu s, 1), with j_n such that u_n = b.
@@ -168,7 +169,8 @@ ConeResult ConeSolver::solve(std::span<ConeContact> contacts, ContactVelocities&
             largest = std::max({largest, std::fabs(kick.x), std::fabs(kick.y), std::fabs(kick.z)});
         }
         out.converged = largest <= tolerance;
-        if (!out.converged && out.sweeps >= kFirstSweeps && std::has_single_bit(static_cast<unsigned>(out.sweeps)))
+        if (!out.converged && velocities.are_joined() && out.sweeps >= kFirstSweeps &&
+            std::has_single_bit(static_cast<unsigned>(out.sweeps)))
             subspace_.take(contacts, velocities);
     }
     for (const ConeContact& c : contacts) out.residual = std::max(out.residual, c.least - velocities.at(c.contact).z);

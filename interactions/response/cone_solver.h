@@ -10,20 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "contact_velocities.h"
 #include "plab/interruption.h"
 #include "subspace_step.h"
 
 namespace plab::response
 {
-
-struct ConeContact
-{
-    std::uint32_t contact = 0;
-    double friction = 0;
-    double least = 0;  ///< b: smallest u_n that is allowed afterwards, m/s
-    Vec3 impulse;      ///< j, N s in contact coordinates; on entry the initial guess, which has been applied already
-};
 
 struct ConeResult
 {
@@ -40,6 +31,12 @@ Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, con
 class ConeSolver
 {
 public:
+    /// Sets memory apart for so many contacts.
+    void reserve(std::size_t contacts)
+    {
+        subspace_.reserve(contacts);
+        rough_.reserve(contacts), smooth_.reserve(contacts), friction_.reserve(contacts);
+    }
     /// Changes the velocities. Ends when no impulse changes the velocity of its contact by more than `tolerance` (m/s),
     /// or when the step is interrupted.
     ConeResult solve(std::span<ConeContact> contacts, ContactVelocities& velocities, double tolerance, int max_sweeps,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cone_solver.h"
 #include "plab/eigen.h"
 // After plab/eigen.h.
 #include <Eigen/Cholesky>
@@ -43,6 +42,15 @@ Vec3 on_cone(const Vec3& j, double friction)
 
 }  // namespace
 
+void SubspaceStep::reserve(std::size_t contacts)
+{
+    if (contacts < 2 || contacts > kMostContacts || contacts <= change_.capacity()) return;
+    const std::size_t most = 3 * contacts;
+    unknowns_.reserve(most), change_.reserve(contacts);
+    matrix_.reserve(most * most), normal_.reserve(most * most);
+    for (std::vector<double>* const v : {&aim_, &rest_, &present_, &solution_}) v->reserve(most);
+}
+
 void SubspaceStep::list_unknowns(std::span<const ConeContact> contacts)
 {
     unknowns_.clear();
@@ -59,8 +67,9 @@ void SubspaceStep::list_unknowns(std::span<const ConeContact> contacts)
     }
 }
 
-/// The smallest impulses that solve the equations, A x = r, as x = A^T (A A^T + e^2)^-1 r, and the same with what that leaves of r.
-void SubspaceStep::solve(std::span<const ConeContact> contacts, const ContactVelocities& velocities)
+/// The smallest impulses, or the smallest change, that solve the equations, A x = r, as x = A^T (A A^T + e^2)^-1 r, and the same with what
+/// that leaves of r. Sets solution_ to the change.
+void SubspaceStep::solve(std::span<const ConeContact> contacts, const ContactVelocities& velocities, Aim aimed)
 {
     const auto n = static_cast<Eigen::Index>(unknowns_.size());
     const auto size = unknowns_.size();
@@ -84,6 +93,7 @@ void SubspaceStep::solve(std::span<const ConeContact> contacts, const ContactVel
     N.noalias() = A.lazyProduct(A.transpose());
     N.diagonal().array() += kSingular * kSingular * N.diagonal().maxCoeff();
     Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(N);
+    if (aimed == Aim::Nearest) present.setZero();
     aim.noalias() += A.lazyProduct(present);
     r = aim, x.setZero();
     constexpr int kTimes = 3;
@@ -93,6 +103,7 @@ void SubspaceStep::solve(std::span<const ConeContact> contacts, const ContactVel
         cholesky.solveInPlace(r);
         x.noalias() += A.transpose().lazyProduct(r);
     }
+    x -= present;
 }
 
 void SubspaceStep::take(std::span<ConeContact> contacts, ContactVelocities& velocities)
@@ -101,17 +112,22 @@ void SubspaceStep::take(std::span<ConeContact> contacts, ContactVelocities& velo
     // An impulse that meets its cone slides or separates from then on.
     constexpr int kMostPieces = 8;
     for (int piece = 0; piece < kMostPieces; ++piece)
-        if (!go(contacts, velocities)) return;
+    {
+        if (go(contacts, velocities, Aim::Smallest)) continue;
+        // What rounding of whole impulses has left.
+        (void)go(contacts, velocities, Aim::Nearest);
+        return;
+    }
 }
 
 /// One piece of the way. Returns whether an impulse has met its cone before the end.
-bool SubspaceStep::go(std::span<ConeContact> contacts, ContactVelocities& velocities)
+bool SubspaceStep::go(std::span<ConeContact> contacts, ContactVelocities& velocities, Aim aimed)
 {
     list_unknowns(contacts);
     if (unknowns_.empty()) return false;
-    solve(contacts, velocities);
+    solve(contacts, velocities, aimed);
     change_.assign(contacts.size(), {});
-    for (std::size_t i = 0; i < unknowns_.size(); ++i) change_[unknowns_[i].place] += unknowns_[i].force * (solution_[i] - present_[i]);
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) change_[unknowns_[i].place] += unknowns_[i].force * solution_[i];
     double share = 1;
     std::size_t first = 0;
     for (std::size_t k = 0; k < contacts.size(); ++k)

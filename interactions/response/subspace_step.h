@@ -7,6 +7,7 @@
 /// Gauss-Seidel subspace minimization method for interactive rigid body dynamics (2010), there for boxes instead of cones.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,13 @@
 namespace plab::response
 {
 
-struct ConeContact;
+struct ConeContact
+{
+    std::uint32_t contact = 0;
+    double friction = 0;
+    double least = 0;  ///< b: smallest u_n that is allowed afterwards, m/s
+    Vec3 impulse;      ///< j, N s in contact coordinates; on entry the initial guess, which has been applied already
+};
 
 /// Keeps its memory from call to call.
 class SubspaceStep
@@ -26,6 +33,9 @@ public:
     /// beyond kMostContacts.
     void take(std::span<ConeContact> contacts, ContactVelocities& velocities);
 
+    /// Sets memory apart for so many contacts.
+    void reserve(std::size_t contacts);
+
     static constexpr std::size_t kMostContacts = 48;
 
 private:
@@ -35,9 +45,14 @@ private:
         std::uint32_t place = 0;  ///< in `contacts`
         Vec3 force, direction;    ///< contact coordinates
     };
+    enum class Aim : std::uint8_t
+    {
+        Smallest,  ///< the smallest impulses
+        Nearest,   ///< the smallest change
+    };
     void list_unknowns(std::span<const ConeContact> contacts);
-    bool go(std::span<ConeContact> contacts, ContactVelocities& velocities);
-    void solve(std::span<const ConeContact> contacts, const ContactVelocities& velocities);
+    bool go(std::span<ConeContact> contacts, ContactVelocities& velocities, Aim aimed);
+    void solve(std::span<const ConeContact> contacts, const ContactVelocities& velocities, Aim aimed);
 
     std::vector<Unknown> unknowns_;
     std::vector<double> matrix_, normal_, aim_, rest_, present_, solution_;

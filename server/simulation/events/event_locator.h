@@ -120,6 +120,7 @@ private:
     struct Met
     {
         bool chosen = false;
+        bool joined = false;  ///< joints hold it to a body that is hit, or that itself
         Vec3 relief;  ///< m/s^2: if the event stops the body, the change of its acceleration
     };
     /// A pair of bodies of one detector, by index.
@@ -143,10 +144,6 @@ private:
     void scope_of(const Candidate& candidate);
     void close_over_resting_pairs();
     void close_over_forces();
-    void gather(std::uint32_t first);
-    void gather_until(double until);
-    void take(std::uint32_t slot, double until);
-    void recall_unpressed(Ref stopped, double until);
     void process();
     void detect_again(std::vector<FoundContact>& found);
     void note_resting_groups();
@@ -156,6 +153,12 @@ private:
     void answer_the_rest(std::size_t left, std::vector<FoundContact>& found);
     void report_too_many(std::size_t left);
     double overlap_tolerance(Ref a, Ref b) const;
+
+    // event_gather.cpp: which candidates are one event.
+    void gather(std::uint32_t first);
+    void gather_until(double until, double until_joined);
+    void take(std::uint32_t slot, double until);
+    void recall_unpressed(Ref stopped, double until);
 
     // event_candidates.cpp: pairs that may meet anywhere in the piece.
     void begin_motion_bounds();
