@@ -299,10 +299,11 @@ void NewtonSolver::polish(Problem& problem, double best, double kappa, const Sol
 /// evenly. Leaves everything as it was unless it comes close.
 bool NewtonSolver::start_anew(Problem& problem, const Solving& how, Solved& out)
 {
-    constexpr std::size_t kMostPoints = 64;
+    constexpr std::size_t kFewestPoints = 4, kMostPoints = 64;
     constexpr int kRounds = 4, kSteps = 60;
     constexpr double kFirst = 100, kGrowth = 8;
-    if (problem.lines.empty() || problem.points.empty() || problem.points.size() > kMostPoints || is_large(problem)) return false;
+    if (problem.lines.empty() || problem.points.size() < kFewestPoints || problem.points.size() > kMostPoints || is_large(problem))
+        return false;
     remember(problem);
     guess_points_ = best_points_, guess_lines_ = best_lines_;
     for (Point& p : problem.points) p.impulse = {};

@@ -20,8 +20,8 @@
 ///
 /// Newton's method converges only near a solution. solve() therefore takes the cheapest method that works: (1) nothing, if the
 /// last impulses still satisfy the law; (2) some sweeps, for a large island that has only drifted by rounding; (3) Newton's
-/// method from the last impulses; (4) rounds of the augmented Lagrangian (lagrangian.h), each followed by Newton's method; (5)
-/// Gauss-Seidel sweeps alternating with Newton's method, reported as `fell_back`. Sweeps would let a chain of light links under a heavy
+/// method from the last impulses, and for mechanisms also from none (README, "For mechanisms"); (4) rounds of the augmented Lagrangian
+/// (lagrangian.h), each followed by Newton's method; (5) Gauss-Seidel sweeps alternating with Newton's method, reported as `fell_back`. Sweeps would let a chain of light links under a heavy
 /// load stretch, so the joints are then solved exactly, with the impulses of all others as they are: contacts may be left violated, joints
 /// that do not contradict one another are not.
 /// Sources: Alart, Curnier, CMAME 92 (1991), eq. 3.6; Rockafellar (1976) for the proximal term; Acary, Bourrich, Siconos (2018),

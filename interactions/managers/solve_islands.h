@@ -38,7 +38,7 @@ public:
     }
 
 private:
-    static constexpr double kClose = 0x1p-20;  ///< of the size of the bodies in a step
+    static constexpr double kClose = 0x1p-24;  ///< of the size of the bodies in a step
     static Verdict verdict(const Solved& s) { return {s.steps + s.sweeps, s.residual, s.converged, s.fell_back}; }
 
     NewtonSolver& newton_;
