@@ -24,9 +24,6 @@ constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 /// step takes about as many evaluations as there are numbers, and the cube of that in products.
 constexpr std::size_t kManySize = kExponentialSize;
 constexpr double kPart = 0.4;
-/// Up to this |h lambda|, internal steps with control of their error are few, and cost less than the Jacobian of so many numbers or more.
-constexpr double kMild = 2;
-constexpr std::size_t kSeveral = 24;
 constexpr double kMostParts = 16;
 /// Above kRadauSize, internal steps with control of their error are the only other way, and dearer still: 80 ms instead of 10 ms a step
 /// where a chain of 100 links under a heavy ball is a taut string with |h lambda| = 7.
@@ -163,7 +160,6 @@ private:
     void advance_stiff()
     {
         if (FlatSystem(system_).size() <= kMinimalSize) describe_by_joints();
-        if (is_mild()) return advance_explicitly(0);
         if (advance_by_exponential(h_, true, kExponentialSize, m_.exponential, system_).fine) return say(Method::Exponential);
         const std::size_t size = FlatSystem(system_).size();
         if (size > kManySize && stiffness_ <= kPart * (size > kRadauSize ? kMostPartsOfLarge : kMostParts)) return advance_in_parts();
@@ -171,13 +167,6 @@ private:
         say(Method::Radau5);
         const Radau5Counts counts = advance_by_radau(h_, kTolerance, kMaxSubsteps, m_.exponential.radau, system_);
         if (!trial_ && counts.reached < h_) report_radau_gave_up(start_, row_, counts);
-    }
-
-    /// A doll that tumbles, whose slender limbs turn fast: no stiffness that an implicit step would pass over.
-    bool is_mild() const
-    {
-        const std::size_t size = FlatSystem(system_).size();
-        return stiffness_ <= kMild && size >= kSeveral && size <= kManySize;
     }
 
     /// A robot of six hinges has 72 numbers as bodies, and 12 as angles and rates: that is what an implicit step costs.
@@ -238,7 +227,6 @@ private:
                 return stiff + "; a group of " + std::to_string(FlatSystem(system_).size()) +
                        " numbers costs less in short steps than in an implicit one";
             case Method::DormandPrince54:
-                if (is_mild()) return stiff + ", but not by so much that an implicit step would cost less";
                 return stiff + "; " + std::to_string(FlatSystem(system_).size()) + " numbers in a group are too many for implicit steps (" +
                        std::to_string(kRadauSize) + "; after a jump " + std::to_string(kManySize) + "), so internal steps are short";
             case Method::RotationSplitting:
@@ -259,7 +247,7 @@ private:
         rows_.methods[row_] |= bit_of(method);
         rows_.reason[row_] = std::string(kNames[static_cast<std::size_t>(method)]) + ": " + why(method);
         if (method == Method::RungeKutta4 || method == Method::Exact) return;
-        const Severity severity = method == Method::DormandPrince54 && !is_mild() ? Severity::Warning : Severity::Info;
+        const Severity severity = method == Method::DormandPrince54 ? Severity::Warning : Severity::Info;
         start_.emit(row_, "solver.chosen", severity, rows_.reason[row_], {spin_, stiffness_, h_});
     }
 

@@ -2,7 +2,6 @@
 ///
 ///   uniform forces, no joints            Exact                (machine precision at any step)
 ///   stiff, linear, few numbers that move Exponential          (exact at any step)
-///   a little stiff, 24 to 60 numbers     DormandPrince54      (rtol 1e-9; |h lambda| up to 2)
 ///   a little stiff, many numbers         RungeKutta4 in parts (as many as make each part soft; |h lambda| up to 6.4, or 25.6 if large)
 ///   stiff otherwise                      Radau5               (rtol 1e-9)
 ///   stiff and large (200 numbers)        DormandPrince54      (explicit: many short internal steps)
