@@ -23,6 +23,8 @@ constexpr double kJointsApart = 0x1p-11;
 /// rad: where correcting overlap turns a body by more, joints may be apart afterwards.
 constexpr double kMuch = 0x1p-6;
 constexpr int kMostCorrections = 10;
+/// Overlap that has not gone by then, because it comes back as often as joints are closed, is left to the next steps.
+constexpr int kCorrectionsOfOverlap = 6;
 
 /// Sets the displacements that would close the joints and stops; returns the largest of them.
 double set_displacements_of_lines(Problem& problem, const Island& island, double length)
@@ -116,12 +118,14 @@ void leave_overlap(Problem& problem, bool of_movers_only)
 
 /// Finds displacements that reach no farther than a chain of bodies would pass on. Points that joints keep in overlap are given up, and if
 /// others are always missed then, all of them, so that joints alone are closed. Where bodies would have to go far, so are those of movers
-/// with one another; what is beyond reach even then is left to the next steps.
-void find_within_reach(Problem& problem, double worst, double tolerance, Method& method, Verdict& out)
+/// with one another, and what joints alone ask for is kept to small turns; what is beyond reach even then is left to the next steps.
+/// Returns keep_turns_small().
+double find_within_reach(Problem& problem, double worst, double tolerance, bool small_turns, Method& method, Verdict& out)
 {
     constexpr int kTries = 3;
+    const auto keep_small = [&] { return small_turns ? keep_turns_small(problem, tolerance, method, out) : 1.0; };
     find_from_rest(problem, tolerance, method, out);
-    if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint) || problem.points.empty()) return;
+    if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint) || problem.points.empty()) return keep_small();
     for (int n = 1; n <= kTries && leave_kept_overlap(problem, worst); ++n)
     {
         if (n == kTries) leave_overlap(problem, false);
@@ -129,10 +133,12 @@ void find_within_reach(Problem& problem, double worst, double tolerance, Method&
     }
     const double reach = worst * static_cast<double>(problem.movers.size() + 1);
     const auto beyond = [&] { return std::max(largest_shift(problem) / reach, largest_turn(problem) / kMostTurn); };
-    if (!(beyond() > 1)) return;
+    if (!(beyond() > 1)) return 1;
     leave_overlap(problem, true);
     find_from_rest(problem, tolerance, method, out);
+    const double weight = keep_small();
     if (const double times = beyond(); times > 1) scale(problem, 1 / times);
+    return weight;
 }
 
 Verdict displace_by(Problem& problem, double worst, double tolerance, Bodies& bodies, Shafts& shafts, Method& method, bool small_turns)
@@ -140,8 +146,7 @@ Verdict displace_by(Problem& problem, double worst, double tolerance, Bodies& bo
     problem.turn_with(bodies);
     for (Point& p : problem.points) p.friction = 0;
     Verdict out;
-    find_within_reach(problem, worst, tolerance, method, out);
-    const double weight = small_turns ? keep_turns_small(problem, tolerance, method, out) : 1.0;
+    const double weight = find_within_reach(problem, worst, tolerance, small_turns, method, out);
     displace(problem, bodies, shafts);
     if (weight != 1) problem.weigh_turns(1 / weight);
     return out;
@@ -179,10 +184,15 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
         const double still = set_displacements_of_lines(problem, island, length);
         if (!(still > kJointsApart * length)) break;
         worst = still;
-        island.motion->refresh_depths();
-        for (std::size_t i = 0; i < problem.points.size(); ++i)
-            if (Point& p = problem.points[i]; p.least > kFar)
-                p.least = displacement_of(island.contacts[i], choices), worst = std::max(worst, p.least);
+        if (n < kCorrectionsOfOverlap)
+        {
+            island.motion->refresh_depths();
+            for (std::size_t i = 0; i < problem.points.size(); ++i)
+                if (Point& p = problem.points[i]; p.least > kFar)
+                    p.least = displacement_of(island.contacts[i], choices), worst = std::max(worst, p.least);
+        }
+        else
+            leave_overlap(problem, false);
         problem.turn_lines();
         out.join(displace_by(problem, worst, kPositionTolerance * length, bodies, shafts, method, true));
     }

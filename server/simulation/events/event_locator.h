@@ -121,7 +121,7 @@ private:
     {
         bool chosen = false;
         bool joined = false;  ///< joints hold it to a body that is hit, or that itself
-        Vec3 relief;  ///< m/s^2: if the event stops the body, the change of its acceleration
+        Vec3 relief;          ///< m/s^2: if the event stops the body, the change of its acceleration
     };
     /// A pair of bodies of one detector, by index.
     struct PairKey
