@@ -135,6 +135,14 @@ bool is_warm(const Problem& problem)
            std::any_of(problem.lines.begin(), problem.lines.end(), [](const Line& line) { return line.impulse != 0; });
 }
 
+/// Whether contacts hold a mechanism in many ways (start_anew).
+bool may_share_loads(const Problem& problem)
+{
+    constexpr std::size_t kFewestPoints = 4, kMostPoints = 64;
+    const std::size_t points = problem.lines.empty() || is_large(problem) ? 0 : problem.points.size();
+    return points >= kFewestPoints && points <= kMostPoints;
+}
+
 /// Whether friction is at its bound at a point that hardly slips: a load that contacts share in another way than they have to.
 bool is_strained(const Problem& problem)
 {
@@ -214,7 +222,19 @@ void NewtonSolver::remember(const Problem& problem)
     best_points_.clear(), best_lines_.clear();
     for (const Point& p : problem.points) best_points_.push_back(p.impulse);
     for (const Line& line : problem.lines) best_lines_.push_back(line.impulse);
-    guess_points_.reserve(best_points_.size()), guess_lines_.reserve(best_lines_.size());
+}
+
+/// Remembers the present impulses for recall_guess(), whatever newton() remembers in between.
+void NewtonSolver::keep_guess(const Problem& problem)
+{
+    remember(problem);
+    guess_points_ = best_points_, guess_lines_ = best_lines_;
+}
+
+void NewtonSolver::recall_guess(Problem& problem)
+{
+    best_points_ = guess_points_, best_lines_ = guess_lines_;
+    recall(problem);
 }
 
 void NewtonSolver::recall(Problem& problem) const
@@ -299,18 +319,13 @@ void NewtonSolver::polish(Problem& problem, double best, double kappa, const Sol
 /// evenly. Leaves everything as it was unless it comes close.
 bool NewtonSolver::start_anew(Problem& problem, const Solving& how, Solved& out)
 {
-    constexpr std::size_t kFewestPoints = 4, kMostPoints = 64;
-    constexpr int kRounds = 4, kSteps = 60;
-    constexpr double kFirst = 100, kGrowth = 8;
-    if (problem.lines.empty() || problem.points.size() < kFewestPoints || problem.points.size() > kMostPoints || is_large(problem))
-        return false;
-    remember(problem);
-    guess_points_ = best_points_, guess_lines_ = best_lines_;
+    constexpr int kRounds = 4, kSteps = 60, kGrowth = 8;
+    keep_guess(problem);
     for (Point& p : problem.points) p.impulse = {};
     problem.apply_impulses();
     Solving own = how;
     own.most_steps = out.steps + kSteps;
-    double kappa = kFirst;
+    double kappa = 100;
     for (int i = 0; i < kRounds && out.steps < own.most_steps; ++i, kappa *= kGrowth)
     {
         if (!lagrangian_.round(problem, matrix_, kappa, false, how.tolerance, out.steps)) break;
@@ -320,8 +335,7 @@ bool NewtonSolver::start_anew(Problem& problem, const Solving& how, Solved& out)
         joints_.hold_without_gain(problem, how.tolerance);
         if (violation(problem) <= how.close) return true;
     }
-    best_points_ = guess_points_, best_lines_ = guess_lines_;
-    recall(problem);
+    recall_guess(problem);
     return false;
 }
 
@@ -331,13 +345,12 @@ void NewtonSolver::approach(Problem& problem, const Solving& how, Solved& out)
     constexpr double kFirst = 100, kGrowth = 4, kMost = 6400;
     constexpr int kRounds = 40, kSweeps = 16;
     const double guess = total_violation(problem);
-    remember(problem);
-    guess_points_ = best_points_, guess_lines_ = best_lines_;
+    keep_guess(problem);
     // The first round starts as if all contacts stuck: for most piles at rest this is already the solution.
     (void)lagrangian_.round(problem, matrix_, 1e5, true, how.tolerance, out.steps);
     out.ended = newton(problem, how, out) || is_enough(problem, how);
     if (out.ended) return;
-    if (!(total_violation(problem) < guess)) best_points_ = guess_points_, best_lines_ = guess_lines_, recall(problem);
+    if (!(total_violation(problem) < guess)) recall_guess(problem);
     out.sweeps += sweep(problem, {kSweeps, how.tolerance, 1}).sweeps;
     problem.apply_impulses();
     double kappa = kFirst;
@@ -411,16 +424,16 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
         exact.most_steps = static_cast<int>(std::min(affordable, static_cast<std::size_t>(how.most_steps)));
         if (!out.ended && is_warm(problem))
         {
+            const bool shares = may_share_loads(problem), strained = shares && is_strained(problem);
             const auto anew = [&]
             {
                 const int before = out.steps;
                 out.ended = start_anew(problem, exact, out);
                 exact.most_steps += out.steps - before;
             };
-            const bool strained = is_strained(problem);
             if (strained) anew();
             if (!out.ended) out.ended = newton(problem, exact, out);
-            if (!out.ended && !strained) anew();
+            if (!out.ended && shares && !strained) anew();
         }
         if (!out.ended) approach(problem, exact, out);
         set_tolerance();

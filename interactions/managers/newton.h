@@ -21,9 +21,9 @@
 /// Newton's method converges only near a solution. solve() therefore takes the cheapest method that works: (1) nothing, if the
 /// last impulses still satisfy the law; (2) some sweeps, for a large island that has only drifted by rounding; (3) Newton's
 /// method from the last impulses, and for mechanisms also from none (README, "For mechanisms"); (4) rounds of the augmented Lagrangian
-/// (lagrangian.h), each followed by Newton's method; (5) Gauss-Seidel sweeps alternating with Newton's method, reported as `fell_back`. Sweeps would let a chain of light links under a heavy
-/// load stretch, so the joints are then solved exactly, with the impulses of all others as they are: contacts may be left violated, joints
-/// that do not contradict one another are not.
+/// (lagrangian.h), each followed by Newton's method; (5) Gauss-Seidel sweeps alternating with Newton's method, reported as
+/// `fell_back`. Sweeps would let a chain of light links under a heavy load stretch, so the joints are then solved exactly, with the
+/// impulses of all others as they are: contacts may be left violated, joints that do not contradict one another are not.
 /// Sources: Alart, Curnier, CMAME 92 (1991), eq. 3.6; Rockafellar (1976) for the proximal term; Acary, Bourrich, Siconos (2018),
 /// section 5, for the Newton method applied to it.
 #pragma once
@@ -84,6 +84,8 @@ private:
     bool changes_pieces(const Problem& problem);
     bool newton(Problem& problem, const Solving& how, Solved& out);
     void polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out);
+    void keep_guess(const Problem& problem);
+    void recall_guess(Problem& problem);
     bool start_anew(Problem& problem, const Solving& how, Solved& out);
     void approach(Problem& problem, const Solving& how, Solved& out);
     bool settles_by_sweeps(Problem& problem, double guess, const Solving& how, Solved& out);

@@ -1,7 +1,6 @@
 #include "cone_solver.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -13,9 +12,6 @@ namespace
 /// Number of directions in a scan.
 constexpr int kSamples = 128;
 constexpr double kStep = 6.283185307179586 / kSamples;
-/// After so many sweeps, and whenever their number has doubled, the contacts that touch are solved at once where joints hold bodies, as
-/// their contacts then depend on one another and share impulses in many ways.
-constexpr int kFirstSweeps = 4;
 
 /// A contact that slides along the direction (c, s): j = j_n (-mu c, -mu s, 1), with j_n such that u_n = b.
 class Sliding
@@ -148,8 +144,8 @@ Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, con
     return {stick.x * share, stick.y * share, normal};
 }
 
-ConeResult ConeSolver::solve(std::span<ConeContact> contacts, ContactVelocities& velocities, double tolerance, int max_sweeps,
-                             const Interruption* interruption)
+ConeResult solve_cones(std::span<ConeContact> contacts, ContactVelocities& velocities, double tolerance, int max_sweeps,
+                       const Interruption* interruption)
 {
     ConeResult out;
     while (out.sweeps < max_sweeps && !out.converged && !(interruption && interruption->due()))
@@ -169,16 +165,21 @@ ConeResult ConeSolver::solve(std::span<ConeContact> contacts, ContactVelocities&
             largest = std::max({largest, std::fabs(kick.x), std::fabs(kick.y), std::fabs(kick.z)});
         }
         out.converged = largest <= tolerance;
-        if (!out.converged && velocities.are_joined() && out.sweeps >= kFirstSweeps &&
-            std::has_single_bit(static_cast<unsigned>(out.sweeps)))
-            subspace_.take(contacts, velocities);
     }
     for (const ConeContact& c : contacts) out.residual = std::max(out.residual, c.least - velocities.at(c.contact).z);
     return out;
 }
 
+namespace
+{
+
+struct Outcome
+{
+    Vec3 impulse, velocity;
+};
+
 /// What share of the way from the first outcome to the second gains no energy, sum of j . (u + u') / 2, which is a convex parabola of it.
-double ConeSolver::share_without_gain(std::span<const Outcome> first, std::span<const Outcome> second, std::span<const Vec3> before)
+double share_without_gain(std::span<const Outcome> first, std::span<const Outcome> second, std::span<const Vec3> before)
 {
     double a = 0, b = 0, c = 0;
     for (std::size_t k = 0; k < first.size(); ++k)
@@ -192,25 +193,28 @@ double ConeSolver::share_without_gain(std::span<const Outcome> first, std::span<
     return std::clamp(b > 0 ? -2 * c / (b + root) : (root - b) / (2 * a), 0.0, 1.0);
 }
 
-ConeResult ConeSolver::reduce_friction(std::span<ConeContact> contacts, std::span<const Vec3> before, ContactVelocities& velocities,
-                                       double tolerance, int max_sweeps, const Interruption* interruption)
+}  // namespace
+
+ConeResult reduce_friction(std::span<ConeContact> contacts, std::span<const Vec3> before, ContactVelocities& velocities, double tolerance,
+                           int max_sweeps, const Interruption* interruption)
 {
     const auto outcome = [&](const ConeContact& c) { return Outcome{c.impulse, velocities.at(c.contact)}; };
-    rough_.clear(), smooth_.clear(), friction_.clear();
+    std::vector<Outcome> rough, smooth;
+    std::vector<double> friction;
     for (ConeContact& c : contacts)
     {
-        rough_.push_back(outcome(c)), friction_.push_back(c.friction);
+        rough.push_back(outcome(c)), friction.push_back(c.friction);
         c.friction = 0, c.impulse = {};
     }
     velocities.put_back();
-    ConeResult out = solve(contacts, velocities, tolerance, max_sweeps, interruption);
-    for (const ConeContact& c : contacts) smooth_.push_back(outcome(c));
-    const double share = share_without_gain(smooth_, rough_, before);
+    ConeResult out = solve_cones(contacts, velocities, tolerance, max_sweeps, interruption);
+    for (const ConeContact& c : contacts) smooth.push_back(outcome(c));
+    const double share = share_without_gain(smooth, rough, before);
     for (std::size_t k = 0; k < contacts.size(); ++k)
     {
         ConeContact& c = contacts[k];
-        const Vec3 more = (rough_[k].impulse - c.impulse) * share;
-        c.friction = friction_[k];
+        const Vec3 more = (rough[k].impulse - c.impulse) * share;
+        c.friction = friction[k];
         if (!(share > 0) || more == Vec3{}) continue;
         c.impulse += more;
         velocities.apply(c.contact, more, velocities.at(c.contact).z + (velocities.K(c.contact) * more).z);

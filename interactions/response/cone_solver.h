@@ -10,11 +10,19 @@
 #include <span>
 #include <vector>
 
+#include "contact_velocities.h"
 #include "plab/interruption.h"
-#include "subspace_step.h"
 
 namespace plab::response
 {
+
+struct ConeContact
+{
+    std::uint32_t contact = 0;
+    double friction = 0;
+    double least = 0;  ///< b: smallest u_n that is allowed afterwards, m/s
+    Vec3 impulse;      ///< j, N s in contact coordinates; on entry the initial guess, which has been applied already
+};
 
 struct ConeResult
 {
@@ -27,39 +35,17 @@ struct ConeResult
 /// near that of `last` is searched for if the fixed-point iteration does not converge.
 Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, const Vec3& last = {});
 
-/// Keeps its memory from call to call.
-class ConeSolver
-{
-public:
-    /// Sets memory apart for so many contacts.
-    void reserve(std::size_t contacts)
-    {
-        subspace_.reserve(contacts);
-        rough_.reserve(contacts), smooth_.reserve(contacts), friction_.reserve(contacts);
-    }
-    /// Changes the velocities. Ends when no impulse changes the velocity of its contact by more than `tolerance` (m/s),
-    /// or when the step is interrupted.
-    ConeResult solve(std::span<ConeContact> contacts, ContactVelocities& velocities, double tolerance, int max_sweeps,
-                     const Interruption* interruption = nullptr);
+/// Changes the velocities. Ends when no impulse changes the velocity of its contact by more than `tolerance` (m/s),
+/// or when the step is interrupted.
+ConeResult solve_cones(std::span<ConeContact> contacts, ContactVelocities& velocities, double tolerance, int max_sweeps,
+                       const Interruption* interruption = nullptr);
 
-    /// For impulses that gain energy although nothing bounces. Where bodies wedge, friction may press harder in each sweep, without end.
-    /// Finds the impulses without friction, which gain none, as a sweep is a projection then, and goes from these as far towards the given
-    /// ones as no energy is gained: contacts and Coulomb's law hold in between, too. `velocities` are those with the given impulses;
-    /// `before`: u without them.
-    ConeResult reduce_friction(std::span<ConeContact> contacts, std::span<const Vec3> before, ContactVelocities& velocities,
-                               double tolerance, int max_sweeps, const Interruption* interruption = nullptr);
-
-private:
-    struct Outcome
-    {
-        Vec3 impulse, velocity;
-    };
-    static double share_without_gain(std::span<const Outcome> first, std::span<const Outcome> second, std::span<const Vec3> before);
-
-    SubspaceStep subspace_;
-    std::vector<Outcome> rough_, smooth_;
-    std::vector<double> friction_;
-};
+/// For impulses that gain energy although nothing bounces. Where bodies wedge, friction may press harder in each sweep, without end. Finds
+/// the impulses without friction, which gain none, as a sweep is a projection then, and goes from these as far towards the given ones as no
+/// energy is gained: contacts and Coulomb's law hold in between, too. `velocities` are those with the given impulses; `before`: u without
+/// them.
+ConeResult reduce_friction(std::span<ConeContact> contacts, std::span<const Vec3> before, ContactVelocities& velocities, double tolerance,
+                           int max_sweeps, const Interruption* interruption = nullptr);
 
 /// J: the energy that the impulses have added beyond rounding, the sum of j . (u + u') / 2. `before`: u of each contact without them.
 double energy_gained(std::span<const ConeContact> contacts, std::span<const Vec3> before, const ContactVelocities& velocities);

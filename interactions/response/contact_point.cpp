@@ -52,19 +52,4 @@ void ContactPoint::apply(Bodies& bodies, const Vec3& j, double normal_velocity) 
     set_normal(b_, of_a * v_b + of_b * (v_a + normal_velocity));
 }
 
-Vec3 ContactPoint::change(const ContactPoint& at, const Vec3& j, const Bodies& bodies) const
-{
-    const Vec3 j_W = at.to_world(j);
-    Vec3 change;
-    const auto add = [&](std::uint32_t body, double sign)
-    {
-        if (!bodies.dynamic(body) || (body != at.a_ && body != at.b_)) return;
-        const Vec3 turning = bodies.inverse_inertia_W(body) * cross(at.point_ - bodies.position[body], j_W);
-        const Vec3 u = j_W * bodies.inverse_mass[body] + cross(turning, point_ - bodies.position[body]);
-        change += u * (body == at.b_ ? sign : -sign);
-    };
-    add(a_, -1), add(b_, 1);
-    return to_contact(change);
-}
-
 }  // namespace plab::response

@@ -22,9 +22,6 @@ public:
     /// which is free of cancellation whatever the masses, and leaves a body at rest exactly at rest.
     void apply(Bodies& bodies, const Vec3& j, double normal_velocity) const;
 
-    /// m/s: what an impulse j (N s, of the contact coordinates of `at`) at another contact changes of the velocity here.
-    Vec3 change(const ContactPoint& at, const Vec3& j, const Bodies& bodies) const;
-
     const Mat3& K() const { return K_; }  ///< 1/kg, in contact coordinates
     bool moves() const { return inverse_mass_ > 0; }
     Vec3 to_world(const Vec3& v) const { return t1_ * v.x + t2_ * v.y + n_ * v.z; }

@@ -65,12 +65,6 @@ void ContactVelocities::find_own()
     }
 }
 
-Vec3 ContactVelocities::change(std::uint32_t contact, std::uint32_t at, const Vec3& j) const
-{
-    if (!are_joined()) return points_[contact].change(points_[at], j, *bodies_);
-    return points_[contact].to_contact(mobility_[contact * points_.size() + at] * points_[at].to_world(j));
-}
-
 void ContactVelocities::apply(std::uint32_t contact, const Vec3& j, double normal_velocity)
 {
     if (!are_joined()) return points_[contact].apply(*bodies_, j, normal_velocity);

@@ -27,8 +27,6 @@ public:
     Vec3 at(std::uint32_t contact) const { return are_joined() ? velocities_[contact] : points_[contact].velocity(*bodies_); }
     /// 1/kg, in contact coordinates: du = K dj at the contact itself.
     const Mat3& K(std::uint32_t contact) const { return are_joined() ? own_[contact] : points_[contact].K(); }
-    /// m/s, in contact coordinates: what j (N s, those of contact `at`) changes of the velocity at a contact.
-    Vec3 change(std::uint32_t contact, std::uint32_t at, const Vec3& j) const;
     /// Applies j (N s, contact coordinates) at a contact. Of free bodies, `normal_velocity` is the u_n that results
     /// (ContactPoint::apply).
     void apply(std::uint32_t contact, const Vec3& j, double normal_velocity);

@@ -170,10 +170,8 @@ void ImpactSequence::hit_at_once()
         gains = try_at_once(share);
     }
     if (gains)
-        count(
-            work_.solver
-                .reduce_friction(work_.cones, work_.before, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption)
-                .sweeps);
+        count(reduce_friction(work_.cones, work_.before, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption)
+                  .sweeps);
     for (const ConeContact& c : work_.cones) contacts_[c.contact].impulse += velocities_.to_world(c.contact, c.impulse);
 }
 
@@ -194,7 +192,7 @@ bool ImpactSequence::try_at_once(double share)
         work_.before.push_back(u);
         work_.cones.push_back({i, contacts_[i].friction, u.z < 0 ? -share * work_.restitution[k] * u.z : 0.0, {}});
     }
-    count(work_.solver.solve(work_.cones, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps);
+    count(solve_cones(work_.cones, velocities_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps);
     return energy_gained(work_.cones, work_.before, velocities_) > 0;
 }
 

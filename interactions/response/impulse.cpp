@@ -24,7 +24,7 @@ void take_back(Workspace& work)
 ConeResult solve_without_gain(const ImpactSettings& settings, Workspace& work)
 {
     const auto solve = [&]
-    { return work.solver.solve(work.cones, work.velocities, settings.tolerance, settings.max_iterations, settings.interruption); };
+    { return solve_cones(work.cones, work.velocities, settings.tolerance, settings.max_iterations, settings.interruption); };
     const ConeResult warm = solve();
     if (warm.converged || energy_gained(work.cones, work.before, work.velocities) == 0) return warm;
     take_back(work);

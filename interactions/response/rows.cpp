@@ -34,7 +34,7 @@ bool try_impact(Workspace& work, std::span<const Contact> contacts, const Bounce
         const double least = closing > 0 && !rests(c, rebound, bounce) ? rebound : 0.0;
         work.cones.push_back({work.order[k], c.friction, least, {}});
     }
-    result = work.solver.solve(work.cones, work.velocities, tolerance, most_sweeps(work));
+    result = solve_cones(work.cones, work.velocities, tolerance, most_sweeps(work));
     visits += static_cast<std::int64_t>(work.cones.size()) * result.sweeps;
     return energy_gained(work.cones, work.before, work.velocities) > 0;
 }
@@ -90,7 +90,7 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
     if (gains)
     {
         impact.iterations += result.sweeps;
-        result = work.solver.reduce_friction(work.cones, work.before, work.velocities, tolerance, most_sweeps(work));
+        result = reduce_friction(work.cones, work.before, work.velocities, tolerance, most_sweeps(work));
         impact.visits += static_cast<std::int64_t>(work.cones.size()) * result.sweeps;
     }
     for (std::size_t k = 0; k < work.order.size(); ++k)

@@ -29,7 +29,6 @@ void Workspace::gather(const Impact& impact, Bodies& bodies)
     order.clear();
     for (std::uint32_t i = 0; i < impact.contacts.size(); ++i)
         if (velocities.moves(i)) order.push_back(i);
-    if (velocities.are_joined()) solver.reserve(order.size());
 }
 
 void Workspace::sort_by_id(std::span<const Contact> contacts)

@@ -40,7 +40,6 @@ struct Workspace
     std::vector<std::uint32_t> order;     ///< contacts by pair of bodies, then id
     std::vector<PairManifold> manifolds;  ///< by id
     ContactVelocities velocities;
-    ConeSolver solver;
     std::vector<ConeContact> cones;
     std::vector<Vec3> before;             ///< m/s, contact velocities before an impact
     std::vector<std::uint32_t> together;  ///< manifolds that are hit simultaneously

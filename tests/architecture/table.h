@@ -134,7 +134,6 @@ inline const std::vector<Layer>& layers()
         {"interactions/constraints/angular_velocity", {"server/sdk"}, {}},
         {"interactions/constraints/grab", {"server/sdk"}, {}},
         {"interactions/managers", {"server/sdk", "server/linear"}, {}},
-        {"interactions/response", {"server/sdk"}, {"Eigen/"}},
         {"interactions/scripts/lua", {"server/sdk"}, {"lua.hpp"}},
         {"interactions/rules", {"server/sdk", "interactions/scripts/lua"}, {}},
         {"interactions/*", {"server/sdk"}, {}},

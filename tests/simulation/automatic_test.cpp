@@ -93,6 +93,28 @@ TEST_CASE("what joints hold together counts as an island as soon as a part of it
     }
 }
 
+TEST_CASE("impacts are located again only when islands have been small for a while")
+{
+    // Two boxes that stand on one another are too many here; then the upper one is thrown up, for 0.6 s.
+    for (const double dwell : {0.0, 0.25})
+    {
+        CAPTURE(dwell);
+        Scene s(box("a", {0.1, 0.1, 0.1}, at({0, 0, 0.1})) + box("b", {0.1, 0.1, 0.1}, at({0, 0, 0.3})) + std::string(kGround) +
+                gravity("*") +
+                "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" resolution.max_bodies=\"1\" resolution.dwell=\"" +
+                text(dwell) + "\"/>");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(0.1);
+        CHECK(resolved(s) == "None");
+        REQUIRE(s.ask(simulation::SetOperation{"b", "linear_velocity", Value(Vec3{0, 0, 3})}).done);
+        s.run(0.1 + 0.2);
+        CHECK(s.vec("b", "position").z > 0.5);
+        CHECK(resolved(s) == (dwell > 0 ? "None" : "LocalRoot"));
+        s.run(0.1 + 0.3);
+        CHECK(resolved(s) == "LocalRoot");
+    }
+}
+
 TEST_CASE("thin dominoes topple one after the other, and hardly overlap")
 {
     constexpr int kCount = 40;
