@@ -143,20 +143,6 @@ bool may_share_loads(const Problem& problem)
     return points >= kFewestPoints && points <= kMostPoints;
 }
 
-/// Whether friction is at its bound at a point that hardly slips: a load that contacts share in another way than they have to.
-bool is_strained(const Problem& problem)
-{
-    constexpr double kBound = 0.99, kSlow = 0x1p-4;
-    return std::ranges::any_of(problem.points,
-                               [&](const Point& p)
-                               {
-                                   const Vec3& j = p.impulse;
-                                   if (!p.frictional() || !(j.z > 0) || std::hypot(j.x, j.y) < kBound * p.friction * j.z) return false;
-                                   const Vec3 u = problem.relative_velocity(p);
-                                   return std::hypot(u.x, u.y) < kSlow * p.K(2, 2) * j.z;
-                               });
-}
-
 }  // namespace
 
 bool NewtonSolver::find_step(const Problem& problem, double kappa)
@@ -313,6 +299,21 @@ void NewtonSolver::polish(Problem& problem, double best, double kappa, const Sol
     }
 }
 
+/// Contacts remember their impulses from step to step, joints do not. Joints that hold with what the contacts did last are close to the
+/// solution wherever a mechanism goes on as it did. False if nothing was done.
+bool NewtonSolver::hold_joints(Problem& problem, double tolerance)
+{
+    const auto presses = [](const Point& p) { return p.impulse.z > 0; };
+    if (std::ranges::none_of(problem.points, presses) || std::ranges::none_of(problem.lines, is_joint)) return false;
+    // Forces as stiff as those of servos would be found to fewer digits.
+    if (has_forces(problem)) return false;
+    joints_.load(problem);
+    if (!joints_.is_cheap(problem)) return false;
+    joints_.hold(problem, tolerance);
+    problem.apply_impulses();
+    return true;
+}
+
 /// Forgets how contacts shared their load. Where more of them stick than hold their bodies, a mechanism that moves asks of them what rigid
 /// bodies cannot do by a trifle (the wheels of a car are not parallel to the last digit): then friction is at its bounds here and there,
 /// and in each step at other places, where Newton's method goes round in circles. From no load, soft contacts that become stiffer share it
@@ -409,8 +410,10 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
     const double terms = terms_of(problem);
     const auto set_tolerance = [&] { exact.tolerance = std::max(how.tolerance, problem.rounding(terms)); };
     set_tolerance();
+    const bool held = hold_joints(problem, how.tolerance);
     const double guess = total_violation(problem);
-    if (settled(problem, guess, exact.tolerance))
+    // Joints that are held within the tolerance are not yet as exact as a Newton step makes them.
+    if (!held && settled(problem, guess, exact.tolerance))
     {
         // The result is as good as rounding of the largest impulse allows, but light bodies may need more.
         if (problem.rounding() > how.tolerance && guess > how.tolerance)
@@ -424,16 +427,10 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
         exact.most_steps = static_cast<int>(std::min(affordable, static_cast<std::size_t>(how.most_steps)));
         if (!out.ended && is_warm(problem))
         {
-            const bool shares = may_share_loads(problem), strained = shares && is_strained(problem);
-            const auto anew = [&]
-            {
-                const int before = out.steps;
-                out.ended = start_anew(problem, exact, out);
-                exact.most_steps += out.steps - before;
-            };
-            if (strained) anew();
-            if (!out.ended) out.ended = newton(problem, exact, out);
-            if (!out.ended && shares && !strained) anew();
+            out.ended = newton(problem, exact, out);
+            const int before = out.steps;
+            if (!out.ended && may_share_loads(problem)) out.ended = start_anew(problem, exact, out);
+            exact.most_steps += out.steps - before;
         }
         if (!out.ended) approach(problem, exact, out);
         set_tolerance();

@@ -86,6 +86,7 @@ private:
     void polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out);
     void keep_guess(const Problem& problem);
     void recall_guess(Problem& problem);
+    bool hold_joints(Problem& problem, double tolerance);
     bool start_anew(Problem& problem, const Solving& how, Solved& out);
     void approach(Problem& problem, const Solving& how, Solved& out);
     bool settles_by_sweeps(Problem& problem, double guess, const Solving& how, Solved& out);

@@ -143,7 +143,7 @@ TEST_CASE("a car that starts with some slip sideways drives on, and the loads of
         }
         MESSAGE("iterations: " << iterations << ", steps with a residual above 1e-6 m/s: " << missed << " of 720");
         CHECK(s.vec("car", "linear_velocity").x == doctest::Approx(10 * kWheel).epsilon(1e-2));
-        CHECK(iterations < 6500);
+        CHECK(iterations < 3000);
         CHECK(missed <= 3);
     }
 }

@@ -360,6 +360,7 @@ void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::
     }
     drop_far(out, h);
     if (!in_order) sort_contacts(out, step_.world);
+    drop_passed_pairs(out);
     std::size_t near = 0;
     for (FoundContact& f : out)
     {

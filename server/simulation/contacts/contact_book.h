@@ -104,14 +104,25 @@ public:
     PairState* find_pair(const FoundContact& found, std::size_t& near);
     bool is_of_pair(const FoundContact& found, const PairState& pair) const;
 
+    // Seams ----------------------------------------------------------------------------------------------------------------
+    /// Whether one of two bodies lies on a surface along which it passes the other one, whose surface there is no higher within
+    /// overlap_tolerance(). Returns the normal of the surface, a to b. A contact with `normal` (a to b), across the edges of the two, is
+    /// none then; if it is that of the surface, the result is empty. `normal` zero: any, but only for a body that lies on a
+    /// face. A body lies on another one by a persistent contact, or by one of `beside`.
+    std::optional<Vec3> seam_between(Ref a, Ref b, const Vec3& normal, std::span<const FoundContact> beside = {});
+    /// Whether all of the contacts of a pair are across such a seam.
+    bool passes_over(std::span<const FoundContact> contacts);
+    /// Drops the contacts of one impact that are across such a seam.
+    void drop_passed(std::vector<FoundContact>& impact);
+
     // Responses ------------------------------------------------------------------------------------------------------------
     /// Sets friction and restitution: from the pair of materials if there is one, otherwise from the response.
     void fill_material(FoundContact& found) const;
     SurfaceLaw response_law(std::uint32_t detector) const;
     /// m/s, separation speed.
     double normal_velocity(const Contact& contact) const;
-    /// Applies impulses by each detector's response. `dt`: s, time in which gaps may close (ImpactMode::Rest). With the `mobility` of contacts
-    /// of one detector whose bodies joints hold (Impact::mobility), impulses are found only.
+    /// Applies impulses by each detector's response. `dt`: s, time in which gaps may close (ImpactMode::Rest). With the `mobility` of
+    /// contacts of one detector whose bodies joints hold (Impact::mobility), impulses are found only.
     void respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book, std::span<const Mat3> mobility = {});
 
     // Events ---------------------------------------------------------------------------------------------------------------
@@ -174,6 +185,9 @@ private:
     template <class Pair>
     void measure_islands(std::span<const Pair> pairs, ContactLoad& load);
     void ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out);
+    bool passes_along(Ref body, Ref other, const Vec3& towards, Ref below, const Vec3& down) const;
+    bool has_edges(Ref body) const;
+    void drop_passed_pairs(std::vector<FoundContact>& contacts);
     bool detect_with_gaps(std::uint32_t index);
     void list_runs(std::size_t from);
     bool ask(const Detector& detector, ContactCollector& sink, std::span<const PersistentPair> persistent, bool only_persistent);
@@ -223,7 +237,8 @@ private:
     std::vector<ImpactSearch> searches_;    ///< by detector, in this step
     std::vector<ImpactSearch> imposed_;     ///< by detector; empty: they choose
     std::vector<PersistentPair> persistent_;
-    std::vector<std::uint32_t> places_;
+    std::vector<std::uint32_t> places_, seam_places_;
+    std::vector<std::uint8_t> passed_;
     std::vector<Contact> impact_contacts_;
 };
 

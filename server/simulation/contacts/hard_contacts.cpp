@@ -193,6 +193,22 @@ void HardContacts::update_features(PairState& pair, std::span<FoundContact> foun
     pair.count = static_cast<std::uint32_t>(std::remove_if(all.begin(), all.end(), is_past) - all.begin());
 }
 
+/// Lists the pairs that bodies pass over. Where they move to and fro over a seam, a contact on its other side ends at the edge.
+void HardContacts::list_passed()
+{
+    passed_.clear();
+    const std::span<const PairState> pairs = std::as_const(contacts_).cache().pairs();
+    const std::span<const PairKey> keys = contacts_.cache().keys();
+    std::size_t i = 0;
+    for (const FoundRun& run : contacts_.runs())
+    {
+        while (i < keys.size() && keys[i] < run.key) ++i;
+        if (i == keys.size()) return;
+        if (keys[i] != run.key || !pairs[i].resting || pressed(pairs[i])) continue;
+        if (contacts_.passes_over(std::span(contacts_.found()).subspan(run.first, run.end - run.first))) passed_.push_back(i);
+    }
+}
+
 /// With its contacts of the end of the step: whether a pair is no longer known.
 bool HardContacts::ends(PairState& pair, std::span<FoundContact> own, double time)
 {
@@ -229,10 +245,16 @@ void HardContacts::finish_step()
     positions_.correct_positions();
     auto run = contacts_.runs().begin();
     const auto last = contacts_.runs().end();
+    list_passed();
+    std::size_t place = 0;
+    auto passed = passed_.cbegin();
     const auto ended = [&](PairState& pair, const PairKey& key)
     {
+        const bool passes = passed != passed_.cend() && *passed == place;
+        if (passes) ++passed;
+        ++place;
         while (run != last && run->key < key) ++run;
-        const bool any = run != last && run->key == key;
+        const bool any = run != last && run->key == key && !passes;
         return ends(pair, any ? std::span(found).subspan(run->first, run->end - run->first) : std::span<FoundContact>(), time);
     };
     contacts_.cache().drop_if(ended);

@@ -51,6 +51,7 @@ public:
 
 private:
     bool ends(PairState& pair, std::span<FoundContact> own, double time);
+    void list_passed();
     static bool keeps_features(const PairState& pair, std::span<FoundContact> found);
     void update_features(PairState& pair, std::span<FoundContact> found);
     void join_islands(std::span<const std::uint32_t> groups);
@@ -74,6 +75,7 @@ private:
     IndexSet reached_;                   ///< groups that hold together with those of the present advance
     std::vector<std::uint32_t> places_;  ///< of the pairs between them
     std::vector<std::uint32_t> groups_;
+    std::vector<std::size_t> passed_;                  ///< places of pairs, ascending
     std::vector<std::uint32_t> number_;                ///< by representative group: of its island in the present advance
     std::vector<std::vector<std::uint32_t>> members_;  ///< groups, by island; lists keep their memory
     struct Divided

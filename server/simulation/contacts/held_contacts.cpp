@@ -96,8 +96,40 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
     if (fresh_.empty()) return;
     contacts_.cache().add_sorted(fresh_, step_.world);
     contacts_.resting().forget();
+    drop_passed(found);
     for (std::size_t k = 0; k < fresh_.size(); ++k)
         if (!fresh_[k].ahead) report_begin(fresh_[k], found[first_found_[k]].contact, time);
+}
+
+/// Drops those of the pairs that were added last whose bodies pass one another over a seam.
+void HeldIslands::drop_passed(std::span<const FoundContact> found)
+{
+    const auto passes = [&](std::size_t first)
+    {
+        std::size_t end = first;
+        while (end < found.size() && same_pair(found[end], found[first])) ++end;
+        return contacts_.passes_over(found.subspan(first, end - first));
+    };
+    passed_.clear();
+    for (std::size_t k = 0; k < fresh_.size(); ++k)
+        if (passes(first_found_[k])) passed_.push_back(k);
+    if (passed_.empty()) return;
+    auto next = passed_.begin();
+    const auto is_next = [&](const PairState& p)
+    {
+        if (next == passed_.end()) return false;
+        const PairState& passed = fresh_[*next];
+        if (p.detector != passed.detector || p.a != passed.a || p.b != passed.b) return false;
+        ++next;
+        return true;
+    };
+    contacts_.cache().drop_if(is_next);
+    for (auto k = passed_.rbegin(); k != passed_.rend(); ++k)
+    {
+        fresh_.erase(fresh_.begin() + static_cast<std::ptrdiff_t>(*k));
+        first_found_.erase(first_found_.begin() + static_cast<std::ptrdiff_t>(*k));
+    }
+    contacts_.resting().forget();
 }
 
 void HeldIslands::report_begin(const PairState& pair, const Contact& c, double time) const

@@ -247,6 +247,7 @@ private:
     static KnownContact* kept(const HeldIsland& island, const Run& run, std::uint32_t contact);
     ContactBook::Pressing pressing_of(const HeldIsland& island, const Run& run) const;
     void note_releases(HeldIsland& island, double from, double h);
+    void drop_passed(std::span<const FoundContact> found);
     void report_begin(const PairState& pair, const Contact& contact, double time) const;
     void report_impacts(const HeldIsland& island, double time);
     void find_yielding_rows();
@@ -305,6 +306,7 @@ private:
     std::vector<double> wedging_;                ///< by host row, of the members of one island; else 0 (paradox.h)
     std::vector<PairState> fresh_;
     std::vector<std::size_t> first_found_;  ///< parallel to fresh_
+    std::vector<std::size_t> passed_;       ///< places in fresh_
     std::vector<double> shaft_mobility_;
     std::vector<double> given_speed_;  ///< m/s, by body: speed that forces give it in the step
     std::vector<RestSample> starts_;   ///< by body; empty: nobody wants them

@@ -130,7 +130,7 @@ void EventLocator::complete(Candidate& candidate)
     const Detector& detector = contacts_.detectors()[candidate.detector];
     if (!detector.responds) scope_of_pair(candidate), advance_groups_to(candidate.time);
     const Bodies& bodies = step_.world.host().bodies;
-    const GapQuery q = measure(candidate, candidate.time);
+    const GapQuery q = measure(candidate, candidate.time).query;
     const double closing = std::fabs(dot(bodies.velocity_at(q.b.index, q.point_b) - bodies.velocity_at(q.a.index, q.point_a), q.normal));
     // Corners that land a rounding error later belong to the same impact, hence the margin.
     const double margin =
@@ -199,13 +199,17 @@ void EventLocator::announce_rest(const FoundContact& f, PairState& pair)
 void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>& contacts, double time)
 {
     const Detector& detector = contacts_.detectors()[candidate.detector];
+    const auto is_own = [&](const FoundContact& f)
+    { return f.detector == candidate.detector && f.contact.a == candidate.a && f.contact.b == candidate.b; };
+    // The bodies pass one another over a seam (ContactBook::drop_passed).
+    if (std::ranges::none_of(contacts, is_own)) return;
     bool added = false;
     PairState& pair = contacts_.cache().get_or_add(detector.component, candidate.a, candidate.b, step_.world, step_.frame.tick, added);
     pair.overlapping = !detector.responds || candidate.at_end;
     for (std::size_t i = 0; i < contacts.size(); ++i)
     {
         const FoundContact& f = contacts[i];
-        if (f.detector != candidate.detector || f.contact.a != candidate.a || f.contact.b != candidate.b) continue;
+        if (!is_own(f)) continue;
         if (std::exchange(added, false))
         {
             // The impulses are reported by the impact events that follow.
@@ -322,6 +326,7 @@ void EventLocator::answer()
         if (!c.certified && !c.stuck && !c.at_end) contacts_from_clear_side(c);
         impact_.insert(impact_.end(), c.contacts.begin(), c.contacts.end());
     }
+    contacts_.drop_passed(impact_);
     const std::size_t own = impact_.size();
     seen_.clear();
     any_rests_ = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });

@@ -96,7 +96,9 @@ void EventLocator::consider(const std::vector<FoundContact>& found, std::size_t 
     }
     const PairState* pair = contacts_.cache().find(detector.component, first.contact.a, first.contact.b, step_.world);
     if (!overlaps || !acts(detector, pair, approaching)) return;
-    if (detector.locates && detector.responds && slides(std::span(found).subspan(begin, end - begin))) return;
+    const auto own = std::span(found).subspan(begin, end - begin);
+    if (detector.locates && detector.responds && slides(own)) return;
+    if (detector.responds && contacts_.passes_over(own)) return;
     if (is_live(first.detector, first.contact.a, first.contact.b)) return;
     const std::uint32_t slot = new_slot();
     Candidate& c = candidates_[slot];

@@ -77,6 +77,11 @@ private:
         std::uint32_t slot;
         bool operator<(const Entry& other) const;
     };
+    struct Measured
+    {
+        GapQuery query;
+        bool over_seam = false;  ///< one body passes the other: the gap is that across the surface on which it lies (look_over_seam)
+    };
     /// The result of one distance query: gap and closing speed of a pair at one time.
     struct DistanceSample
     {
@@ -179,7 +184,8 @@ private:
     Clearance clearance_of(const Candidate& candidate, const ShapeGap& gap, double left) const;
     ShapeGap gap_of_shapes(const Candidate& candidate, const ShapeExtent& shape_a, const ShapeExtent& shape_b, const Vec3& hint) const;
     void list_shape_gaps(const Candidate& candidate, const GapQuery& nearest);
-    GapQuery measure(const Candidate& candidate, double time);
+    bool look_over_seam(const Candidate& candidate, GapQuery& query);
+    Measured measure(const Candidate& candidate, double time);
     double clear_for(const Candidate& candidate, const DistanceSample& sample, const Vec3& turn, double slack, double& closing) const;
     bool was_clear(const Candidate& candidate, const DistanceSample& clear, const DistanceSample& last) const;
 

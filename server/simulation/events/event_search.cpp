@@ -26,6 +26,10 @@ constexpr double kUncertified = 0x1p-20;
 /// Number of advancement steps towards a contact before the end of the piece is sampled, to find a bracket.
 constexpr int kFirstSteps = 4;
 
+/// What slides over a seam and sinks in by no more than this in the rest of the step, as a fraction of the overlap that is tolerated, is not
+/// an event: far more than rounding explains, and far too little to be seen.
+constexpr double kSeamSlack = 0x1p-10;
+
 }  // namespace
 
 double EventLocator::begin_of_scope() const
@@ -45,6 +49,7 @@ bool EventLocator::overlaps_at(Candidate& candidate, double time)
     contacts_.detect(contacts_.detectors()[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
     budget_.spend(1 + sweeps_and_queries() - before);
     std::erase_if(seen_, [&](const FoundContact& f) { return f.contact.depth <= candidate.ignored; });
+    if (contacts_.passes_over(seen_)) seen_.clear();
     if (seen_.empty()) return false;
     sort_contacts(seen_, step_.world);
     candidate.contacts = seen_;
@@ -141,7 +146,8 @@ EventLocator::DistanceSample EventLocator::sample_at(const Candidate& candidate,
     ++step_.report.trials;
     DistanceSample sample;
     sample.time = time;
-    sample.query = measure(candidate, time);
+    const Measured measured = measure(candidate, time);
+    sample.query = measured.query;
     const Bodies& bodies = step_.world.host().bodies;
     const GapQuery& q = sample.query;
     const Vec3 va = bodies.velocity_at(q.a.index, q.point_a), vb = bodies.velocity_at(q.b.index, q.point_b);
@@ -152,6 +158,7 @@ EventLocator::DistanceSample EventLocator::sample_at(const Candidate& candidate,
     sample.contact_gap = 4e-16 * size + 2e-16 * length(bodies.position[q.b.index] - bodies.position[q.a.index]) +
                          0x1p-50 * step_.frame.step * std::fabs(sample.rate);
     sample.slack = slack_of(q.a, q.b, sample.speed);
+    if (measured.over_seam) sample.slack = std::max(sample.slack, kSeamSlack * overlap_tolerance(q.a, q.b));
     return sample;
 }
 

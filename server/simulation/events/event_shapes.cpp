@@ -144,9 +144,22 @@ void EventLocator::list_shape_gaps(const Candidate& candidate, const GapQuery& n
     std::swap(shape_gaps_.front(), g);
 }
 
+/// If one of the two lies on a surface along which it passes the other one, and has reached it: the gap across that surface is what
+/// counts. An overlap there within the tolerance is none, and sinking in by as much is no event: rounding alone makes bodies touch that
+/// slide over flush tiles.
+bool EventLocator::look_over_seam(const Candidate& candidate, GapQuery& query)
+{
+    if (!contacts_.detectors()[candidate.detector].responds || query.gap > overlap_tolerance(candidate.a, candidate.b)) return false;
+    const std::optional<Vec3> across = contacts_.seam_between(candidate.a, candidate.b, {});
+    if (!across) return false;
+    query.gap = std::max(0.0, clearance_of(candidate, step_.frame.step).width_along(*across)), query.normal = *across;
+    shape_gaps_.clear();
+    return true;
+}
+
 /// Measures the gap of the pair at its present state, at `time`. If the closest shapes just slide along one another, their gap stays zero
 /// and hides all others; the pair may meet a plane next to them, so the gap to the nearest such plane is returned.
-GapQuery EventLocator::measure(const Candidate& candidate, double time)
+EventLocator::Measured EventLocator::measure(const Candidate& candidate, double time)
 {
     const Detector& detector = contacts_.detectors()[candidate.detector];
     GapQuery query;
@@ -156,12 +169,13 @@ GapQuery EventLocator::measure(const Candidate& candidate, double time)
     (void)question.run(*detector.gap);
     budget_.spend(1 + WorkBudget::kFurtherPair * query.further_pairs);
     list_shape_gaps(candidate, query);
-    if (shape_gaps_.empty() || !slides(candidate, shape_gaps_.front(), time)) return query;
+    if (look_over_seam(candidate, query)) return {query, true};
+    if (shape_gaps_.empty() || !slides(candidate, shape_gaps_.front(), time)) return {query};
     const ShapeGap* next = nullptr;
     for (const ShapeGap& g : shape_gaps_)
         if (g.exact && (!next || g.gap < next->gap) && !slides(candidate, g, time)) next = &g;
     if (next) query.gap = next->gap, query.point_a = next->point_a, query.point_b = next->point_b, query.normal = next->normal;
-    return query;
+    return {query};
 }
 
 /// s: time from the last query during which the pair cannot come to overlap by more than `slack` (m). `closing`: bound on the closing

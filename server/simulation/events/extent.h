@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "simulation/contacts/support.h"
 #include "simulation/events/turning.h"
 
 namespace plab::simulation
@@ -26,11 +27,7 @@ struct BodyExtent : ShapeExtent
 };
 BodyExtent extent_of(const Bodies& bodies, const Shapes& shapes, std::uint32_t b);
 
-/// Support function: max over the points p of body b, in orientation q, of m . (p - C), in m. Not for planes. A surface of triangles counts
-/// as the box around it, so what this separates is apart.
-double support(const Bodies& bodies, const Shapes& shapes, std::uint32_t b, const Quat& q, const Vec3& m);
-
-/// The same for one of its shapes, or for all of them if `extent` is that of the whole body.
+/// m: support() of one of a body's shapes, or of all of them if `extent` is that of the whole body. Not for planes.
 double support(const Bodies& bodies, const Shapes& shapes, std::uint32_t b, const ShapeExtent& extent, const Quat& q, const Vec3& m);
 /// The point of a shape on body b, in orientation q, that is furthest along m; relative to C, in m. Not for planes.
 Vec3 support_point(const Bodies& bodies, const Shapes& shapes, std::uint32_t b, const ShapeExtent& extent, const Quat& q, const Vec3& m);
