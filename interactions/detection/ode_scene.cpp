@@ -257,7 +257,9 @@ void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shi
     const Pose X_a = place(pa, {}, bodies);
     const Pose X_b = place(pb, (bodies.position[mb.body] - origin) + shift, bodies);
     ContactPoints& contact_points = narrow.contact_points;
-    contact_points.clear(margin_);
+    // Of bodies with several parts some contacts may turn out to be none.
+    const bool of_parts = ma.end_part - ma.first_part > 1 || mb.end_part - mb.first_part > 1;
+    contact_points.clear(of_parts ? std::max(margin_, seam_margin(ca, cb)) : margin_);
     collide(ca, X_a, cb, X_b, contact_points);
     narrow.further_pairs += further_pairs_of(ca, cb, contact_points.triangles()) + (narrow.parts_met++ > 0 ? 1.0 : 0.0);
     const std::span<const ContactPoint> all = contact_points.all();
@@ -269,11 +271,17 @@ void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shi
         at.point += origin;
         at.feature = feature_of(part_a - ma.first_part, part_b - mb.first_part, contact_point.feature);
     }
+    if (all.empty() || !of_parts) return;
+    const ContactPoint& deepest = *std::ranges::max_element(all, {}, &ContactPoint::depth);
+    const std::size_t end = narrow.found.size();
+    narrow.part_contacts.push_back(
+        {&ca, &cb, X_a, {X_b.p - shift, X_b.q}, end - all.size(), end, deepest.normal, deepest.depth - length(shift)});
 }
 
 /// After the last query for a pair of members: sorts its contacts and keeps their features distinct.
-void OdeScene::finish_pair(double shift, Narrow& narrow)
+void OdeScene::finish_pair(double shift, Narrow& narrow) const
 {
+    drop_seams(narrow.part_contacts, narrow.found, narrow.first, margin_);
     const auto key = [](const MemberContact& t) { return std::tie(t.at.feature, t.at.point.x, t.at.point.y, t.at.point.z); };
     const auto before = [&](const MemberContact& s, const MemberContact& t) { return key(s) < key(t); };
     const auto own = std::span(narrow.found).subspan(narrow.first);

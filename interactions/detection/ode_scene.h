@@ -6,6 +6,7 @@
 
 #include "broad.h"
 #include "narrow.h"
+#include "part_seams.h"
 #include "plab/collision.h"
 #include "plab/collision_filter.h"
 #include "plab/context.h"
@@ -91,13 +92,14 @@ private:
     {
         ContactPoints contact_points;
         std::vector<MemberContact> found;
-        std::size_t first = 0;      // in `found`: where the present pair of members begins
-        std::size_t parts_met = 0;  // shape pairs of the present pair of members
-        std::size_t pairs = 0;      // shape pairs with boxes that overlap
-        double further_pairs = 0;   // for ContactSink::took
-        double penetration = 0;     // m
+        std::vector<PartContact> part_contacts;  // of the present pair of members
+        std::size_t first = 0;                   // in `found`: where the present pair of members begins
+        std::size_t parts_met = 0;               // shape pairs of the present pair of members
+        std::size_t pairs = 0;                   // shape pairs with boxes that overlap
+        double further_pairs = 0;                // for ContactSink::took
+        double penetration = 0;                  // m
 
-        void clear() { found.clear(), first = 0, parts_met = 0, pairs = 0, further_pairs = 0, penetration = 0; }
+        void clear() { found.clear(), part_contacts.clear(), first = 0, parts_met = 0, pairs = 0, further_pairs = 0, penetration = 0; }
     };
     void query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies, Narrow& narrow) const;
     void query_persistent(const Bodies& bodies, ContactSink& sink);
@@ -108,7 +110,7 @@ private:
         return {parts_[pair.first].member, parts_[pair.second].member};
     }
     void query_chunk(std::size_t chunk, const StepContext& context, const Bodies& bodies, Narrow& narrow) const;
-    static void finish_pair(double shift, Narrow& narrow);
+    void finish_pair(double shift, Narrow& narrow) const;
     void deliver(const Narrow& narrow, ContactSink& sink);
 
     // What the scene was built from.

@@ -111,13 +111,20 @@ Result<void> World::set(std::uint32_t component, const std::string& name, const 
 
 int World::prepare_order(std::uint32_t component) const
 {
+    constexpr int kDeepest = 5, kBodies = kDeepest + 2, kOthers = kBodies + 1;
     const Component& c = directory_->components[component];
     if (c.table == kNoIndex) return 0;
-    if (c.facet != Facet::Shape) return c.facet == Facet::Component ? 4 : 3;
-    const auto& roles = tables_[c.table]->schema().roles();
-    const bool refers_to_shape =
-        std::any_of(roles.begin(), roles.end(), [](const Role& r) { return r.facets.size() == 1 && r.facets.front() == Facet::Shape; });
-    return refers_to_shape ? 2 : 1;
+    if (c.facet != Facet::Shape) return c.facet == Facet::Component ? kOthers : kBodies;
+    // A shape comes after those to which it refers. Where they refer to one another in a circle, none can be prepared anyway.
+    const auto depth_of = [&](const auto& self, std::uint32_t shape, int left) -> int
+    {
+        int depth = 0;
+        for (const Role& role : tables_[directory_->components[shape].table]->schema().roles())
+            if (left > 0 && role.facets.size() == 1 && role.facets.front() == Facet::Shape)
+                for_each_participant(shape, role, [&](Ref r) { depth = std::max(depth, self(self, host_.component_of(r), left - 1)); });
+        return depth + 1;
+    };
+    return depth_of(depth_of, component, kDeepest);
 }
 
 Result<void> World::run(std::uint32_t component, Phase phase)
@@ -171,10 +178,12 @@ Result<void> World::prepare(std::uint32_t component)
 
 Result<void> World::prepare_all()
 {
-    std::vector<std::uint32_t> order = in_id_order_;
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return prepare_order(a) < prepare_order(b); });
+    std::vector<std::pair<int, std::uint32_t>> order;
+    order.reserve(in_id_order_.size());
+    for (const std::uint32_t i : in_id_order_) order.emplace_back(prepare_order(i), i);
+    std::ranges::stable_sort(order, {}, &std::pair<int, std::uint32_t>::first);
     Errors errors;
-    for (const std::uint32_t i : order)
+    for (const auto& [rank, i] : order)
         if (auto done = prepare(i); !done) errors.insert(errors.end(), done.errors().begin(), done.errors().end());
     if (errors.empty()) return {};
     return model::first_of_alike(std::move(errors));

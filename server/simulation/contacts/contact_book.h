@@ -187,6 +187,7 @@ private:
     void ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out);
     bool passes_along(Ref body, Ref other, const Vec3& towards, Ref below, const Vec3& down) const;
     bool has_edges(Ref body) const;
+    std::optional<Vec3> seam_below(Ref body, Ref other, const Vec3& towards, std::span<const FoundContact> beside);
     void drop_passed_pairs(std::vector<FoundContact>& contacts);
     bool detect_with_gaps(std::uint32_t index);
     void list_runs(std::size_t from);

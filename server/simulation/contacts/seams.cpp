@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
+#include <utility>
 
 #include "plab/rotation.h"
 #include "plab/surface.h"
@@ -82,32 +82,35 @@ bool ContactBook::has_edges(Ref body) const
     return !g || (g->kind != GeometryKind::Sphere && g->kind != GeometryKind::Capsule && g->kind != GeometryKind::Plane);
 }
 
+/// The direction from `body` to a surface on which it lies, along which it passes `other` (seam_between).
+std::optional<Vec3> ContactBook::seam_below(Ref body, Ref other, const Vec3& towards, std::span<const FoundContact> beside)
+{
+    const std::uint32_t group = step_.world.host().bodies.dynamic(body.index) ? step_.groups.of(body) : kNoIndex;
+    if (group == kNoIndex) return {};
+    const auto lies_on = [&](Ref first, Ref second, const Vec3& n) -> std::optional<Vec3>
+    {
+        if (first != body && second != body) return {};
+        const Vec3 down = first == body ? n : -n;
+        if (!passes_along(body, other, towards, first == body ? second : first, down)) return {};
+        return down;
+    };
+    for (const FoundContact& f : beside)
+        if (const auto down = lies_on(f.contact.a, f.contact.b, f.contact.normal)) return down;
+    resting_.find(std::span(&group, 1), seam_places_);
+    for (const std::uint32_t place : seam_places_)
+    {
+        const PairState& p = std::as_const(cache_).pairs()[place];
+        if (p.ahead || (towards == Vec3{} && p.count < kFacePoints)) continue;
+        if (const auto down = lies_on(p.a, p.b, p.normal)) return down;
+    }
+    return {};
+}
+
 std::optional<Vec3> ContactBook::seam_between(Ref a, Ref b, const Vec3& normal, std::span<const FoundContact> beside)
 {
     if (!has_edges(a) || !has_edges(b)) return {};
-    const bool any_normal = normal == Vec3{};
-    const Bodies& bodies = step_.world.host().bodies;
-    for (const auto& [body, other, towards] : {std::tuple(a, b, normal), std::tuple(b, a, -normal)})
-    {
-        const std::uint32_t group = bodies.dynamic(body.index) ? step_.groups.of(body) : kNoIndex;
-        if (group == kNoIndex) continue;
-        const auto lies_on = [&](Ref first, Ref second, const Vec3& n, Vec3& down)
-        {
-            if (first != body && second != body) return false;
-            down = first == body ? n : -n;
-            return passes_along(body, other, towards, first == body ? second : first, down);
-        };
-        Vec3 down;
-        for (const FoundContact& f : beside)
-            if (lies_on(f.contact.a, f.contact.b, f.contact.normal, down)) return body == a ? down : -down;
-        resting_.find(std::span(&group, 1), seam_places_);
-        for (const std::uint32_t place : seam_places_)
-        {
-            const PairState& p = cache_.pairs()[place];
-            if (p.ahead || (any_normal && p.count < kFacePoints) || !lies_on(p.a, p.b, p.normal, down)) continue;
-            return body == a ? down : -down;
-        }
-    }
+    if (const auto down = seam_below(a, b, normal, beside)) return down;
+    if (const auto down = seam_below(b, a, -normal, beside)) return -*down;
     return {};
 }
 
