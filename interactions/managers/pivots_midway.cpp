@@ -186,8 +186,12 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     const Vec3 fixed = r - c.pivot.arm;
     const Turn turn = on_rim || is_lever(fixed, r) ? turn_of(own.w, half) : Turn::Little, turn_of_face = turn_of(other.w, half);
     if (turn_of_face == Turn::Far || (turn == Turn::Little && turn_of_face == Turn::Little)) return;
+    const std::uint32_t mover = of_b ? p.b : p.a;
+    // What tumbles so far has another axis by then.
+    const bool tumbles = mover != kNoIndex && !anchors[mover].midway && !movers[mover].isotropic;
+    if (turn == Turn::Far && tumbles) return;
     const double sign = of_b ? 1 : -1;  // of u
-    const Quat turned = half_turn_of(of_b ? p.b : p.a, own.w, half), turned_face = half_turn_of(of_b ? p.a : p.b, other.w, half);
+    const Quat turned = half_turn_of(mover, own.w, half), turned_face = half_turn_of(of_b ? p.a : p.b, other.w, half);
     const Vec3 arm = turned_arm(c.pivot, p.n * -sign, turned, turned_face);
     // What spins about its own axis, as a capsule or a coin that rolls, takes its lever along, however fast.
     if (!is_near(arm, c.pivot.arm) || !is_near(rotate(turned, fixed), fixed)) return;
