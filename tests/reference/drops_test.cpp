@@ -47,6 +47,7 @@ const Method kResting[] = {{"None", "Direct"},      {"None", "SequentialImpulse"
 }  // namespace
 
 TEST_CASE("tumbling bodies of any shape gain no energy from contacts at the ends of steps, with any response") { check_drops(11, 40); }
+TEST_CASE("a thousand random drops gain no energy") { check_drops(12, 1000); }
 
 TEST_CASE("the rod that tumbles on the floor at 1/240 starts with 104 J and never has more")
 {
