@@ -40,7 +40,7 @@ public:
           A_(A),
           B_(B)
     {
-        if (!few) spread_.emplace(n, out.margin());
+        if (!few) spread_.emplace(n, out.margin(), kSamePoint * size_);
     }
 
     /// `fresh`: the caller knows that no earlier point can be in the same place.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "box_axes.h"
 #include "expand.h"
@@ -14,6 +15,15 @@ namespace
 constexpr Vec3 kNoDirection{0, 0, 1};
 
 Separation flipped(const Separation& s) { return {s.gap, s.point_b, s.point_a, -s.normal}; }
+
+/// Of two cores with radii around them.
+Separation with_radii(const Separation& cores, const Solid& A, const Solid& B)
+{
+    Separation s = cores;
+    s.gap -= A.radius() + B.radius();
+    s.point_a += A.radius() * s.normal, s.point_b -= B.radius() * s.normal;
+    return s;
+}
 
 /// Two closest points with radii around them; `n_instead` is the normal if they coincide. The line between them is perpendicular
 /// to `along` (unit, or 0); this is enforced, as rounding would hide it where they nearly coincide.
@@ -159,6 +169,30 @@ Separation of_gap(const Solid& A, const Solid& B, const NearestPair& near, const
         if (const Overlap other = overlap_of(A, B, {}); other.depth < best.depth) best = other;
     return {-best.depth, best.a, best.b, best.normal};
 }
+
+/// The cores where a point of A, its furthest one towards a flat face of B, is over the inside of that face: no search is needed, however
+/// level A is. If they overlap, B contains a prism around the point with a clearance of at least the depth to its sides and far end, and to
+/// leave that in any direction takes at least the depth to the face.
+std::optional<Separation> over_a_face(const Solid& A, const Solid& B)
+{
+    const Vec3& half = B.size();
+    const Vec3 c = B.to_local(A.center());
+    int k = 2;
+    if (B.core() == Core::Box)
+        for (const int j : {0, 1})
+            if (std::fabs(c[j]) - half[j] > std::fabs(c[k]) - half[k]) k = j;
+    if (B.core() != Core::Box && B.core() != Core::Cylinder) return {};
+    const double side = c[k] < 0 ? -1.0 : 1.0;
+    const Vec3 n = side * B.axis(k), a = A.support(-n), l = B.to_local(a);
+    const double gap = side * l[k] - half[k], depth = std::max(0.0, -gap);
+    double clearance = half[k] - depth;
+    if (B.core() == Core::Cylinder) clearance = std::min(clearance, half.x - std::hypot(l.x, l.y));
+    if (B.core() == Core::Box)
+        for (int j = 0; j < 3; ++j)
+            if (j != k) clearance = std::min(clearance, half[j] - std::fabs(l[j]));
+    if (!(clearance >= depth)) return {};
+    return Separation{gap, a, a - gap * n, -n};
+}
 }  // namespace
 
 Separation separation_of(const Solid& A, const Solid& B, double beyond)
@@ -175,13 +209,15 @@ Separation separation_of(const Solid& A, const Solid& B, double beyond)
     if (A.core() == Core::Point) return point_solid(A, B);
     if (B.core() == Core::Point) return flipped(point_solid(B, A));
 
+    std::optional<Separation> simple = over_a_face(A, B);
+    if (!simple)
+        if (const auto other = over_a_face(B, A)) simple = flipped(*other);
+    if (simple) return with_radii(*simple, A, B);
+
     Simplex simplex;
     const NearestPair near = nearest_pair(A, B, beyond + A.radius() + B.radius(), simplex);
     if (near.beyond) return {near.gap - (A.radius() + B.radius()), {}, {}, {}};
-    Separation s = near.apart ? of_gap(A, B, near, simplex) : of_overlap(A, B, simplex);
-    s.gap -= A.radius() + B.radius();
-    s.point_a += A.radius() * s.normal, s.point_b -= B.radius() * s.normal;
-    return s;
+    return with_radii(near.apart ? of_gap(A, B, near, simplex) : of_overlap(A, B, simplex), A, B);
 }
 
 Separation separation_from_plane(const Solid& a, const Pose& X_plane)

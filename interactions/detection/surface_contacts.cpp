@@ -14,6 +14,14 @@ namespace
 constexpr double kOneSide = 0.995;
 /// Fraction of the solid's size within which two places count as the same.
 constexpr double kSamePlace = 1e-6;
+/// Of the feature of a corner on a face: the number of the corner (the rest is that of the face's patch).
+constexpr std::uint32_t kCornerOnFace = 0x3ff;
+
+/// Whether these are features of two corners of the solid: the moving point of a rim passes the fixed ones.
+bool are_two_corners(std::uint32_t f, std::uint32_t g)
+{
+    return f >> 18 == 0 && g >> 18 == 0 && (f & kCornerOnFace) != (g & kCornerOnFace);
+}
 
 /// Collects contact points, each place and each feature once; if there are many on one side, the deepest and the outermost.
 class Gathering final : public MeetingSink
@@ -28,8 +36,9 @@ public:
         for (std::size_t i = 0; i < count_; ++i)
         {
             ContactPoint& known = contact_points_[i];
-            const bool same_place =
-                length_squared(known.point - contact_point.point) < near_ * near_ && dot(known.normal, contact_point.normal) > kOneSide;
+            const bool same_place = !are_two_corners(known.feature, contact_point.feature) &&
+                                    length_squared(known.point - contact_point.point) < near_ * near_ &&
+                                    dot(known.normal, contact_point.normal) > kOneSide;
             if (!same_place && known.feature != contact_point.feature) continue;
             const std::uint32_t first = known.feature;
             if (contact_point.depth > known.depth) known = contact_point, known.feature = first;

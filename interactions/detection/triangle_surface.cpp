@@ -45,6 +45,7 @@ void TriangleSurface::join(std::span<const Vec3> vertices, std::span<const std::
 {
     points_.assign(vertices.begin(), vertices.end());
     const std::vector<Index> first = first_at_same_place(vertices);
+    triangles_.reserve(triangles.size() / 3);
     for (std::size_t t = 0; t + 2 < triangles.size(); t += 3)
     {
         Triangle triangle;
@@ -102,6 +103,8 @@ bool TriangleSurface::find_edges()
 {
     std::vector<Index> partner;
     if (!pair_half_edges(triangles_, points_.size(), partner)) return false;
+    const auto borders = static_cast<std::size_t>(std::count(partner.begin(), partner.end(), kNone));
+    edges_.reserve(borders + (partner.size() - borders) / 2);
     for (Index t = 0; t < triangles_.size(); ++t)
         for (Index i = 0; i < 3; ++i)
         {
@@ -199,8 +202,12 @@ void TriangleSurface::build_tree()
     std::iota(order_.begin(), order_.end(), 0u);
     nodes_.reserve(triangles_.size());
     nodes_.push_back({{}, {}, 0, static_cast<Index>(order_.size())});
-    for (std::size_t n = 0; n < nodes_.size(); ++n)
+    // Depth first: what is split next is still in the processor's cache.
+    std::vector<Index> open{0};
+    while (!open.empty())
     {
+        const Index n = open.back();
+        open.pop_back();
         bound(nodes_[n]);
         const Node node = nodes_[n];
         if (node.count <= kLeaf) continue;
@@ -217,6 +224,7 @@ void TriangleSurface::build_tree()
         nodes_[n].first = left, nodes_[n].count = 0;
         nodes_.push_back({{}, {}, node.first, node.count / 2});
         nodes_.push_back({{}, {}, node.first + node.count / 2, node.count - node.count / 2});
+        open.push_back(left + 1), open.push_back(left);
     }
 }
 

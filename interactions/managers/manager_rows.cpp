@@ -15,7 +15,7 @@ namespace
 {
 
 /// With this many iterations, a step of some hundred contacts still ends within minutes.
-constexpr double kMostIterations = 1e6;
+constexpr double kMostIterations = 100'000;
 
 constexpr Unit kHertz{"1/s", {{0, 0, -1, 0}}};
 

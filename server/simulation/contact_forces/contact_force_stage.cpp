@@ -6,6 +6,7 @@
 
 #include "plab/rotation.h"
 #include "simulation/contact_forces/contact_forces.h"
+#include "simulation/contact_forces/rim_near_level.h"
 #include "simulation/motion/component_call.h"
 
 namespace plab::simulation
@@ -94,7 +95,9 @@ void ContactForces::detect(std::uint32_t index, std::span<const PersistentPair> 
     sink.begin_query(index, pairs, true, margin);
     ComponentCall query(step_, *step_.world.tables()[detector.table], detector.row);
     query.context.events = nullptr, query.arguments.contacts = &sink;
+    const std::size_t first = out.size();
     (void)query.run(*detector.command);  // an error occurs again in the detection at the end of the step, which reports it
+    for (FoundContact& found : std::span(out).subspan(first)) round_rim_near_level(found.contact);
 }
 
 void ContactForces::fill_surface(FoundContact& f) const
