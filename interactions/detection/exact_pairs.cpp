@@ -99,7 +99,7 @@ void capsule_plane(const Solid& capsule, const Pose& X_plane, ContactPoints& out
 
 void cylinder_plane(const Solid& cylinder, const Pose& X_plane, ContactPoints& out)
 {
-    const Vec3 n = rotate(X_plane.q, {0, 0, 1}), u = cylinder.axis(2);
+    const Vec3 n = rotate(X_plane.q, {0, 0, 1});
     const auto offer = [&](const Vec3& p, std::uint32_t feature)
     {
         const double depth = -dot(n, p - X_plane.p);
@@ -109,9 +109,7 @@ void cylinder_plane(const Solid& cylinder, const Pose& X_plane, ContactPoints& o
     for (std::uint32_t end = 0; end < 2; ++end)
     {
         const RimPoints rim = rim_points(cylinder, end == 1, -n);
-        const bool faces_it = dot(n, u) * (end == 1 ? 1 : -1) < -0.5;
-        for (std::uint32_t i = 0; i < rim.count; ++i)
-            if (faces_it || rim.id[i] == RimPoints::kFurthest) offer(rim.p[i], 8 * end + rim.id[i]);
+        for (std::uint32_t i = 0; i < rim.count; ++i) offer(rim.touching(i), 8 * end + rim.id[i]);
     }
 }
 

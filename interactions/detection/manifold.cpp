@@ -162,18 +162,21 @@ void lay_corners(const SupportingFace& X, const SupportingFace& Y, bool x_is_a, 
 {
     const Vec3& n = out.normal();
     const double tolerance = out.tolerance(lean_of(X, Y));
-    const auto lay = [&](const Vec3& p, std::uint32_t id)
+    const auto lay = [&](const Vec3& over, std::uint32_t id, const Vec3& p)
     {
+        if (!Y.covers(dropped(over, n, Y), tolerance)) return;
         const Vec3 y = dropped(p, n, Y);
-        if (!Y.covers(y, tolerance)) return;
         const std::uint32_t f = corner_feature(x_is_a, id);
         x_is_a ? out.offer(p, y, f) : out.offer(y, p, f);
     };
     if (X.kind == SupportingFace::Kind::Face)
-        for (const FaceCorner& c : X.corners) lay(c.p, c.id);
+        for (const FaceCorner& c : X.corners) lay(c.p, c.id, c.p);
     if (X.kind != SupportingFace::Kind::Disc) return;
-    const RimPoints rim = rim_points(*X.solid, X.upper, x_is_a ? n : -n);
-    for (std::uint32_t i = rim.count; i-- > 0;) lay(rim.p[i], rim.id[i] + (X.upper ? 8 : 0));
+    for (const bool upper : {X.upper, !X.upper})
+    {
+        const RimPoints rim = rim_points(*X.solid, upper, x_is_a ? n : -n);
+        for (std::uint32_t i = rim.count; i-- > 0;) lay(rim.p[i], rim.id[i] + (upper ? 8 : 0), rim.touching(i));
+    }
 }
 
 /// The planes through the edges of a face, and the plane of the face along n, as four numbers each.
@@ -319,8 +322,8 @@ void add_manifold(const Solid& A, const Solid& B, const Separation& s, ContactPo
     if (!(s.gap < out.margin() || s.gap < 0)) return;
     std::array<FaceCorner, kMostCorners> room_a, room_b;
     SupportingFace X = supporting_face(A, s.normal, kParallelFaces, room_a), Y = supporting_face(B, -s.normal, kParallelFaces, room_b);
-    if (X.flat() && !Y.flat()) Y = supporting_face(B, -s.normal, kLeaning, room_b);
-    if (Y.flat() && !X.flat()) X = supporting_face(A, s.normal, kLeaning, room_a);
+    if (X.flat() && !Y.flat()) Y = supporting_face(B, -s.normal, kLeaning, room_b, true);
+    if (Y.flat() && !X.flat()) X = supporting_face(A, s.normal, kLeaning, room_a, true);
     const bool few =
         X.corners.size() + Y.corners.size() <= 8 && X.kind != SupportingFace::Kind::Disc && Y.kind != SupportingFace::Kind::Disc;
     Collector collector(A, B, s.normal, few, out);

@@ -1,19 +1,40 @@
 #include "rim_points.h"
 
+#include <cmath>
+
 namespace plab::detection
 {
+namespace
+{
+
+/// m: by how much the fixed points are moved where the end's outward normal u leans from the direction towards `lowest` (unit, in the end).
+Vec3 withdrawn(double radius, double sine, double cosine, const Vec3& lowest, const Vec3& u)
+{
+    const double beyond = sine - RimPoints::kUpright;
+    if (!(beyond > 0)) return {};
+    const double g = beyond * beyond, slope = 2 * beyond * cosine;  // with respect to the angle
+    return -radius * ((g * sine + slope * cosine) * lowest + (g * cosine - slope * sine) * u);
+}
+
+}  // namespace
 
 RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction)
 {
     RimPoints out;
-    const Vec3 u = c.axis(2), middle = c.pose().p + (upper ? c.size().z : -c.size().z) * u;
+    const double radius = c.size().x;
+    const Vec3 u = upper ? c.axis(2) : -c.axis(2), middle = c.pose().p + c.size().z * u;
     const std::array<Vec3, 4> fixed{c.axis(0), c.axis(1), -c.axis(0), -c.axis(1)};
-    for (; out.count < 4; ++out.count) out.p[out.count] = middle + c.size().x * fixed[out.count], out.id[out.count] = out.count;
     // By cross products it is in the plane of the end to the last bit, however small it is: the depth depends on that.
     const Vec3 across = cross(cross(u, direction), u);
-    const double sine = length(across);
-    // A level end has no furthest point: the choice would depend on rounding and jump from step to step.
-    if (sine > 1e-12) out.p[out.count] = middle + (c.size().x / sine) * across, out.id[out.count++] = RimPoints::kFurthest;
+    const double sine = length(across), cosine = dot(u, direction);
+    const bool leans = sine > 1e-12;  // a level end has no furthest point: the choice would depend on rounding and jump from step to step
+    const Vec3 lowest = leans ? across / sine : Vec3{};
+    if (cosine > 0 || !leans)
+    {
+        out.withdrawal = withdrawn(radius, sine, cosine, lowest, u);
+        for (; out.count < 4; ++out.count) out.p[out.count] = middle + radius * fixed[out.count], out.id[out.count] = out.count;
+    }
+    if (leans) out.p[out.count] = middle + radius * lowest, out.id[out.count++] = RimPoints::kFurthest;
     return out;
 }
 

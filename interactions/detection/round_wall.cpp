@@ -120,7 +120,8 @@ Vec3 furthest_of_rim(const Vec3& m, double a, const Vec3& u, const Vec3& start)
 template <class Visit>
 void visit_outermost(const Solid& K, const RoundWall& wall, Visit&& visit)
 {
-    if (K.core() != Core::Cylinder) return visit_corners(K, {}, visit);
+    if (K.core() != Core::Cylinder)
+        return visit_corners(K, {}, [&](const Vec3& p, std::uint32_t number, const Vec3&) { visit(p, number); });
     const Vec3 u = K.axis(2);
     for (std::uint32_t end = 0; end < 2; ++end)
     {

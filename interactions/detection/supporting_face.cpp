@@ -53,14 +53,14 @@ SupportingFace supporting_box_face(const Solid& box, const Vec3& d, double least
     return line_of(box, room, box.from_local(box_corner(box.size(), id)), id, box.from_local(box_corner(box.size(), other)), other);
 }
 
-SupportingFace supporting_segment(const Solid& s, const Vec3& d, std::span<FaceCorner> room)
+SupportingFace supporting_segment(const Solid& s, const Vec3& d, double most_slope, std::span<FaceCorner> room)
 {
     const Vec3 u = s.axis(2);
-    if (std::fabs(dot(u, d)) >= kSquare) return corner_of(s);
+    if (std::fabs(dot(u, d)) >= most_slope) return corner_of(s);
     return line_of(s, room, s.pose().p - s.size().z * u, 0, s.pose().p + s.size().z * u, 1);
 }
 
-SupportingFace supporting_cylinder_face(const Solid& c, const Vec3& d, double least_cosine, std::span<FaceCorner> room)
+SupportingFace supporting_cylinder_face(const Solid& c, const Vec3& d, double least_cosine, double most_slope, std::span<FaceCorner> room)
 {
     const Vec3 u = c.axis(2);
     const double along = dot(u, d);
@@ -70,7 +70,7 @@ SupportingFace supporting_cylinder_face(const Solid& c, const Vec3& d, double le
         out.kind = SupportingFace::Kind::Disc, out.solid = &c, out.upper = along > 0, out.normal = sign_of(along) * u;
         return out;
     }
-    if (std::fabs(along) >= kSquare) return corner_of(c);
+    if (std::fabs(along) >= most_slope) return corner_of(c);
     const Vec3 side = c.pose().p + c.size().x * normalized(d - along * u);
     return line_of(c, room, side - c.size().z * u, 4, side + c.size().z * u, 12);
 }
@@ -237,16 +237,17 @@ bool is_flat_towards(const Solid& solid, const Vec3& d)
     return false;
 }
 
-SupportingFace supporting_face(const Solid& solid, const Vec3& d, double least_cosine, std::span<FaceCorner> room)
+SupportingFace supporting_face(const Solid& solid, const Vec3& d, double least_cosine, std::span<FaceCorner> room, bool onto_a_face)
 {
+    const double most_slope = onto_a_face ? 1 : kSquare;
     switch (solid.core())
     {
         case Core::Segment:
-            return supporting_segment(solid, d, room);
+            return supporting_segment(solid, d, most_slope, room);
         case Core::Box:
             return supporting_box_face(solid, d, least_cosine, room);
         case Core::Cylinder:
-            return supporting_cylinder_face(solid, d, least_cosine, room);
+            return supporting_cylinder_face(solid, d, least_cosine, most_slope, room);
         case Core::Hull:
             return supporting_hull_face(solid, d, least_cosine, room);
         case Core::Point:

@@ -50,8 +50,10 @@ SupportingFace::Cut cut_by(std::span<const double> inside_begin, std::span<const
 inline constexpr std::size_t kMostCorners = 32;
 
 /// In direction d (unit, outward). A face counts if the cosine between its normal and d is at least `least_cosine`, an edge if
-/// it is perpendicular to d within 0.1 (sine). Corners are stored in `room` (at least kMostCorners; 4 for boxes).
-SupportingFace supporting_face(const Solid& solid, const Vec3& d, double least_cosine, std::span<FaceCorner> room);
+/// it is perpendicular to d within 0.1 (sine); the line of a capsule or of a cylinder's side counts at any slope if it is to be laid
+/// `onto_a_face`: both of its ends are points that may touch. Corners are stored in `room` (at least kMostCorners; 4 for boxes).
+SupportingFace supporting_face(const Solid& solid, const Vec3& d, double least_cosine, std::span<FaceCorner> room,
+                               bool onto_a_face = false);
 /// Whether d (unit) is the normal of a face or of a cylinder's end, but for rounding.
 bool is_flat_towards(const Solid& solid, const Vec3& d);
 /// The face of a box whose normal is closest to d.

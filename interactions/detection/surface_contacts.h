@@ -46,9 +46,9 @@ void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& su
 /// The gap is infinite if the solid is completely behind the surface or beyond its border.
 Separation separation_from_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface);
 
-/// Calls visit(corner, number) for the corners of a solid that may be furthest in direction d, the furthest one first for
-/// cylinders: all corners of boxes and hulls, the centres of both ends of capsules, points on the rims of cylinders
-/// (rim_points.h).
+/// Calls visit(corner, number, touching) for the corners of a solid that may be furthest in direction d, the furthest one first for
+/// cylinders: all corners of boxes and hulls, the centres of both ends of capsules, points on the rims of cylinders, which touch
+/// elsewhere where the cylinder leans (rim_points.h).
 template <class Visit>
 void visit_corners(const Solid& K, const Vec3& d, Visit&& visit)
 {
@@ -56,23 +56,33 @@ void visit_corners(const Solid& K, const Vec3& d, Visit&& visit)
     switch (K.core())
     {
         case Core::Point:
-            return visit(K.pose().p, 0u);
+            return visit(K.pose().p, 0u, K.pose().p);
         case Core::Segment:
-            visit(K.pose().p - h.z * K.axis(2), 0u);
-            return visit(K.pose().p + h.z * K.axis(2), 1u);
+            for (const std::uint32_t end : {0u, 1u})
+            {
+                const Vec3 p = K.pose().p + (end == 0 ? -h.z : h.z) * K.axis(2);
+                visit(p, end, p);
+            }
+            return;
         case Core::Box:
-            for (std::uint32_t i = 0; i < 8; ++i) visit(K.from_local({i & 1 ? h.x : -h.x, i & 2 ? h.y : -h.y, i & 4 ? h.z : -h.z}), i);
+            for (std::uint32_t i = 0; i < 8; ++i)
+            {
+                const Vec3 p = K.from_local({i & 1 ? h.x : -h.x, i & 2 ? h.y : -h.y, i & 4 ? h.z : -h.z});
+                visit(p, i, p);
+            }
             return;
         case Core::Hull:
-            for (std::uint32_t i = 0; i < K.hull().vertices.size(); ++i) visit(K.from_local(K.hull().vertices[i]), i);
+            for (std::uint32_t i = 0; i < K.hull().vertices.size(); ++i)
+            {
+                const Vec3 p = K.from_local(K.hull().vertices[i]);
+                visit(p, i, p);
+            }
             return;
         case Core::Cylinder:
             for (std::uint32_t end = 0; end < 2; ++end)
             {
                 const RimPoints rim = rim_points(K, end == 1, d);
-                const bool faces_it = dot(d, K.axis(2)) * (end == 1 ? 1 : -1) > 0.5;
-                for (std::uint32_t i = rim.count; i-- > 0;)
-                    if (faces_it || rim.id[i] == RimPoints::kFurthest) visit(rim.p[i], 8 * end + rim.id[i]);
+                for (std::uint32_t i = rim.count; i-- > 0;) visit(rim.p[i], 8 * end + rim.id[i], rim.touching(i));
             }
             return;
     }

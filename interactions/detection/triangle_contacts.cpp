@@ -222,12 +222,12 @@ private:
         const Vec3& n = t.normal;
         const double beside = kBeside * size_;
         visit_corners(K_, -n,
-                      [&](const Vec3& p, std::uint32_t number)
+                      [&](const Vec3& over, std::uint32_t number, const Vec3& p)
                       {
                           const double outside = dot(n, p - s_.point(t.corner[0])), gap = outside - K_.radius();
                           if (!(gap < out_.limit())) return;
                           for (std::size_t i = 0; i < 3; ++i)
-                              if (dot(t.inward[i], p - s_.point(t.corner[i])) < -beside) return;
+                              if (dot(t.inward[i], over - s_.point(t.corner[i])) < -beside) return;
                           if (outside < 0 && !lies_behind(p, -outside)) return;
                           const std::uint32_t feature = corner_feature(true, (t.patch & 0xffu) << 10 | (number & 0x3ffu));
                           const Vec3 on_surface = p - outside * n, point = on_surface + (0.5 * gap) * n;

@@ -46,7 +46,7 @@ void add_contact_forces(const StepContext& context, Row row, SurfaceColumns& sur
         const Vec3 slip = u - c.normal * separation_speed;
         const NormalForce n = normal(c, point.K()(2, 2), separation_speed);
 
-        const double k = surface.tangential_ratio[row] * n.stiffness;
+        const double k = surface.tangential_ratio[row] * n.tangential;
         const double mobility = std::max(point.K()(0, 0), point.K()(1, 1));
         const double damping = 2 * surface.tangential_damping_ratio[row] * std::sqrt(k / mobility);
         const SurfaceForce t = surface_force(k, damping, c.friction * std::max(n.force, 0.0), c.stretch, slip);
@@ -73,7 +73,8 @@ void SurfaceColumns::describe(Schema& s)
         .or_else(0)
         .not_negative()
         .at_most(1);
-    s.param(tangential_ratio, "tangential_ratio", unit::one, "ratio of the stiffness of the stiction spring to the normal stiffness")
+    s.param(tangential_ratio, "tangential_ratio", unit::one,
+            "ratio of the stiffness of the stiction spring to the normal stiffness, of HuntCrossley at the depth that the approach reaches")
         .or_else(1)
         .positive();
     s.param(tangential_damping_ratio, "tangential_damping_ratio", unit::one,
@@ -144,7 +145,7 @@ void evaluate_penalty(const StepContext& context, Row row, PenaltyRows& rows, co
         NormalForce n;
         n.force = spring - damping * separation_speed;
         if (!pulls) n.force = std::max(n.force, 0.0);
-        n.stiffness = k;
+        n.tangential = k;
         n.stored = 0.5 * spring * spring / k;
         return n;
     };
@@ -168,7 +169,8 @@ void evaluate_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRow
         const double speed = std::sqrt(2 * spring * x / (exponent + 1) * mobility);
         const double dissipation = rows.dissipation[row] + loss / std::max({c.approach, rows.least_speed[row], speed});
         n.force = std::max(spring * (1 - dissipation * separation_speed), 0.0);
-        n.stiffness = exponent * spring / x;
+        n.tangential = stiffness_at_approach(k, exponent, std::max(c.approach, rows.least_speed[row]),
+                                             bodies.inverse_mass[c.a.index] + bodies.inverse_mass[c.b.index]);
         n.stored = spring * x / (exponent + 1);
         return n;
     };

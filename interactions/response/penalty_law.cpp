@@ -56,18 +56,27 @@ double loss_for_restitution(double e)
     return root(low, 1 / r, [&](double s) { return std::log1p(s) - std::log1p(-r * s) - (1 + r) * s; });
 }
 
+double stiffness_at_approach(double k, double n, double speed, double inverse_mass)
+{
+    return n * k * std::pow(0.5 * (n + 1) * speed * speed / (k * inverse_mass), (n - 1) / (n + 1));
+}
+
+namespace
+{
+Vec3 limited(const Vec3& force, double limit)
+{
+    const double size = length(force);
+    return size > limit ? force * (limit / size) : force;
+}
+}  // namespace
+
 SurfaceForce surface_force(double k, double c, double limit, const Vec3& stretch, const Vec3& slip)
 {
     SurfaceForce out;
     if (!(limit > 0) || !(k > 0)) return out;
-    out.force = stretch * -k - slip * c;
-    const double size = length(out.force);
-    out.stretch = stretch;
-    if (size > limit)
-    {
-        out.force = out.force * (limit / size);
-        out.stretch = (out.force + slip * c) * (-1 / k);
-    }
+    const Vec3 spring = limited(stretch * -k, limit);
+    out.stretch = k * length(stretch) > limit ? spring * (-1 / k) : stretch;
+    out.force = limited(spring - slip * c, limit);
     out.stored = 0.5 * k * length_squared(out.stretch);
     return out;
 }

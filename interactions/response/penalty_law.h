@@ -21,9 +21,9 @@ double loss_for_restitution(double e);
 /// Normal part of a contact force in one state.
 struct NormalForce
 {
-    double force = 0;      ///< N, > 0: pushes the bodies apart
-    double stiffness = 0;  ///< N/m, of the spring at this depth
-    double stored = 0;     ///< J
+    double force = 0;       ///< N, > 0: pushes the bodies apart
+    double tangential = 0;  ///< N/m: stiffness on which that of the stiction spring is based
+    double stored = 0;      ///< J
 };
 
 struct SurfaceForce
@@ -33,8 +33,17 @@ struct SurfaceForce
     double stored = 0;  ///< J
 };
 
-/// A stiction spring of stiffness k (N/m) with a damper c (N s/m), limited by Coulomb's cone:
-///   f = -k xi - c u_t,  |f| <= limit;  while the point slides, xi is set to the extension that gives |f| = limit.
+/// N/m: stiffness of the spring k x^n at the depth to which an approach at `speed` (m/s) presses it, if bodies with the sum
+/// `inverse_mass` (1/kg) meet at a central contact: m v^2 / 2 = k x^(n+1) / (n + 1). The stiction spring has it from the beginning
+/// to the end of a contact. A stiffness that grew with the depth would give energy to a spring that has been stretched before.
+double stiffness_at_approach(double k, double n, double speed, double inverse_mass);
+
+/// A stiction spring of stiffness k (N/m) with a damper c (N s/m), limited by Coulomb's cone: if |k xi| > limit, the spring slips until
+/// |k xi| = limit (radial return, as in plasticity), then
+///   f = -k xi - c u_t, shortened to |f| = limit.
+/// Neither gives energy: with s = -k xi in the cone, (s - f) . (s - (s - c u_t)) >= 0 for the point f of the cone nearest to s - c u_t, so
+/// f . u_t <= s . u_t. A spring that slips until spring and damper together are within the cone (S. Luding, Cohesive, frictional
+/// powders, Granular Matter 10 (2008) 235, eq. 10) would be stretched by the damper, against nothing that pays for it.
 SurfaceForce surface_force(double k, double c, double limit, const Vec3& stretch, const Vec3& slip);
 
 }  // namespace plab::response

@@ -374,7 +374,8 @@ TEST_CASE("a contact that has opened does not switch again until it closes: a cu
         Scene s(falling_cube(units), "dt=\"" + text(1e-3 / 60) + "\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         int most = 0;
-        for (int i = 0; i < 240; ++i)
+        // Rounding of 1e-22 m may tilt a cube of this size when it leaves, each landing multiplies the tilt, and it rocks to rest.
+        for (int i = 0; i < 960; ++i)
         {
             s.step();
             most = std::max(most, s.simulation().stepper().report().events);

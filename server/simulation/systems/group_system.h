@@ -8,6 +8,7 @@
 #include <array>
 #include <vector>
 
+#include "plab/contact_pieces.h"
 #include "plab/interruption.h"
 #include "plab/minimal_coordinates.h"
 #include "simulation/articulated/articulated_bodies.h"
@@ -76,7 +77,7 @@ public:
     virtual void join(DisjointSets& /*groups*/) const {}
 };
 
-class GroupSystem final : public DynamicSystem, public MinimalCoordinates
+class GroupSystem final : public DynamicSystem, public MinimalCoordinates, public ContactPieces
 {
 public:
     explicit GroupSystem(StageScratch& scratch) : scratch_(&scratch) {}
@@ -166,6 +167,7 @@ public:
     std::size_t quantity_count() const override { return quantity_values_; }
     bool interrupted() const override { return frame_.interruption && frame_.interruption->due(); }
     bool is_undersampled() const override { return extra_ != nullptr && extra_->is_undersampled(); }
+    bool are_only_contacts() const override { return uniform_ && extra_ != nullptr && !is_constrained(); }
     bool forces_are_uniform() const override { return uniform_ && !extra_ && !is_constrained(); }
     bool is_constrained() const override { return rows_ != nullptr; }
 

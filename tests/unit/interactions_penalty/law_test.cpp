@@ -6,9 +6,11 @@
 
 #include "response/penalty.h"
 #include "response/penalty_law.h"
+#include "support/random_poses.h"
 
 using namespace plab;
 using namespace plab::response;
+using namespace plab::test;
 
 namespace
 {
@@ -157,4 +159,34 @@ TEST_CASE("stiction springs stay in Coulomb's cone, equally in all directions")
         CHECK(length(Vec3{slips.x, slips.y, 0} - along * 5.0) < 1e-14);
         CHECK(length(b.out.stretch - along * 5e-4) < 1e-18);
     }
+}
+
+TEST_CASE("a stiction spring and its damper never give energy, wherever the point goes and however Coulomb's bound changes")
+{
+    std::uint64_t seed = 3;
+    double least = HUGE_VAL;
+    for (int run = 0; run < 200; ++run)
+    {
+        const double k = uniform(seed, 1, 100), c = uniform(seed, 0, 20), h = 1e-5;
+        Vec3 stretch, slip = random_vector(seed, 1);
+        double lost = 0;
+        for (int i = 0; i < 2000; ++i)
+        {
+            if (i % 100 == 0) slip = random_vector(seed, 1);
+            slip.z = 0;
+            const double limit = 0.01 * (1 + std::sin(0.02 * i + run));
+            const double before = 0.5 * k * length_squared(stretch);
+            const SurfaceForce f = surface_force(k, c, limit, stretch + slip * h, slip);
+            CHECK(length(f.force) <= limit * (1 + 1e-14));
+            CHECK(f.stored == 0.5 * k * length_squared(f.stretch));
+            // Work of the bodies against the force, less what the spring has taken up. The spring is loaded within the step: its mean
+            // force is within h of the present one.
+            const double taken = -dot(f.force, slip) * h - (f.stored - before);
+            least = std::min(least, (taken + 0.5 * k * length_squared(slip) * h * h) / h);
+            lost += taken;
+            stretch = f.stretch;
+        }
+        CHECK(lost > 0);
+    }
+    CHECK(least >= -1e-12);
 }
