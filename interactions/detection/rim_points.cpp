@@ -24,9 +24,10 @@ RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction)
     const double radius = c.size().x;
     const Vec3 u = upper ? c.axis(2) : -c.axis(2), middle = c.pose().p + c.size().z * u;
     const std::array<Vec3, 4> fixed{c.axis(0), c.axis(1), -c.axis(0), -c.axis(1)};
-    // By cross products it is in the plane of the end to the last bit, however small it is: the depth depends on that.
-    const Vec3 across = cross(cross(u, direction), u);
-    const double sine = length(across), cosine = dot(u, direction);
+    const double cosine = dot(u, direction);
+    // Of an end that is nearly level this is small, and yet in its plane to the last bit by cross products: the depth depends on that.
+    const Vec3 across = std::fabs(cosine) < 0.5 ? direction - cosine * u : cross(cross(u, direction), u);
+    const double sine = length(across);
     const bool leans = sine > 1e-12;  // a level end has no furthest point: the choice would depend on rounding and jump from step to step
     const Vec3 lowest = leans ? across / sine : Vec3{};
     if (cosine > 0 || !leans)

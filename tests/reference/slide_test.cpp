@@ -42,8 +42,8 @@ TEST_CASE("C14a: a box slides to a stop, at 5 m/s and mu = 0.5, as far in any di
         {"None", "Impulse", {5.2e-4, 1.01, 4e-5, 1.01}},
         {"located", "Impulse", {3e-5, 1.01, 6e-6, 1.01}},
         // The displacement due to its springs, and the tilt that friction causes.
-        {"*", "Penalty", {7.5e-5, 9, 7.5e-5, 39}, {1.8e-5, 0, 1.8e-5, 0}},
-        {"*", "HuntCrossley", {0.012, 11, 0.012, 41}, {3e-3, 0, 3e-3, 0}},
+        {"*", "Penalty", {1e-6, 9, 1e-6, 39}, {1.2e-7, 0, 1.2e-7, 0}},
+        {"*", "HuntCrossley", {1.4e-5, 9, 1.4e-5, 39}, {1.6e-6, 0, 1.6e-6, 0}},
     };
     check_algorithms(every_algorithm(), table,
                      [](const Algorithm& algorithm)
