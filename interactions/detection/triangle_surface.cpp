@@ -178,11 +178,12 @@ void TriangleSurface::build_tree()
         Vec3 lower, upper;
         Vec3 sum;  // sum of the corners, three times the centroid
     };
-    std::vector<Extent> extents(triangles_.size());
-    for (std::size_t t = 0; t < extents.size(); ++t)
+    std::vector<Extent> extents;
+    extents.reserve(triangles_.size());
+    for (const Triangle& t : triangles_)
     {
-        Extent& e = extents[t];
-        const auto& c = triangles_[t].corner;
+        Extent& e = extents.emplace_back();
+        const auto& c = t.corner;
         e.lower = e.upper = points_[c[0]], e.sum = points_[c[0]] + points_[c[1]] + points_[c[2]];
         for (std::size_t i = 1; i < 3; ++i)
             for (int k = 0; k < 3; ++k)
