@@ -29,7 +29,7 @@ RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction)
     const Vec3 across = std::fabs(cosine) < 0.5 ? direction - cosine * u : cross(cross(u, direction), u);
     const double sine = length(across);
     const bool leans = sine > 1e-12;  // a level end has no furthest point: the choice would depend on rounding and jump from step to step
-    if (cosine > 0 || !leans)
+    if (cosine > 0 || direction == Vec3{})
     {
         if (leans) out.withdrawal = withdrawn(radius, sine, cosine, across / sine, u);
         for (; out.count < 4; ++out.count) out.p[out.count] = middle + radius * fixed[out.count], out.id[out.count] = out.count;

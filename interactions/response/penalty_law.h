@@ -43,7 +43,7 @@ double stiffness_at_approach(double k, double n, double speed, double inverse_ma
 ///   f = -k xi - c u_t, shortened to |f| = limit.
 /// Neither gives energy: with s = -k xi in the cone, (s - f) . (s - (s - c u_t)) >= 0 for the point f of the cone nearest to s - c u_t, so
 /// f . u_t <= s . u_t. A spring that slips until spring and damper together are within the cone (S. Luding, Cohesive, frictional
-/// powders, Granular Matter 10 (2008) 235, eq. 10) would be stretched by the damper, against nothing that pays for it.
+/// powders, Granular Matter 10 (2008) 235) would be stretched by the damper, against nothing that pays for it.
 SurfaceForce surface_force(double k, double c, double limit, const Vec3& stretch, const Vec3& slip);
 
 }  // namespace plab::response

@@ -83,7 +83,8 @@ TEST_CASE("a disc that tumbles onto springs of a mesh takes explicit steps, howe
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = true;
     s.run(1.5);
-    // An implicit method cannot step over a jump of the slope, and takes thousands of parts of each piece: minutes for these 90 steps.
+    // An implicit method cannot step over a jump of the slope, and takes thousands of parts of each piece: where such a disc came to rest
+    // between facets, a step took minutes.
     const auto methods = std::get<std::int64_t>(s.get("solver", "methods"));
     CHECK((methods & (8 + 16 + 32)) == 0);
     CHECK(length(s.vec("p", "linear_velocity")) < 1);
