@@ -209,8 +209,9 @@ Separation separation_of(const Solid& A, const Solid& B, double beyond)
     if (A.core() == Core::Point) return point_solid(A, B);
     if (B.core() == Core::Point) return flipped(point_solid(B, A));
 
-    // Two boxes have their contacts by other means (box_axes.h). For their gap the search gives a level box a point in the middle of an edge
-    // that both share; with a corner instead, a stack that falls by 0.1 mm without friction did not come to rest (sleeping_state_test.cpp).
+    // Two boxes have their contacts by other means (box_axes.h). For their gap the search gives a level box a point in the middle of an
+    // edge that both share; with a corner instead, a stack that falls by 0.1 mm without friction did not come to rest
+    // (sleeping_state_test.cpp).
     const bool are_boxes = A.core() == Core::Box && B.core() == Core::Box;
     std::optional<Separation> simple;
     if (!are_boxes) simple = over_a_face(A, B);
