@@ -182,7 +182,7 @@ private:
             const Surface::Edge& e = s_.edges()[triangle.edge[closest.which]];
             if (!e.sharp || e.side[0] != t) return;
             for (std::size_t i = 0; i < (e.border() ? 1u : 2u); ++i)
-                if (dot(d, e.inward[i]) > 0) return;
+                if (dot(d, s_.inward(e, i)) > 0) return;
         }
         else
         {
@@ -227,7 +227,7 @@ private:
                           const double outside = dot(n, p - s_.point(t.corner[0])), gap = outside - K_.radius();
                           if (!(gap < out_.limit())) return;
                           for (std::size_t i = 0; i < 3; ++i)
-                              if (dot(t.inward[i], over - s_.point(t.corner[i])) < -beside) return;
+                              if (dot(s_.inward(t, i), over - s_.point(t.corner[i])) < -beside) return;
                           if (outside < 0 && !lies_behind(p, -outside)) return;
                           const std::uint32_t feature = corner_feature(true, (t.patch & 0xffu) << 10 | (number & 0x3ffu));
                           const Vec3 on_surface = p - outside * n, point = on_surface + (0.5 * gap) * n;
@@ -278,7 +278,7 @@ private:
     bool leads_away(const Surface::Edge& e, const Vec3& m, const Vec3& at) const
     {
         for (std::size_t i = 0; i < (e.border() ? 1u : 2u); ++i)
-            if (dot(m, e.inward[i]) > kAlong) return false;
+            if (dot(m, s_.inward(e, i)) > kAlong) return false;
         const double near = kAtEnd * size_;
         for (const std::uint32_t corner : {e.a, e.b})
             if (length_squared(at - s_.point(corner)) <= near * near) return s_.leaves_corner(corner, m, kAlong);

@@ -54,8 +54,6 @@ void TriangleSurface::join(std::span<const Vec3> vertices, std::span<const std::
         const Vec3 e1 = points_[c[1]] - points_[c[0]], e2 = points_[c[2]] - points_[c[0]], area = cross(e1, e2);
         if (!(length(area) > 1e-14 * (length_squared(e1) + length_squared(e2)))) continue;
         triangle.normal = normalized(area);
-        for (std::size_t i = 0; i < 3; ++i)
-            triangle.inward[i] = normalized(cross(triangle.normal, points_[c[(i + 1) % 3]] - points_[c[i]]));
         triangles_.push_back(triangle);
     }
 }
@@ -113,11 +111,10 @@ bool TriangleSurface::find_edges()
             const bool is_known = other != kNone && other < half;
             const Index e = is_known ? triangles_[other / 3].edge[other % 3] : static_cast<Index>(edges_.size());
             if (!is_known) edges_.emplace_back().a = triangle.corner[i], edges_.back().b = triangle.corner[(i + 1) % 3];
-            const std::size_t side = is_known ? 1 : 0;
-            edges_[e].side[side] = t, edges_[e].inward[side] = triangle.inward[i];
+            edges_[e].side[is_known ? 1 : 0] = t;
             triangle.edge[i] = e;
         }
-    for (Edge& e : edges_) e.sharp = e.border() || dot(triangles_[e.side[0]].normal, e.inward[1]) < -kFlat;
+    for (Edge& e : edges_) e.sharp = e.border() || dot(triangles_[e.side[0]].normal, inward(e, 1)) < -kFlat;
     return true;
 }
 

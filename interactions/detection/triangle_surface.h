@@ -23,15 +23,13 @@ public:
     struct Triangle
     {
         std::array<std::uint32_t, 3> corner{}, edge{};  ///< edge i runs from corner i to the next one
-        std::array<Vec3, 3> inward;                     ///< unit, in the plane, perpendicular to edge i
-        Vec3 normal;                                    ///< unit, towards the front
-        std::uint32_t patch = 0;                        ///< number of a group of adjacent triangles without a sharp edge between them
+        Vec3 normal;              ///< unit, towards the front
+        std::uint32_t patch = 0;  ///< number of a group of adjacent triangles without a sharp edge between them
     };
     struct Edge
     {
-        std::uint32_t a = 0, b = 0;                       ///< corners
+        std::uint32_t a = 0, b = 0;                       ///< corners, in the order in which they follow each other in the first side
         std::array<std::uint32_t, 2> side{kNone, kNone};  ///< triangles; a border edge has only the first
-        std::array<Vec3, 2> inward;                       ///< for each side: in its plane, perpendicular to the edge
         bool sharp = false;                               ///< convex by more than rounding, or a border: a solid can touch this edge itself
         bool border() const { return side[1] == kNone; }
     };
@@ -42,6 +40,14 @@ public:
     const Vec3& point(std::uint32_t corner) const { return points_[corner]; }
     const std::vector<Triangle>& triangles() const { return triangles_; }
     const std::vector<Edge>& edges() const { return edges_; }
+    /// Unit, in the plane of a triangle, perpendicular to its edge i and into it. Not stored: few are asked for, and the largest surfaces
+    /// have 6 million.
+    Vec3 inward(const Triangle& t, std::size_t i) const { return inward(t.normal, t.corner[i], t.corner[(i + 1) % 3]); }
+    /// The same of the triangle at a side (0 or 1) of an edge.
+    Vec3 inward(const Edge& e, std::size_t side) const
+    {
+        return inward(triangles_[e.side[side]].normal, side == 0 ? e.a : e.b, side == 0 ? e.b : e.a);
+    }
     const Vec3& lower() const { return nodes_.front().lower; }
     const Vec3& upper() const { return nodes_.front().upper; }
 
@@ -71,6 +77,10 @@ private:
     };
     static constexpr std::size_t kDepth = 64;
 
+    Vec3 inward(const Vec3& normal, std::uint32_t from, std::uint32_t to) const
+    {
+        return normalized(cross(normal, points_[to] - points_[from]));
+    }
     void join(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles);
     bool find_edges();
     void find_corners();

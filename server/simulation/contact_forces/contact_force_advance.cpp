@@ -19,7 +19,7 @@ constexpr int kMostEvents = 20000;
 /// weakest).
 constexpr double kFewestPerContact = 4;
 /// The same for a resting contact.
-constexpr double kFewestAtRest = 8;
+constexpr double kFewestAtRest = 5;
 constexpr int kMostTrials = 100;
 constexpr int kMostPieces = 10'000'000;
 /// As a fraction of the smaller body's radius: gaps up to this are detected, whatever the speeds.
