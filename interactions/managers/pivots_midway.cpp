@@ -184,7 +184,8 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     if (!p.mobile()) return;
     Vec3 &r = of_b ? p.r_b : p.r_a, &r_other = of_b ? p.r_a : p.r_b;
     const Vec3 fixed = r - c.pivot.arm;
-    const Turn turn = on_rim || is_lever(fixed, r) ? turn_of(own.w, half) : Turn::Little, turn_of_face = turn_of(other.w, half);
+    const bool on_lever = is_lever(fixed, r);
+    const Turn turn = on_rim || on_lever ? turn_of(own.w, half) : Turn::Little, turn_of_face = turn_of(other.w, half);
     if (turn_of_face == Turn::Far || (turn == Turn::Little && turn_of_face == Turn::Little)) return;
     const std::uint32_t mover = of_b ? p.b : p.a;
     // What tumbles so far has another axis by then.
@@ -194,7 +195,7 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     const Quat turned = half_turn_of(mover, own.w, half), turned_face = half_turn_of(of_b ? p.a : p.b, other.w, half);
     const Vec3 arm = turned_arm(c.pivot, p.n * -sign, turned, turned_face);
     // What spins about its own axis, as a capsule or a coin that rolls, takes its lever along, however fast.
-    if (!is_near(arm, c.pivot.arm) || !is_near(rotate(turned, fixed), fixed)) return;
+    if (!is_near(arm, c.pivot.arm) || (on_lever && !is_near(rotate(turned, fixed), fixed))) return;
 
     const Vec3 slides = own.v + cross(own.w, r) - other.v - cross(other.w, r_other);
     const Vec3 around = cross(own.w, fixed) + (arm - c.pivot.arm) / half;  // m/s of the point, about the centre of mass

@@ -113,15 +113,18 @@ TEST_CASE("a rod that turns about the vertical falls on a smooth floor with orde
 
 TEST_CASE("on a turntable, a ball rolls in circles and a box that stands is carried round, with order 2")
 {
-    constexpr double kSpin = 1, kEnd = 5, x0 = 0.5, r = 0.05;
+    constexpr double kSpin = 1, kEnd = 5, x0 = 0.5, r = 0.05, kSmall = 0.02;
     const std::string table = "<component id='table' type='State/Kinematic' position='0 0 -0.1' angular_velocity='0 0 " + text(kSpin) +
                               "' shape='Shape/Cylinder' shape.radius='3' shape.height='0.2'/>";
     // The ball's velocity turns at 2/7 of the table's.
     constexpr double v = 0.2, rate = 2.0 / 7 * kSpin;
     const Path round = [](double t) { return Vec3{x0 - v * (1 - std::cos(rate * t)) / rate, v * std::sin(rate * t) / rate, r}; };
-    const std::string ball = "<component id='body' type='State/RigidBody' mass='1' position='" + text(Vec3{x0, 0, r}) +
-                             "' linear_velocity='" + text(Vec3{0, v, 0}) + "' angular_velocity='" + text(Vec3{(kSpin * x0 - v) / r, 0, 0}) +
-                             "' shape='Shape/Sphere' shape.radius='0.05'/>";
+    const auto ball = [&](double radius)
+    {
+        return "<component id='body' type='State/RigidBody' mass='1' position='" + text(Vec3{x0, 0, radius}) + "' linear_velocity='" +
+               text(Vec3{0, v, 0}) + "' angular_velocity='" + text(Vec3{(kSpin * x0 - v) / radius, 0, 0}) +
+               "' shape='Shape/Sphere' shape.radius='" + text(radius) + "'/>";
+    };
     const Path carried = [](double t) { return Vec3{x0 * std::cos(kSpin * t), x0 * std::sin(kSpin * t), 0.1}; };
     const std::string box = "<component id='body' type='State/RigidBody' mass='1' position='" + text(Vec3{x0, 0, 0.1}) +
                             "' linear_velocity='" + text(Vec3{0, kSpin * x0, 0}) + "' angular_velocity='" + text(Vec3{0, 0, kSpin}) +
@@ -130,7 +133,10 @@ TEST_CASE("on a turntable, a ball rolls in circles and a box that stands is carr
     CHECK(error(table + box + contact({"SequentialImpulse", "LocalRoot"}, 0.5), 1.0 / 480, kEnd, carried) < 1e-3);
     for (const Managed& how : kManaged)
     {
-        check_order(std::string("ball ") + how.manager, table + ball + contact(how, 2), 1.0 / 240, kEnd, round, 1e-5);
+        check_order(std::string("ball ") + how.manager, table + ball(r) + contact(how, 2), 1.0 / 240, kEnd, round, 1e-5);
+        // A small one turns by 0.25 rad in a step.
+        const Path small_round = [&](double t) { return round(t) + Vec3{0, 0, kSmall - r}; };
+        check_order(std::string("small ball ") + how.manager, table + ball(kSmall) + contact(how, 2), 1.0 / 60, kEnd, small_round, 1e-4);
         check_order(std::string("box ") + how.manager, table + box + contact(how, 0.5), 1.0 / 240, kEnd, carried, 1e-4);
     }
 }
