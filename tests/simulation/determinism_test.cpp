@@ -124,6 +124,34 @@ TEST_CASE("the order of a blueprint's components does not matter")
     CHECK(one.hash() == two.hash());
 }
 
+TEST_CASE("what bodies do does not depend on others that they never meet")
+{
+    // A ball leaves the top of a round hill. A far larger one, far away, has gaps that are far larger in the middle of a step.
+    const std::string ball = R"(
+  <component id="g" type="Field/Gravity" between="*"/>
+  <component id="hill" type="State/Static" shape="Shape/Sphere" shape.radius="1"/>
+  <component id="ball" type="State/RigidBody" mass="1" position="0 0 1.1" linear_velocity="0.5 0 0.05"
+             shape="Shape/Sphere" shape.radius="0.1"/>)";
+    const std::string other = R"(
+  <component id="other_hill" type="State/Static" position="100 0 0" shape="Shape/Sphere" shape.radius="10"/>
+  <component id="other" type="State/RigidBody" mass="1" position="100 0 15" linear_velocity="8 0 0.05"
+             shape="Shape/Sphere" shape.radius="5"/>)";
+    for (const char* resolution : {"None", "LocalRoot", "Speculative"})
+    {
+        CAPTURE(std::string(resolution));
+        const std::string contact = std::string("<component id='contact' type='CDetection/ODE' between='*' resolution='Resolution/") +
+                                    resolution + "' response.friction='0.5'/>";
+        Scene alone(ball + contact, "dt='1/60'"), among(ball + other + contact, "dt='1/60'");
+        REQUIRE_MESSAGE(alone.loaded(), alone.error());
+        REQUIRE_MESSAGE(among.loaded(), among.error());
+        for (int i = 0; i < 60; ++i)
+        {
+            alone.step(), among.step();
+            REQUIRE(alone.vec("ball", "position") == among.vec("ball", "position"));
+        }
+    }
+}
+
 TEST_CASE("reading energies, hashes and events changes nothing")
 {
     Scene watched = Scene::file("scenes/fan_and_balloons.xml"), alone = Scene::file("scenes/fan_and_balloons.xml");

@@ -82,11 +82,11 @@ void HardContacts::advance_in_parts(std::span<const std::uint32_t> observed, dou
         for (std::uint32_t k = 1; k <= parts && !step_.frame.give_up(); ++k)
         {
             const double end = k == parts ? to : from + (to - from) * k / parts;
-            if (k > 1) put_kinematic(begin);
+            if (k > 1) motion_.put_prescribed(kinematic_, begin);
             advance_at_once(part_members_, observed, begin, end, book, trial);
             begin = end;
         }
-        put_kinematic(from);
+        motion_.put_prescribed(kinematic_, from);
     }
     std::ranges::fill(parts_of_, 0u);
 }
@@ -106,15 +106,6 @@ void HardContacts::list_kinematic(std::uint32_t island)
     }
     std::sort(kinematic_.begin(), kinematic_.end());
     kinematic_.erase(std::unique(kinematic_.begin(), kinematic_.end()), kinematic_.end());
-}
-
-/// Puts these bodies where they are at a time (s since the start of the step).
-void HardContacts::put_kinematic(double time)
-{
-    if (kinematic_.empty()) return;
-    GroupSystem& system = motion_.system_for(kinematic_, {});
-    system.begin(time, time, {}, nullptr);
-    system.move_prescribed();
 }
 
 void HardContacts::advance_at_once(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,

@@ -60,7 +60,6 @@ private:
     void advance_in_parts(std::span<const std::uint32_t> observed, double from, double to, WorkBook book, bool trial);
     void list_divided(std::span<const std::uint32_t> groups);
     void list_kinematic(std::uint32_t island);
-    void put_kinematic(double time);
     std::size_t list_islands();
 
     StepState& step_;

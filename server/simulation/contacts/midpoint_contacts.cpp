@@ -58,7 +58,15 @@ void MidpointContacts::advance_to_midpoint(GroupSystem& system, std::span<const 
     }
 }
 
-/// Detects the same pairs at the midpoint, with a margin for the gap that the curvature opens: less than displacement^2 / 2r.
+/// m: the gap that a contact may have at the midpoint. Curvature opens less than displacement^2 / 2r.
+double MidpointContacts::margin_of(const Contact& c) const
+{
+    const Vec3 displacement = displacement_of(c.b) - displacement_of(c.a);
+    const double radius = contacts_.smaller_radius(c.a, c.b), opens = radius > 0 ? dot(displacement, displacement) / (2 * radius) : 0.0;
+    return std::max(0.0, -c.depth) + opens + contacts_.overlap_tolerance(c.a, c.b);
+}
+
+/// Detects the same pairs at the midpoint.
 void MidpointContacts::query(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all)
 {
     midpoint_.clear();
@@ -71,10 +79,7 @@ void MidpointContacts::query(std::span<const std::uint32_t> places, const std::v
         {
             const Contact& c = all[places[i]].contact;
             if (persistent_.empty() || persistent_.back().a != c.a || persistent_.back().b != c.b) persistent_.push_back({c.a, c.b, {}});
-            const Vec3 displacement = displacement_of(c.b) - displacement_of(c.a);
-            const double radius = contacts_.smaller_radius(c.a, c.b),
-                         opens = radius > 0 ? dot(displacement, displacement) / (2 * radius) : 0.0;
-            margin = std::max(margin, std::max(0.0, -c.depth) + opens + contacts_.overlap_tolerance(c.a, c.b));
+            margin = std::max(margin, margin_of(c));
         }
         contacts_.detect(contacts_.detectors()[detector], detector, persistent_, true, midpoint_, margin);
     }
@@ -105,7 +110,10 @@ void MidpointContacts::update_contacts(std::span<const std::uint32_t> places, st
         c.pivot = {};  // a manager would put the point midway once more
         const auto found = std::lower_bound(midpoint_.begin(), midpoint_.end(), key(all[place]),
                                             [&](const FoundContact& f, const auto& wanted) { return key(f) < wanted; });
-        const bool same = found != midpoint_.end() && key(*found) == key(all[place]) && dot(found->contact.normal, c.normal) > kSameCurve;
+        // One margin serves all pairs of the query. What others need must not decide about this contact, or it would go another way when
+        // its island is advanced alone.
+        const bool same = found != midpoint_.end() && key(*found) == key(all[place]) && dot(found->contact.normal, c.normal) > kSameCurve &&
+                          found->contact.depth >= -margin_of(c);
         if (!same)
         {
             // Not found at the midpoint: keep the normal, and let the contact point move with the advanced bodies.

@@ -61,6 +61,7 @@ private:
         Quat start;
     };
     Vec3 displacement_of(Ref body) const { return displacements_[body.index]; }
+    double margin_of(const Contact& contact) const;
     void query(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all);
 
     StepState& step_;

@@ -15,9 +15,14 @@ void sort_places(std::vector<std::uint32_t>& places)
 
 }  // namespace
 
+std::uint32_t RestingPairs::moving_group_of(Ref body) const
+{
+    return world_.host().bodies.dynamic(body.index) ? groups_.of(body) : kNoIndex;
+}
+
 void RestingPairs::put(const PairState& pair, std::size_t place)
 {
-    const std::uint32_t ga = groups_.of(pair.a), gb = groups_.of(pair.b);
+    const std::uint32_t ga = moving_group_of(pair.a), gb = moving_group_of(pair.b);
     const auto put_in = [&](std::uint32_t group)
     {
         nodes_.push_back({pair.detector, pair.a, pair.b, place, first_[group]});
@@ -66,7 +71,7 @@ void RestingPairs::find(std::span<const std::uint32_t> groups, std::vector<std::
     }
     wanted_.begin(groups_.all.size());
     for (const std::uint32_t g : groups) wanted_.add(g);
-    const auto is_wanted = [&](Ref r) { return groups_.of(r) != kNoIndex && wanted_.has(groups_.of(r)); };
+    const auto is_wanted = [&](Ref r) { return moving_group_of(r) != kNoIndex && wanted_.has(moving_group_of(r)); };
     const std::vector<PairState>& pairs = cache_.pairs();
     visited_ += pairs.size();
     for (std::uint32_t i = 0; i < pairs.size(); ++i)
@@ -77,7 +82,6 @@ void RestingPairs::find(std::span<const std::uint32_t> groups, std::vector<std::
 bool RestingPairs::close_in_passes(IndexSet& groups, std::vector<std::uint32_t>& places)
 {
     constexpr int kMostPasses = 3;
-    const Bodies& bodies = world_.host().bodies;
     const std::vector<PairState>& pairs = cache_.pairs();
     for (int pass = 0; pass < kMostPasses; ++pass)
     {
@@ -88,10 +92,10 @@ bool RestingPairs::close_in_passes(IndexSet& groups, std::vector<std::uint32_t>&
         {
             const PairState& p = pairs[i];
             if (!p.resting) continue;
-            const std::uint32_t ga = groups_.of(p.a), gb = groups_.of(p.b);
+            const std::uint32_t ga = moving_group_of(p.a), gb = moving_group_of(p.b);
             const bool has_a = ga != kNoIndex && groups.has(ga), has_b = gb != kNoIndex && groups.has(gb);
             if (has_a || has_b) places.push_back(i);
-            if (has_a == has_b || !bodies.dynamic(p.a.index) || !bodies.dynamic(p.b.index)) continue;
+            if (has_a == has_b || ga == kNoIndex || gb == kNoIndex) continue;
             groups.add(has_a ? gb : ga);
             grows = true;
         }
@@ -104,14 +108,14 @@ void RestingPairs::close_over(IndexSet& groups, std::vector<std::uint32_t>& plac
 {
     if (is_most_of_all(groups.members()) && close_in_passes(groups, places)) return;
     places.clear();
-    const Bodies& bodies = world_.host().bodies;
     // A group is never left again once it is a member, so each is visited once.
     for (std::size_t i = 0; i < groups.members().size(); ++i)
         each_of(groups.members()[i],
                 [&](const PairState& p, std::uint32_t place)
                 {
                     places.push_back(place);
-                    if (bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) groups.add(groups_.of(p.a)), groups.add(groups_.of(p.b));
+                    for (const Ref r : {p.a, p.b})
+                        if (const std::uint32_t g = moving_group_of(r); g != kNoIndex) groups.add(g);
                 });
     sort_places(places);
 }

@@ -1,5 +1,6 @@
 /// Which persistent pairs a group takes part in. An impact rewinds and solves the groups that it touches and whatever rests on them; with
-/// this index it finds their pairs without going through all pairs of the scene.
+/// this index it finds their pairs without going through all pairs of the scene. Kinematic bodies take part in none: nothing that touches
+/// them reaches others through them.
 #pragma once
 
 #include <span>
@@ -40,6 +41,8 @@ private:
         std::uint32_t next = kNoIndex;
     };
     void build();
+    /// kNoIndex: static or kinematic.
+    std::uint32_t moving_group_of(Ref body) const;
     void put(const PairState& pair, std::size_t place);
     bool close_in_passes(IndexSet& groups, std::vector<std::uint32_t>& places);
     /// Calls found(pair, place) for each persistent pair of a group.

@@ -50,9 +50,11 @@ void EventLocator::advance_scope(double time, WorkBook book, bool trial)
 
 /// Groups whose pieces began at the same time advance together, as those do that rest on one another: alone, each would be solved as if
 /// its neighbours could not move. Pieces of a scope begin at different times where a pair is about to meet of which one has been rewound.
+/// Kinematic bodies are where each piece begins, as contacts with them are detected there, and move last.
 void EventLocator::move_scope(double time, WorkBook book, bool trial)
 {
-    left_.assign(scope_.begin(), scope_.end());
+    left_.clear(), kinematic_.clear();
+    for (const std::uint32_t g : scope_) (step_.groups.all[g].prescribed_bodies.empty() ? left_ : kinematic_).push_back(g);
     for (std::size_t first = 0, end = 0; first < left_.size(); first = end)
     {
         const double begin = motion_.segment_begin(left_[first]);
@@ -60,6 +62,7 @@ void EventLocator::move_scope(double time, WorkBook book, bool trial)
         const auto rest = std::stable_partition(left_.begin() + static_cast<std::ptrdiff_t>(first), left_.end(), begins);
         end = static_cast<std::size_t>(rest - left_.begin());
         const std::span<const std::uint32_t> together = std::span(left_).subspan(first, end - first);
+        motion_.put_prescribed(kinematic_, begin);
         if (any_certifies_ && std::none_of(together.begin(), together.end(), [&](std::uint32_t g) { return rests_[g] != 0; }))
         {
             for (const std::uint32_t g : together) advance_group(g, time, book, trial);
@@ -68,6 +71,7 @@ void EventLocator::move_scope(double time, WorkBook book, bool trial)
         for (const std::uint32_t g : together) motion_.rewind(g);
         advance_.advance(together, begin, time, book, trial);
     }
+    for (const std::uint32_t g : kinematic_) advance_group(g, time, book, trial);
 }
 
 /// Puts the groups of the scope to their state at `time`. Both ends of a piece are stored; other times take an advance.
@@ -191,8 +195,7 @@ void EventLocator::announce_rest(const FoundContact& f, PairState& pair)
     pair.resting = true;
     pair.bounces = {};
     contacts_.resting().add(pair);
-    for (const Ref r : {pair.a, pair.b})
-        if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) rests_[g] = 1;
+    note_resting_groups_of(pair);
     step_.emit(contacts_.contact_event("contact.rest", pair, rest_time_, f.contact, f.contact.impulse));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace plab::simulation
 {
@@ -128,14 +129,18 @@ void EventLocator::note_resting_groups()
     rests_.assign(step_.groups.all.size(), 0);
     if (forces_.any()) forces_.flag_near(rests_);  // springs couple groups as well
     for (const PairState& p : contacts_.cache().pairs())
-    {
-        if (!p.resting) continue;
-        for (const Ref r : {p.a, p.b})
-            if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) rests_[g] = 1;
-    }
+        if (p.resting) note_resting_groups_of(p);
 }
 
-/// Adds whatever rests on a member, because an impact propagates through persistent contacts and is rewound with all it reaches.
+/// Kinematic bodies do not count: nothing that touches them reaches others through them.
+void EventLocator::note_resting_groups_of(const PairState& pair)
+{
+    for (const Ref r : {pair.a, pair.b})
+        if (step_.world.host().bodies.dynamic(r.index)) rests_[step_.groups.of(r)] = 1;
+}
+
+/// Adds whatever rests on a member, because an impact propagates through persistent contacts and is rewound with all it reaches. So are
+/// the kinematic bodies that it rests on, which pass nothing on.
 void EventLocator::close_over_resting_pairs()
 {
     for (std::size_t known = 0; known != in_scope_.members().size();)
@@ -144,6 +149,9 @@ void EventLocator::close_over_resting_pairs()
         known = in_scope_.members().size();
         if (forces_.any()) close_over_forces();
     }
+    for (const std::uint32_t place : resting_places_)
+        for (const PairState& p = std::as_const(contacts_).cache().pairs()[place]; const Ref r : {p.a, p.b})
+            if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) in_scope_.add(g);
 }
 
 /// Adds the groups that springs may connect with members.
@@ -209,7 +217,9 @@ void EventLocator::process()
     if (any_certifies_) start_pieces(time);
     if (time < step_.frame.step) go_on(time);
     for (const std::uint32_t g : scope_) motion_.save_end(g);
-    for (const std::uint32_t g : disturbed_) ++versions_[g];
+    // No impact changes the motion of a kinematic body, so its pairs with all others stay as they are.
+    for (const std::uint32_t g : disturbed_)
+        if (step_.groups.all[g].solver != kNoIndex) ++versions_[g];
     if (any_certifies_) end_pieces();
 }
 

@@ -152,6 +152,7 @@ private:
     void process();
     void detect_again(std::vector<FoundContact>& found);
     void note_resting_groups();
+    void note_resting_groups_of(const PairState& pair);
     void begin_budget();
     double sweeps_and_queries() const;
     double held_bodies() const;
@@ -270,20 +271,20 @@ private:
     Advance& advance_;
     std::vector<Candidate> candidates_;  ///< slots
     std::vector<std::uint32_t> free_;
-    std::vector<Entry> queue_;                   ///< heap, earliest event on top
-    std::vector<std::uint64_t> versions_;        ///< by group: number of its present smooth piece within the step
-    std::vector<std::uint32_t> chosen_;          ///< slots that are answered together
-    std::vector<std::uint32_t> set_aside_;       ///< slots
-    std::vector<std::uint32_t> scope_;           ///< groups that are rewound, ascending
-    std::vector<std::uint32_t> left_;            ///< scratch of move_scope()
-    std::vector<std::uint32_t> resting_places_;  ///< of the persistent pairs in a scope
-    std::vector<std::uint8_t> flags_;            ///< by group, scratch
-    IndexSet in_scope_;                          ///< groups, while a scope is collected
-    std::vector<std::uint32_t> disturbed_;       ///< groups of the last answer's pairs, and what rests on them
-    std::vector<std::uint8_t> rests_;            ///< by group: it takes part in a persistent contact
-    bool any_rests_ = false;                     ///< a group in the scope of the present answer takes part in a persistent contact
-    bool rewound_ = false;                       ///< the last answer rewound groups
-    bool answers_at_end_ = false;                ///< the work budget is spent: nothing is located any more
+    std::vector<Entry> queue_;                     ///< heap, earliest event on top
+    std::vector<std::uint64_t> versions_;          ///< by group: number of its present smooth piece within the step
+    std::vector<std::uint32_t> chosen_;            ///< slots that are answered together
+    std::vector<std::uint32_t> set_aside_;         ///< slots
+    std::vector<std::uint32_t> scope_;             ///< groups that are rewound, ascending
+    std::vector<std::uint32_t> left_, kinematic_;  ///< scratch of move_scope()
+    std::vector<std::uint32_t> resting_places_;    ///< of the persistent pairs in a scope
+    std::vector<std::uint8_t> flags_;              ///< by group, scratch
+    IndexSet in_scope_;                            ///< groups, while a scope is collected
+    std::vector<std::uint32_t> disturbed_;         ///< groups of the last answer's pairs, and what rests on them
+    std::vector<std::uint8_t> rests_;              ///< by group: it takes part in a persistent contact
+    bool any_rests_ = false;                       ///< a group in the scope of the present answer takes part in a persistent contact
+    bool rewound_ = false;                         ///< the last answer rewound groups
+    bool answers_at_end_ = false;                  ///< the work budget is spent: nothing is located any more
     WorkBudget budget_;
     std::vector<PairKey> live_;              ///< pairs in the queue, sorted
     std::vector<ShapeGap> shape_gaps_;       ///< of the last distance query, if a body has several shapes

@@ -26,8 +26,8 @@ constexpr double kUncertified = 0x1p-20;
 /// Number of advancement steps towards a contact before the end of the piece is sampled, to find a bracket.
 constexpr int kFirstSteps = 4;
 
-/// What slides over a seam and sinks in by no more than this in the rest of the step, as a fraction of the overlap that is tolerated, is not
-/// an event: far more than rounding explains, and far too little to be seen.
+/// What slides over a seam and sinks in by no more than this in the rest of the step, as a fraction of the overlap that is tolerated, is
+/// not an event: far more than rounding explains, and far too little to be seen.
 constexpr double kSeamSlack = 0x1p-10;
 
 }  // namespace

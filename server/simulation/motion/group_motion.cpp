@@ -96,6 +96,14 @@ GroupSystem& GroupMotion::system_for(std::span<const std::uint32_t> groups, std:
     return system;
 }
 
+void GroupMotion::put_prescribed(std::span<const std::uint32_t> groups, double time)
+{
+    if (groups.empty()) return;
+    GroupSystem& system = system_for(groups, {});
+    system.begin(time, time, {}, nullptr);
+    system.move_prescribed();
+}
+
 bool GroupMotion::run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events)
 {
     CostMeter& meter = system.meter();

@@ -60,6 +60,8 @@ public:
     /// Advances each group by its solver, from its present state. A trial emits no events and freezes no object.
     void advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,
                         WorkBook book, bool trial);
+    /// Puts the prescribed members of these groups to where they are at `time` (s since the start of the step).
+    void put_prescribed(std::span<const std::uint32_t> groups, double time);
     /// False if some state is no longer finite.
     bool run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events);
     /// False if the command refused.
