@@ -89,3 +89,29 @@ TEST_CASE("a disc that tumbles onto springs of a mesh takes explicit steps, howe
     CHECK((methods & (8 + 16 + 32)) == 0);
     CHECK(length(s.vec("p", "linear_velocity")) < 1);
 }
+
+TEST_CASE("bodies that joints hold land on springs, and on one another, with explicit steps")
+{
+    const auto body = [](const char* id, const char* shape, const char* motion)
+    { return std::string("<component id='") + id + "' type='State/RigidBody' shape='" + shape + "' " + motion + "/>"; };
+    const std::string links =
+        "<component id='brick' type='Shape/Box' half_extents='0.12 0.08 0.05'/>"
+        "<component id='can' type='Shape/Cylinder' radius='0.08' height='0.12'/><component id='ball' type='Shape/Sphere' radius='0.1'/>" +
+        body("a", "brick", "mass='1' position='0.14 0.24 0.64' linear_velocity='0.37 -0.06 0' angular_velocity='-4 -0.7 1.1'") +
+        body("b", "brick", "mass='2' position='-0.01 0.22 0.86' linear_velocity='-0.5 0.6 0' angular_velocity='0.5 -4.9 2.2'") +
+        body("c", "can", "mass='1.6' position='0.17 0.08 1.08' linear_velocity='0.2 0.7 0' angular_velocity='-1.7 2.3 2'") +
+        body("d", "ball", "mass='0.8' position='0.04 -0.16 1.3' linear_velocity='0.9 0.6 0' angular_velocity='-0.5 -4.2 -1.8'") +
+        "<component id='ab' type='Constraint/Ball' a='a' b='b' anchor='0 0 0.75'/>"
+        "<component id='cd' type='Constraint/Ball' a='c' b='d' anchor='0 0 1.19'/>";
+    Scene s(std::string(kGravity) + kGround + links +
+                "<component id='contact' type='CDetection/ODE' between='*' response='Response/Penalty' response.friction='0.5' "
+                "response.restitution='0.3'/>",
+            "dt='1/120'");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    // Where a contact slips and sticks, an implicit method took 240,000 evaluations for a piece of 4e-6 s, and the step minutes.
+    std::uint64_t most = 0;
+    while (s.simulation().time() < 0.7) s.step(), most = std::max<std::uint64_t>(most, s.simulation().stepper().report().evaluations);
+    CHECK(most < 100'000);
+    CHECK((std::get<std::int64_t>(s.get("solver", "methods")) & (8 + 16 + 32)) == 0);
+    MESSAGE("evaluations in a step: at most ", most);
+}

@@ -45,7 +45,10 @@ TEST_CASE("a ball that bounces by itself is located: its trajectory has a closed
 
 TEST_CASE("a heap is not located: work, overlap and energy stay bounded in each step")
 {
-    for (const std::uint64_t seed : {1u, 2u})
+    // A ball falls by up to 20 mm in a step before it is stopped, so how deep a heap goes is chance: the mean tells more than the largest.
+    constexpr std::uint64_t kHeaps = 24;
+    double mean = 0;  // m, of the deepest overlaps
+    for (std::uint64_t seed = 1; seed <= kHeaps; ++seed)
     {
         CAPTURE(seed);
         Scene s(heap(64, seed) + std::string(kGround) + gravity("*") + kContact);
@@ -54,11 +57,12 @@ TEST_CASE("a heap is not located: work, overlap and energy stay bounded in each 
         double before = energy(s);
         const double all = before;
         int most = 0;
+        double deepest = 0;
         while (s.simulation().time() < 1.5)
         {
             s.step();
             most = std::max(most, s.simulation().stepper().report().trials);
-            CHECK(s.simulation().stepper().report().deepest < 0.02);
+            deepest = std::max(deepest, s.simulation().stepper().report().deepest);
             const double now = energy(s);
             CHECK(now <= before + 1e-3 * all);
             before = now;
@@ -66,7 +70,11 @@ TEST_CASE("a heap is not located: work, overlap and energy stay bounded in each 
         CHECK(most < 6000);
         CHECK(s.count("resolution.chosen") > 0);
         CHECK(before < 0.5 * all);
+        CHECK(deepest < 0.025);
+        mean += deepest / static_cast<double>(kHeaps);
     }
+    MESSAGE("mean of the deepest overlaps: ", mean, " m");
+    CHECK(mean < 0.015);
 }
 
 TEST_CASE("what joints hold together counts as an island as soon as a part of it touches")

@@ -26,6 +26,7 @@ constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 constexpr std::size_t kManySize = kExponentialSize;
 constexpr double kPart = 0.4;
 constexpr double kMostParts = 16;
+constexpr std::int64_t kMostPartsOfSwitch = 8;
 /// Above kRadauSize, internal steps with control of their error are the only other way, and dearer still: 80 ms instead of 10 ms a step
 /// where a chain of 100 links under a heavy ball is a taut string with |h lambda| = 7.
 constexpr double kMostPartsOfLarge = 64;
@@ -163,9 +164,15 @@ private:
         advance_by_runge_kutta4(h_, system_);
     }
 
-    /// Of the explicit methods of order 4 this one has the smallest error where forces are not smooth.
+    /// Of the explicit methods of order 4 splitting has the smallest error where forces are not smooth. With joints a few parts, without
+    /// looking whether they are short enough: no part that has a switch within it is.
     void advance_over_a_switch()
     {
+        if (system_.is_constrained())
+        {
+            say(Method::RungeKutta4Parts);
+            return finish_by_runge_kutta4(h_, 0, std::clamp<std::int64_t>(parts_of(1, kPart), 1, kMostPartsOfSwitch), system_);
+        }
         say(Method::RotationSplitting);
         advance_by_splitting(h_, 4, system_);
     }
@@ -227,6 +234,7 @@ private:
 
     std::string why(Method method) const
     {
+        static constexpr const char* kOfContacts = ", of contacts alone, for which the step is divided already";
         const std::string stiff = "|h lambda| = " + number(stiffness_) + " is above 0.5";
         switch (method)
         {
@@ -237,13 +245,14 @@ private:
             case Method::Radau5:
                 return stiff;
             case Method::RungeKutta4Parts:
+                if (are_only_contacts()) return stiff + kOfContacts;
                 return stiff + "; a group of " + std::to_string(FlatSystem(system_).size()) +
                        " numbers costs less in short steps than in an implicit one";
             case Method::DormandPrince54:
                 return stiff + "; " + std::to_string(FlatSystem(system_).size()) + " numbers in a group are too many for implicit steps (" +
                        std::to_string(kRadauSize) + "; after a jump " + std::to_string(kManySize) + "), so internal steps are short";
             case Method::RotationSplitting:
-                if (!(spin_ > kFast)) return stiff + ", of contacts alone, for which the step is divided already";
+                if (!(spin_ > kFast)) return stiff + kOfContacts;
                 return "h |w| = " + number(spin_) + " is above 0.05";
             default:
                 if (system_.is_undersampled()) return "contacts need more substeps than are allowed, whatever the method";

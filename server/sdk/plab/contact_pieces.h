@@ -9,9 +9,9 @@ class ContactPieces
 {
 public:
     virtual ~ContactPieces() = default;
-    /// Contacts are the only forces that are not uniform, and no rows constrain the members. The advance is then as short as the springs
-    /// of the contacts need, whatever the method: where its slopes differ all the same, a contact begins, ends, or passes an edge, and
-    /// shorter steps would not help.
+    /// Contacts are the only forces that are not uniform; joints may hold members. The advance is then as short as the springs of the
+    /// contacts need, whatever the method: where its slopes differ all the same, a contact begins, ends, slips, sticks or passes an edge,
+    /// and an implicit method would only look for that in ever shorter steps.
     virtual bool are_only_contacts() const = 0;
 };
 

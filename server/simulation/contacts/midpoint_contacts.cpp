@@ -58,12 +58,13 @@ void MidpointContacts::advance_to_midpoint(GroupSystem& system, std::span<const 
     }
 }
 
-/// m: the gap that a contact may have at the midpoint. Curvature opens less than displacement^2 / 2r.
+/// m: the gap that a contact may have at the midpoint: what it has now, what its bodies separate by, and what curvature opens, which is
+/// less than displacement^2 / 2r.
 double MidpointContacts::margin_of(const Contact& c) const
 {
     const Vec3 displacement = displacement_of(c.b) - displacement_of(c.a);
     const double radius = contacts_.smaller_radius(c.a, c.b), opens = radius > 0 ? dot(displacement, displacement) / (2 * radius) : 0.0;
-    return std::max(0.0, -c.depth) + opens + contacts_.overlap_tolerance(c.a, c.b);
+    return std::max(0.0, -c.depth) + std::max(0.0, dot(displacement, c.normal)) + opens + contacts_.overlap_tolerance(c.a, c.b);
 }
 
 /// Detects the same pairs at the midpoint.

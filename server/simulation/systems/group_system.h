@@ -167,7 +167,7 @@ public:
     std::size_t quantity_count() const override { return quantity_values_; }
     bool interrupted() const override { return frame_.interruption && frame_.interruption->due(); }
     bool is_undersampled() const override { return extra_ != nullptr && extra_->is_undersampled(); }
-    bool are_only_contacts() const override { return uniform_ && extra_ != nullptr && !is_constrained(); }
+    bool are_only_contacts() const override { return uniform_ && extra_ != nullptr; }
     bool forces_are_uniform() const override { return uniform_ && !extra_ && !is_constrained(); }
     bool is_constrained() const override { return rows_ != nullptr; }
 
