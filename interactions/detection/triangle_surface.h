@@ -23,8 +23,8 @@ public:
     struct Triangle
     {
         std::array<std::uint32_t, 3> corner{}, edge{};  ///< edge i runs from corner i to the next one
-        Vec3 normal;              ///< unit, towards the front
-        std::uint32_t patch = 0;  ///< number of a group of adjacent triangles without a sharp edge between them
+        Vec3 normal;                                    ///< unit, towards the front
+        std::uint32_t patch = 0;                        ///< number of a group of adjacent triangles without a sharp edge between them
     };
     struct Edge
     {
