@@ -26,6 +26,7 @@ constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 constexpr std::size_t kManySize = kExponentialSize;
 constexpr double kPart = 0.4;
 constexpr double kMostParts = 16;
+/// A step over a switch of contacts, whose slopes tell nothing about how many would do.
 constexpr std::int64_t kMostPartsOfSwitch = 8;
 /// Above kRadauSize, internal steps with control of their error are the only other way, and dearer still: 80 ms instead of 10 ms a step
 /// where a chain of 100 links under a heavy ball is a taut string with |h lambda| = 7.
