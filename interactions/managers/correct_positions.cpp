@@ -47,6 +47,9 @@ double displacement_of(const Contact& c, const StepChoices& choices)
 }
 
 constexpr double kMostTurn = 0.25;  // rad: so far errors of joints count as linear in the turns
+/// A correction leaves an error of the square of its turns. If each may turn as far as the last one, a taut chain under a heavy load is
+/// thrown to and fro.
+constexpr double kShrink = 0.5;
 
 double largest_turn(const Problem& problem)
 {
@@ -80,17 +83,17 @@ void find_from_rest(Problem& problem, double tolerance, Method& method, Verdict&
 /// Where displacements would turn bodies so far that errors of joints are not linear, finds others with smaller turns. A taut chain of
 /// light links under a heavy load would be thrown from one side to the other to close a joint; if inertias count more than masses, the load
 /// is drawn to it instead. Inertias change nothing but which of all displacements that close the joints is found. Returns their factor.
-double keep_turns_small(Problem& problem, double tolerance, Method& method, Verdict& out)
+double keep_turns_small(Problem& problem, double tolerance, double most_turn, Method& method, Verdict& out)
 {
     constexpr double kFactor = 16;
     constexpr int kTries = 4;
     double weight = 1;
-    for (int n = 0; n < kTries && largest_turn(problem) > kMostTurn; ++n)
+    for (int n = 0; n < kTries && largest_turn(problem) > most_turn; ++n)
     {
         weight *= kFactor, problem.weigh_turns(kFactor);
         find_from_rest(problem, tolerance, method, out);
     }
-    if (const double most = largest_turn(problem); most > kMostTurn) scale(problem, kMostTurn / most);
+    if (const double most = largest_turn(problem); most > most_turn) scale(problem, most_turn / most);
     return weight;
 }
 
@@ -117,13 +120,13 @@ void leave_overlap(Problem& problem, bool of_movers_only)
 }
 
 /// Finds displacements that reach no farther than a chain of bodies would pass on. Points that joints keep in overlap are given up, and if
-/// others are always missed then, all of them, so that joints alone are closed. Where bodies would have to go far, so are those of movers
-/// with one another, and what joints alone ask for is kept to small turns; what is beyond reach even then is left to the next steps.
-/// Returns keep_turns_small().
-double find_within_reach(Problem& problem, double worst, double tolerance, bool small_turns, Method& method, Verdict& out)
+/// others are always missed then, all of them, so that joints alone are closed. Where bodies would have to go far or turn by more than
+/// `most_turn`, rad, so are those of movers with one another, and what joints alone ask for is kept to small turns; what is beyond reach
+/// even then is left to the next steps. Returns keep_turns_small().
+double find_within_reach(Problem& problem, double worst, double tolerance, double most_turn, Method& method, Verdict& out)
 {
     constexpr int kTries = 3;
-    const auto keep_small = [&] { return small_turns ? keep_turns_small(problem, tolerance, method, out) : 1.0; };
+    const auto keep_small = [&] { return keep_turns_small(problem, tolerance, most_turn, method, out); };
     find_from_rest(problem, tolerance, method, out);
     if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint) || problem.points.empty()) return keep_small();
     for (int n = 1; n <= kTries && leave_kept_overlap(problem, worst); ++n)
@@ -132,7 +135,7 @@ double find_within_reach(Problem& problem, double worst, double tolerance, bool 
         find_from_rest(problem, tolerance, method, out);
     }
     const double reach = worst * static_cast<double>(problem.movers.size() + 1);
-    const auto beyond = [&] { return std::max(largest_shift(problem) / reach, largest_turn(problem) / kMostTurn); };
+    const auto beyond = [&] { return std::max(largest_shift(problem) / reach, largest_turn(problem) / std::min(most_turn, kMostTurn)); };
     if (!(beyond() > 1)) return 1;
     leave_overlap(problem, true);
     find_from_rest(problem, tolerance, method, out);
@@ -141,12 +144,12 @@ double find_within_reach(Problem& problem, double worst, double tolerance, bool 
     return weight;
 }
 
-Verdict displace_by(Problem& problem, double worst, double tolerance, Bodies& bodies, Shafts& shafts, Method& method, bool small_turns)
+Verdict displace_by(Problem& problem, double worst, double tolerance, Bodies& bodies, Shafts& shafts, Method& method, double most_turn)
 {
     problem.turn_with(bodies);
     for (Point& p : problem.points) p.friction = 0;
     Verdict out;
-    const double weight = find_within_reach(problem, worst, tolerance, small_turns, method, out);
+    const double weight = find_within_reach(problem, worst, tolerance, most_turn, method, out);
     displace(problem, bodies, shafts);
     if (weight != 1) problem.weigh_turns(1 / weight);
     return out;
@@ -176,8 +179,10 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
     worst = std::max(worst, apart);
     if (worst <= kPositionTolerance * length) return {};
     if (apart > kJointsApart * length) problem.turn_lines();
-    Verdict out = displace_by(problem, worst, kPositionTolerance * length, bodies, shafts, method, apart > kJointsApart * length);
+    Verdict out = displace_by(problem, worst, kPositionTolerance * length, bodies, shafts, method,
+                              apart > kJointsApart * length ? kMostTurn : HUGE_VAL);
     const bool may_part = !island.rows.empty() && largest_turn(problem) > kMuch;
+    double most_turn = kMostTurn;
     for (int n = 1; n < kMostCorrections && (apart > kJointsApart * length || may_part); ++n)
     {
         island.motion->refresh_rows();
@@ -194,7 +199,8 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
         else
             leave_overlap(problem, false);
         problem.turn_lines();
-        out.join(displace_by(problem, worst, kPositionTolerance * length, bodies, shafts, method, true));
+        most_turn *= kShrink;
+        out.join(displace_by(problem, worst, kPositionTolerance * length, bodies, shafts, method, most_turn));
     }
     return out;
 }

@@ -10,9 +10,9 @@ namespace plab::resolution
 namespace
 {
 
-/// In radii per step, of thin bodies in half thicknesses: beyond it a body may end up behind the middle of what it hits, or on its far
-/// side.
-constexpr double kFast = 0.25;
+/// In radii per step, of thin bodies in half thicknesses: so far may bodies sink into what they meet. If it is more, two that meet a third
+/// one from opposite sides push it to and fro between them, each step out of one and as deep into the other.
+constexpr double kFast = 0x1p-5;
 
 std::string_view name_of(ImpactSearch search)
 {

@@ -7,7 +7,7 @@
 /// An island is what persistent contacts and the joints of touching bodies hold together. An impact rewinds and solves the whole island of
 /// its bodies, so the cost of locating all impacts of a step grows with the square of the largest island, and not with the number of bodies
 /// that fly or rest apart: a thousand balls that bounce on a floor are located, a heap of nine is not. Fast: within a
-/// step a body moves by more than a quarter of its radius, or a point of a thin body by more than an eighth of its thickness.
+/// step a point of a body moves by more than 1/32 of its radius, or one of a thin body by more than 1/64 of its thickness.
 ///
 /// After a step with a large island, impacts are located again only when none has been large for `dwell`: the feet of a robot that lands
 /// lift off for a few steps at a time, and each of its impacts costs as much as a step of all that its joints hold.

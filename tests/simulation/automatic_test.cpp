@@ -45,10 +45,9 @@ TEST_CASE("a ball that bounces by itself is located: its trajectory has a closed
 
 TEST_CASE("a heap is not located: work, overlap and energy stay bounded in each step")
 {
-    // How deep a heap goes is chance, so many are looked at. In those that go deepest a pair stays pressed into one another for some steps.
+    // How deep a heap goes is chance, so many are looked at.
     constexpr std::uint64_t kHeaps = 24;
     double mean = 0;  // m, of the deepest overlaps
-    int deep = 0;
     for (std::uint64_t seed = 1; seed <= kHeaps; ++seed)
     {
         CAPTURE(seed);
@@ -71,13 +70,11 @@ TEST_CASE("a heap is not located: work, overlap and energy stay bounded in each 
         CHECK(most < 6000);
         CHECK(s.count("resolution.chosen") > 0);
         CHECK(before < 0.5 * all);
-        CHECK(deepest < 0.022);
-        deep += deepest < 0.02 ? 0 : 1;
+        CHECK(deepest < 0.02);
         mean += deepest / static_cast<double>(kHeaps);
     }
-    MESSAGE("mean of the deepest overlaps: ", mean, " m; 20 mm or more in ", deep, " heaps");
-    CHECK(mean < 0.014);
-    CHECK(deep <= 2);
+    MESSAGE("mean of the deepest overlaps: ", mean, " m");
+    CHECK(mean < 0.008);
 }
 
 TEST_CASE("what joints hold together counts as an island as soon as a part of it touches")

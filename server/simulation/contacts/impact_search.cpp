@@ -15,8 +15,8 @@ namespace plab::simulation
 namespace
 {
 
-/// The largest distance that a dynamic body moves within the step at its present velocity, in units of its radius. Of a thin body the
-/// fastest point counts, in units of half its thickness: a plate that falls over is fast for its edge.
+/// The largest distance that a point of a dynamic body moves within the step at its present velocities, in units of its radius; of a thin
+/// body, in units of half its thickness: a plate that falls over is fast for its edge. A ball that spins moves nowhere.
 double largest_travel(const Bodies& bodies, std::span<const double> radius_of_body, std::span<const double> thickness_of_body, double h)
 {
     double most = 0;
@@ -27,7 +27,8 @@ double largest_travel(const Bodies& bodies, std::span<const double> radius_of_bo
         constexpr double kThin = 0.125;  // of the radius
         const double thickness = thickness_of_body[b];
         const bool thin = thickness > 0 && thickness < kThin * radius;
-        const double speed = length(bodies.velocity[b]) + (thin ? length(bodies.angular_velocity[b]) * (radius - thickness) : 0.0);
+        const double lever = thickness > 0 ? std::max(0.0, radius - thickness) : 0.0;
+        const double speed = length(bodies.velocity[b]) + length(bodies.angular_velocity[b]) * lever;
         most = std::max(most, speed * h / (thin ? thickness : radius));
     }
     return most;
