@@ -36,15 +36,17 @@ constexpr double kMostPartsOfLarge = 64;
 constexpr std::size_t kMinimalSize = 600;
 /// RungeKutta4 is stable up to |h lambda| = 2.8.
 constexpr double kLimit = 2;
-constexpr std::int64_t kFewestParts = 4;
+constexpr std::int64_t kFewestParts = 4, kFewestOverJumps = 64;
 constexpr Tolerance kTolerance{1e-9, 1e-12};
-constexpr std::int64_t kMaxSubsteps = 20000;
-/// Of large groups: after so many internal steps the rest of the step is made without control of its error. A bridge whose planks are as
-/// long as its span has no smooth motion at all.
-constexpr std::int64_t kMostOfLarge = 1000;
-/// After so many, as a trial: if these have not come as far as 4 times kMostOfLarge of them would have to, the others are not made.
-constexpr std::int64_t kTrialOfLarge = 100;
-constexpr double kHopeless = static_cast<double>(kTrialOfLarge) / (4.0 * static_cast<double>(kMostOfLarge));
+/// After so many internal steps the rest of the step is made without control of its error. A bridge whose planks are as long as its span
+/// has no smooth motion at all; nor has what a script pushes back from both sides of a line.
+constexpr std::int64_t kMostSubsteps = 1000;
+/// After so many, as a trial: if these have not come as far as 4 times kMostSubsteps of them would have to, the others are not made.
+constexpr std::int64_t kTrialSubsteps = 100;
+/// Implicit steps of which few are refused get to the end of the step, however short they are.
+constexpr std::int64_t kMostIfSmooth = 20000;
+constexpr double kMostRefused = 0.25;
+constexpr double kHopeless = static_cast<double>(kTrialSubsteps) / (4.0 * static_cast<double>(kMostSubsteps));
 
 /// In order of increasing cost.
 enum class Method : std::size_t
@@ -56,9 +58,10 @@ enum class Method : std::size_t
     Radau5,
     DormandPrince54,
     RungeKutta4Parts,
+    OverJumps,
 };
-constexpr std::array<std::string_view, 7> kNames{"Exact",  "RungeKutta4",     "RotationSplitting",   "Exponential",
-                                                 "Radau5", "DormandPrince54", "RungeKutta4 in parts"};
+constexpr std::array<std::string_view, 8> kNames{"Exact",  "RungeKutta4",     "RotationSplitting",    "Exponential",
+                                                 "Radau5", "DormandPrince54", "RungeKutta4 in parts", "RungeKutta4 over jumps"};
 
 std::int64_t bit_of(Method method) { return std::int64_t{1} << static_cast<int>(method); }
 
@@ -185,9 +188,49 @@ private:
         const std::size_t size = FlatSystem(system_).size();
         if (size > kManySize && stiffness_ <= kPart * (size > kRadauSize ? kMostPartsOfLarge : kMostParts)) return advance_in_parts();
         if (size > kRadauSize) return advance_explicitly(0);
+        advance_implicitly();
+    }
+
+    /// Internal steps with control of their error, as long as there is a prospect that they reach the end. `if_smooth`: so many while few
+    /// of them are refused.
+    template <class Advance>
+    auto while_it_gets_on(double from, std::int64_t if_smooth, Advance advance)
+    {
+        auto counts = advance(from, kTrialSubsteps);
+        const std::int64_t otherwise = counts.reached - from > kHopeless * (h_ - from) ? kMostSubsteps : 0;
+        auto last = counts;
+        while (counts.reached < h_ && !system_.interrupted())
+        {
+            const std::int64_t made = counts.accepted + counts.refused;
+            const bool smooth = static_cast<double>(last.refused) < kMostRefused * static_cast<double>(last.accepted + last.refused);
+            const std::int64_t left = (smooth ? std::max(otherwise, if_smooth) : otherwise) - made;
+            if (left <= 0) break;
+            last = advance(counts.reached, std::min(left, kMostSubsteps));
+            counts.accepted += last.accepted, counts.refused += last.refused, counts.evaluations += last.evaluations;
+            counts.reached = last.reached;
+        }
+        return counts;
+    }
+
+    void advance_implicitly()
+    {
         say(Method::Radau5);
-        const Radau5Counts counts = advance_by_radau(h_, kTolerance, kMaxSubsteps, m_.exponential.radau, system_);
-        if (!trial_ && counts.reached < h_) report_radau_gave_up(start_, row_, counts);
+        const auto radau = [&](double from, std::int64_t most)
+        { return advance_by_radau(h_, kTolerance, most, m_.exponential.radau, system_, from); };
+        const Radau5Counts counts = while_it_gets_on(0, kMostIfSmooth, radau);
+        if (!(counts.reached < h_) || system_.interrupted()) return;
+        if (stiffness_ > kLimit * static_cast<double>(kMostSubsteps))
+        {
+            if (!trial_) report_radau_gave_up(start_, row_, counts);
+            return;
+        }
+        say(Method::OverJumps);
+        finish_without_control(counts.reached, kFewestOverJumps);
+    }
+
+    void finish_without_control(double from, std::int64_t fewest)
+    {
+        finish_by_runge_kutta4(h_, from, std::max(fewest, parts_of((h_ - from) / h_, kLimit)), system_);
     }
 
     /// A robot of six hinges has 72 numbers as bodies, and 12 as angles and rates: that is what an implicit step costs.
@@ -210,27 +253,21 @@ private:
     void advance_explicitly(double from)
     {
         say(Method::DormandPrince54);
-        DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kTrialOfLarge, m_.dormand, system_, from);
-        if (counts.reached < h_ && counts.reached - from > kHopeless * (h_ - from) && !system_.interrupted())
-        {
-            const DormandPrinceCounts more =
-                advance_by_dormand_prince(h_, kTolerance, kMostOfLarge - kTrialOfLarge, m_.dormand, system_, counts.reached);
-            counts.accepted += more.accepted, counts.refused += more.refused, counts.evaluations += more.evaluations;
-            counts.reached = more.reached;
-        }
+        const auto dormand = [&](double begin, std::int64_t most)
+        { return advance_by_dormand_prince(h_, kTolerance, most, m_.dormand, system_, begin); };
+        const DormandPrinceCounts counts = while_it_gets_on(from, 0, dormand);
         if (!(counts.reached < h_) || system_.interrupted()) return;
         if (!trial_)
             report_gave_up(start_, row_, counts,
                            "name a solver, take shorter steps, or look for joints that leave a mechanism just no room to move",
                            "the rest is made by RungeKutta4 without control of its error");
-        const double left = h_ - counts.reached;
-        finish_by_runge_kutta4(h_, counts.reached, std::max<std::int64_t>(kFewestParts, parts_of(left / h_, kLimit)), system_);
+        finish_without_control(counts.reached, kFewestParts);
     }
 
     /// Parts of a share of the step in each of which |h lambda| is `most`.
     std::int64_t parts_of(double share, double most) const
     {
-        return static_cast<std::int64_t>(std::min(std::ceil(stiffness_ * share / most), static_cast<double>(kMostOfLarge)));
+        return static_cast<std::int64_t>(std::min(std::ceil(stiffness_ * share / most), static_cast<double>(kMostSubsteps)));
     }
 
     std::string why(Method method) const
@@ -252,6 +289,10 @@ private:
             case Method::DormandPrince54:
                 return stiff + "; " + std::to_string(FlatSystem(system_).size()) + " numbers in a group are too many for implicit steps (" +
                        std::to_string(kRadauSize) + "; after a jump " + std::to_string(kManySize) + "), so internal steps are short";
+            case Method::OverJumps:
+                return stiff +
+                       ", and internal steps with control of their error do not get on, as where forces jump to and fro; name a solver of "
+                       "fixed steps, or let forces change gradually";
             case Method::RotationSplitting:
                 if (!(spin_ > kFast)) return stiff + kOfContacts;
                 return "h |w| = " + number(spin_) + " is above 0.05";
@@ -271,7 +312,8 @@ private:
         rows_.methods[row_] |= bit_of(method);
         rows_.reason[row_] = std::string(kNames[static_cast<std::size_t>(method)]) + ": " + why(method);
         if (method == Method::RungeKutta4 || method == Method::Exact) return;
-        const Severity severity = method == Method::DormandPrince54 ? Severity::Warning : Severity::Info;
+        const bool told = method == Method::DormandPrince54 || method == Method::OverJumps;
+        const Severity severity = told ? Severity::Warning : Severity::Info;
         start_.emit(row_, "solver.chosen", severity, rows_.reason[row_], {spin_, stiffness_, h_});
     }
 
@@ -305,7 +347,7 @@ void AutomaticRows::describe(Schema& schema)
     schema.output(
         methods, "methods", unit::one,
         "used since the run began, a sum: 1 Exact, 2 RungeKutta4, 4 RotationSplitting, 8 Exponential, 16 Radau5, 32 DormandPrince54, "
-        "64 RungeKutta4 in parts");
+        "64 RungeKutta4 in parts, 128 RungeKutta4 over jumps");
     schema.output(last_methods, "last_methods", unit::one, "used in the last step, as the same sum");
     schema.output(step, "step", unit::one, "the step to which these outputs belong; -1: none yet").or_else(-1);
     schema.output(soft_turns, "soft_turns", unit::one,

@@ -5,6 +5,7 @@
 ///   a little stiff, many numbers         RungeKutta4 in parts (as many as make each part soft; |h lambda| up to 6.4, or 25.6 if large)
 ///   stiff otherwise                      Radau5               (rtol 1e-9)
 ///   stiff and large (200 numbers)        DormandPrince54      (explicit: many short internal steps)
+///   forces that jump to and fro          RungeKutta4 over jumps (64 parts or more, without control of the error; Radau5 tries it first)
 ///   fast spin, no joints                 RotationSplitting 4
 ///   else                                 RungeKutta4          (the same bits as Solver/RungeKutta4)
 ///
@@ -15,6 +16,12 @@
 /// same method, groups that share the component do not influence one another, and nothing has to be saved. The output `resolved` names
 /// the methods of the last steps, and `reason` states why the last new one was chosen. The event solver.chosen reports each method once,
 /// except RungeKutta4 and Exact. What parts do not resolve is continued by DormandPrince54.
+///
+/// Control of the error ends where forces jump to and fro: a script that pushes back from both sides of a line, as Coulomb's friction and
+/// bang-bang controllers do, lets no internal step through that is longer than it takes to cross the line (a sliding mode: Filippov,
+/// Differential equations with discontinuous righthand sides). Short equal steps zigzag along the line instead, and follow the sliding motion to
+/// their order 1. A force that jumps once in a step is still located. Each advance therefore takes at most 1000 internal steps, or 20,000 if
+/// few of them are refused.
 /// Sources: Hairer, Wanner, Solving ordinary differential equations II, section IV.2 (stiffness detection); the bounds:
 /// tests/unit/solvers/automatic_test.cpp.
 #pragma once

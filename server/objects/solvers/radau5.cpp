@@ -17,8 +17,8 @@ using namespace radau;
 class Radau5Step
 {
 public:
-    Radau5Step(double h, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
-        : h_(h), m_(memory), flat_(system), stages_(flat_, memory)
+    Radau5Step(double h, double from, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
+        : h_(h), t_(from), m_(memory), flat_(system), stages_(flat_, memory)
     {
         // The estimate is of order 3: see the header.
         const double relative = 0.1 * std::pow(tolerance.relative, 2.0 / 3);
@@ -31,8 +31,8 @@ public:
 
     Radau5Counts run(std::int64_t limit)
     {
-        flat_.evaluate(0, m_.y, m_.f0);
-        double size = h_;
+        flat_.evaluate(t_, m_.y, m_.f0);
+        double size = h_ - t_;
         while (t_ < h_ && counts_.accepted + counts_.refused < limit && all_finite(m_.f0) && !flat_.interrupted())
         {
             const double left = h_ - t_;
@@ -150,7 +150,7 @@ private:
 
     static constexpr double kSafety = 0.9, kShrink = 1.0 / 5, kGrow = 8;
     static constexpr double kLeast = 1e-10;  ///< of the whole step
-    double h_, t_ = 0;
+    double h_, t_;
     Tolerance inner_;
     double newton_limit_ = 0;
     Radau5Memory& m_;
@@ -180,9 +180,10 @@ void Radau5Rows::describe(Schema& schema)
     schema.scratch(memory, "memory", "working vectors and matrices");
 }
 
-Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system)
+Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system,
+                              double from)
 {
-    return Radau5Step(h, tolerance, memory, system).run(max_substeps);
+    return Radau5Step(h, from, tolerance, memory, system).run(max_substeps);
 }
 
 void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts)

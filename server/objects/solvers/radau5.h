@@ -40,7 +40,9 @@ struct Radau5Rows : ErrorControlRows
 void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, DynamicSystem& system);
 
 /// The method itself, for solvers that choose it. It has failed if reached < h.
-Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system);
+/// From `from` on, s.
+Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system,
+                              double from = 0);
 /// The event of an advance that did not reach its end; h in s.
 void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts);
 

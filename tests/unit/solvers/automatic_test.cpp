@@ -118,6 +118,49 @@ TEST_CASE("free flight uses Exact, fast spin RotationSplitting, stiff springs Ex
     CHECK(reaction[0] == doctest::Approx(0.1706167732170483e1).epsilon(1e-8));
 }
 
+TEST_CASE("a script that pushes back from both sides of a line slides along it, at a bounded cost")
+{
+    // |a| = 20 towards the line q + v / 5 = 0, which is reached at kMeets and then followed: q' = -5 q.
+    const double kMeets = (-4 + std::sqrt(4 * 4 + 4 * 10 * 0.3)) / 20;
+    Automatic automatic;
+    Points slider({0.3}, {0}, [](double, const auto& q, const auto& v, auto& a) { a[0] = q[0] + 0.2 * v[0] > 0 ? -20 : 20; });
+    int most = 0;
+    for (int step = 0; step < 240; ++step)
+    {
+        const int before = slider.evaluations;
+        slider.run(1.0 / 240, 1, std::ref(automatic));
+        most = std::max(most, slider.evaluations - before);
+    }
+    const double exact = (0.3 - 10 * kMeets * kMeets) * std::exp(-5 * (1 - kMeets));
+    MESSAGE("error ", std::fabs(slider.place[0] - exact), " m, ", slider.evaluations / 240, " evaluations a step, at most ", most);
+    CHECK(std::fabs(slider.place[0] - exact) < 1e-5);
+    CHECK(std::fabs(slider.speed() + 5 * exact) < 2e-3);
+    CHECK(most < 10000);
+    CHECK(slider.evaluations < 240 * 1500);
+    CHECK(slider.work == doctest::Approx(0.5 * slider.speed() * slider.speed()).epsilon(0.05).scale(1));
+    CHECK(automatic.events.count("solver.chosen") == 2);
+    CHECK(automatic.events.count("solver.gave_up") == 0);
+    CHECK(automatic.resolved().find("over jumps") != std::string::npos);
+}
+
+TEST_CASE("a force that jumps once in a step is located, and a fast smooth motion takes as many internal steps as it needs")
+{
+    // Free until q = 0.1, and thrown back from there on.
+    Automatic automatic;
+    Points thrown({0}, {1}, [](double, const auto& q, const auto&, auto& a) { a[0] = q[0] > 0.1 ? -400 : 0; });
+    thrown.run(0.01, 11, std::ref(automatic));
+    MESSAGE("jump: ", thrown.place[0] - 0.095, " m, ", thrown.speed() + 1, " m/s");
+    CHECK(std::fabs(thrown.place[0] - 0.095) < 1e-7);  // there and back take 0.005 s
+    CHECK(std::fabs(thrown.speed() + 1) < 1e-5);
+    // Duffing's oscillator, no forces: 160 rad in a step.
+    Automatic other;
+    const double k = 1e8;
+    Points duffing({1}, {0}, [&](double, const auto& q, const auto&, auto& a) { a[0] = -k * q[0] * q[0] * q[0]; });
+    duffing.run(0.02, 1, std::ref(other));
+    CHECK(other.resolved() == "Radau5");
+    CHECK(0.5 * duffing.speed() * duffing.speed() + 0.25 * k * std::pow(duffing.place[0], 4) == doctest::Approx(0.25 * k).epsilon(1e-6));
+}
+
 TEST_CASE("many numbers that are a little stiff get parts of RungeKutta4, and DormandPrince54 where something faster begins")
 {
     constexpr std::size_t kMany = 40;  // 80 numbers
