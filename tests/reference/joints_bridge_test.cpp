@@ -145,7 +145,7 @@ void hit_wall(const std::string& manager, double most)
 
 TEST_CASE("a wrecking ball of 400 times the mass of each link of its chain hits a wall, and the chain holds")
 {
-    hit_wall("", 5e-3);
+    hit_wall("", 5e-4);
     hit_wall("response.manager='Manager/SoftStep'", 5e-4);
 }
 

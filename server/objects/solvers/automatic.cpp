@@ -36,13 +36,17 @@ constexpr double kMostPartsOfLarge = 64;
 constexpr std::size_t kMinimalSize = 600;
 /// RungeKutta4 is stable up to |h lambda| = 2.8.
 constexpr double kLimit = 2;
-constexpr std::int64_t kFewestParts = 4, kFewestOverJumps = 64;
+constexpr std::int64_t kFewestParts = 4, kFewestOverJumps = 32;
 constexpr Tolerance kTolerance{1e-9, 1e-12};
 /// After so many internal steps the rest of the step is made without control of its error. A bridge whose planks are as long as its span
 /// has no smooth motion at all; nor has what a script pushes back from both sides of a line.
 constexpr std::int64_t kMostSubsteps = 1000;
 /// After so many, as a trial: if these have not come as far as 4 times kMostSubsteps of them would have to, the others are not made.
 constexpr std::int64_t kTrialSubsteps = 100;
+/// So many implicit steps show whether these find the way between two forces that jump to and fro: they come farther than this share of the
+/// step then.
+constexpr std::int64_t kFewSubsteps = 6;
+constexpr double kLittle = 1.0 / 16;
 /// Implicit steps of which few are refused get to the end of the step, however short they are.
 constexpr std::int64_t kMostIfSmooth = 20000;
 constexpr double kMostRefused = 0.25;
@@ -215,9 +219,16 @@ private:
     void advance_implicitly()
     {
         say(Method::Radau5);
+        double next = 0;
         const auto radau = [&](double from, std::int64_t most)
-        { return advance_by_radau(h_, kTolerance, most, m_.exponential.radau, system_, from); };
-        const Radau5Counts counts = while_it_gets_on(0, kMostIfSmooth, radau);
+        {
+            const Radau5Counts made = advance_by_radau(h_, kTolerance, most, m_.exponential.radau, system_, {from, next});
+            next = made.next;
+            return made;
+        };
+        Radau5Counts counts = radau(0, kFewSubsteps);
+        const bool slides = counts.reached < kLittle * h_ && is_sliding(counts.reached, h_ / kFewestOverJumps, m_.probe, system_);
+        if (counts.reached < h_ && !slides) counts = while_it_gets_on(counts.reached, kMostIfSmooth, radau);
         if (!(counts.reached < h_) || system_.interrupted()) return;
         if (stiffness_ > kLimit * static_cast<double>(kMostSubsteps))
         {

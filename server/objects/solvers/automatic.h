@@ -19,17 +19,17 @@
 ///
 /// Control of the error ends where forces jump to and fro: a script that pushes back from both sides of a line, as Coulomb's friction and
 /// bang-bang controllers do, lets no internal step through that is longer than it takes to cross the line (a sliding mode: Filippov,
-/// Differential equations with discontinuous righthand sides). Short equal steps zigzag along the line instead, and follow the sliding motion to
-/// their order 1. A force that jumps once in a step is still located. Each advance therefore takes at most 1000 internal steps, or 20,000 if
-/// few of them are refused.
-/// Sources: Hairer, Wanner, Solving ordinary differential equations II, section IV.2 (stiffness detection); the bounds:
-/// tests/unit/solvers/automatic_test.cpp.
+/// Differential equations with discontinuous righthand sides). Short equal steps zigzag along the line instead, and follow the sliding
+/// motion to their order 1. A force that jumps once in a step is still located. Each advance therefore takes at most 1000 internal steps,
+/// or 20,000 if few of them are refused. Sources: Hairer, Wanner, Solving ordinary differential equations II, section IV.2 (stiffness
+/// detection); the bounds: tests/unit/solvers/automatic_test.cpp.
 #pragma once
 
 #include "dormand_prince54.h"
 #include "exponential.h"
 #include "radau5.h"
 #include "reports.h"
+#include "stiffness.h"
 
 namespace plab::solvers
 {
@@ -38,6 +38,7 @@ struct AutomaticMemory
 {
     ExponentialMemory exponential;  ///< also used by Radau5
     DormandPrinceMemory dormand;
+    ProbeMemory probe;
     std::int64_t before = 0, shown = 0;  ///< methods of the previous step, and those that `resolved` names, as bits
     std::size_t call = 0;                ///< number of calls in this step
 };

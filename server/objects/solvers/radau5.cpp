@@ -17,8 +17,8 @@ using namespace radau;
 class Radau5Step
 {
 public:
-    Radau5Step(double h, double from, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
-        : h_(h), t_(from), m_(memory), flat_(system), stages_(flat_, memory)
+    Radau5Step(double h, const Radau5Start& start, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
+        : h_(h), t_(start.from), size_(start.length > 0 ? start.length : h - start.from), m_(memory), flat_(system), stages_(flat_, memory)
     {
         // The estimate is of order 3: see the header.
         const double relative = 0.1 * std::pow(tolerance.relative, 2.0 / 3);
@@ -32,17 +32,16 @@ public:
     Radau5Counts run(std::int64_t limit)
     {
         flat_.evaluate(t_, m_.y, m_.f0);
-        double size = h_ - t_;
         while (t_ < h_ && counts_.accepted + counts_.refused < limit && all_finite(m_.f0) && !flat_.interrupted())
         {
             const double left = h_ - t_;
-            const bool last = size >= left * (1 - 1e-12);
-            const double step = last ? left : (2 * size > left ? 0.5 * left : size);
+            const bool last = size_ >= left * (1 - 1e-12);
+            const double step = last ? left : (2 * size_ > left ? 0.5 * left : size_);
             if (t_ + 0.1 * step <= t_) break;
-            size = go(step, last);
+            size_ = go(step, last);
         }
         flat_.write(m_.y);
-        counts_.evaluations = flat_.evaluations(), counts_.reached = t_;
+        counts_.evaluations = flat_.evaluations(), counts_.reached = t_, counts_.next = size_;
         return counts_;
     }
 
@@ -151,6 +150,7 @@ private:
     static constexpr double kSafety = 0.9, kShrink = 1.0 / 5, kGrow = 8;
     static constexpr double kLeast = 1e-10;  ///< of the whole step
     double h_, t_;
+    double size_;  // s, of the next internal step
     Tolerance inner_;
     double newton_limit_ = 0;
     Radau5Memory& m_;
@@ -181,9 +181,9 @@ void Radau5Rows::describe(Schema& schema)
 }
 
 Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system,
-                              double from)
+                              const Radau5Start& start)
 {
-    return Radau5Step(h, from, tolerance, memory, system).run(max_substeps);
+    return Radau5Step(h, start, tolerance, memory, system).run(max_substeps);
 }
 
 void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts)

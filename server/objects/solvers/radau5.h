@@ -25,6 +25,13 @@ namespace plab::solvers
 struct Radau5Counts : SubstepCounts
 {
     std::int64_t factorisations = 0;
+    double next = 0;  ///< s, length that the next internal step would have
+};
+
+/// Where to begin within a step, and with which length; 0: with all that is left. s.
+struct Radau5Start
+{
+    double from = 0, length = 0;
 };
 
 struct Radau5Rows : ErrorControlRows
@@ -40,9 +47,8 @@ struct Radau5Rows : ErrorControlRows
 void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, DynamicSystem& system);
 
 /// The method itself, for solvers that choose it. It has failed if reached < h.
-/// From `from` on, s.
 Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system,
-                              double from = 0);
+                              const Radau5Start& start = {});
 /// The event of an advance that did not reach its end; h in s.
 void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts);
 

@@ -1,6 +1,7 @@
 #include "stiffness.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -125,6 +126,39 @@ double fastest_spin(DynamicSystem& system)
     double most = 0;
     for (std::size_t b = 0; b < system.body_count(); ++b) most = std::fmax(most, spin_of(system, b, system.speeds()));
     return most;
+}
+
+bool is_sliding(double from, double length, ProbeMemory& m, DynamicSystem& system)
+{
+    constexpr std::size_t kProbes = 16;
+    constexpr int kFewestChanges = 3;
+    constexpr double kClose = 0.1;  // of the jump
+    FlatSystem flat(system);
+    for (auto* v : {&m.start, &m.first, &m.rates, &m.change, &m.units}) v->resize(flat.size());
+    flat.read(m.start);
+    flat.units(m.units);
+    m.y = m.start;
+    flat.evaluate(from, m.y, m.first);
+    m.rates = m.first;
+    std::array<double, kProbes> away{};  // from the rates at the start
+    for (std::size_t k = 0; k < kProbes; ++k)
+    {
+        for (std::size_t i = 0; i < m.y.size(); ++i) m.y[i] += length * m.rates[i];
+        flat.evaluate(from + static_cast<double>(k + 1) * length, m.y, m.rates);
+        for (std::size_t i = 0; i < m.y.size(); ++i) m.change[i] = i < flat.places() ? 0.0 : m.rates[i] - m.first[i];
+        away[k] = FlatSystem::norm(m.change, m.units);
+    }
+    flat.write(m.start);
+    const double jump = *std::ranges::max_element(away);
+    int changes = 0;
+    bool was_far = false;
+    for (const double d : away)
+    {
+        if (!(std::min(d, jump - d) <= kClose * jump)) return false;
+        const bool far = d > 0.5 * jump;
+        changes += far != was_far ? 1 : 0, was_far = far;
+    }
+    return changes >= kFewestChanges;
 }
 
 Stiffness stiffness_of(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone)

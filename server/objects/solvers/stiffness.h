@@ -1,8 +1,8 @@
 /// The measured properties that decide which method is suitable for a group.
 #pragma once
 
-#include "flat_system.h"
 #include "fixed_step.h"
+#include "flat_system.h"
 
 namespace plab::solvers
 {
@@ -22,5 +22,13 @@ struct Stiffness
 };
 /// With `each_alone` each member is judged as if there were no others; what passes then also passes in any group.
 Stiffness stiffness_of(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone = false);
+
+/// Whether forces jump to and fro across a line that the motion follows (a sliding mode), as seen in 16 short Euler steps of `length`, s,
+/// from `from` on: their accelerations are close to one of two values, and change between them both ways. Leaves the state as it was.
+struct ProbeMemory
+{
+    std::vector<double> start, y, first, rates, change, units;
+};
+bool is_sliding(double from, double length, ProbeMemory& memory, DynamicSystem& system);
 
 }  // namespace plab::solvers
