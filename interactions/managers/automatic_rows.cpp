@@ -126,13 +126,26 @@ double mobility_of(const ConstraintRow& row, const Island& island, const Bodies&
     return mobility;
 }
 
+/// Whether a contact may press in this step: it touches, it has pressed, or its gap closes at the present velocities. The others of those
+/// that bodies might meet (Resolution/Speculative) cost next to nothing.
+bool may_press(const Contact& c, const Bodies& bodies, double h)
+{
+    if (c.depth >= 0 || !(c.impulse == Vec3{})) return true;
+    const Vec3 rate = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
+    return dot(rate, c.normal) * h < c.depth;
+}
+
 AutomaticRows::Choice choose_method(const StepContext& context, const Island& island, const Bodies& bodies, const AutomaticRows& rows,
                                     Row row)
 {
     const auto most = static_cast<std::size_t>(rows.max_points[row]), resting = static_cast<std::size_t>(rows.max_resting[row]);
     const auto is_linear = [](const ConstraintRow& r) { return r.kind == RowKind::Equality || r.kind == RowKind::ForceChange; };
     const auto joints = static_cast<std::size_t>(std::ranges::count_if(island.rows, is_linear));
-    const std::size_t points = island.contacts.size() + island.rows.size() - joints;
+    const auto presses_on = [&](const Contact& c) { return may_press(c, bodies, island.h); };
+    // A heap is far beyond all bounds, whatever of it touches.
+    const bool heap = island.contacts.size() > 4 * kHeavyPoints * most;
+    const auto contacts = heap ? island.contacts.size() : static_cast<std::size_t>(std::ranges::count_if(island.contacts, presses_on));
+    const std::size_t points = contacts + island.rows.size() - joints;
     const double ratio = mass_ratio(island, bodies);
     // Sweeps let joints stretch under load, the more the longer the chain; a tree of joints costs a factorisation linear time. Where
     // contact points prevail, as in a heap of jointed bodies, each of them may change its state in each iteration, which costs far more.
