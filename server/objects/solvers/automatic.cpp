@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "exact.h"
 #include "fixed_step.h"
@@ -195,40 +196,13 @@ private:
         advance_implicitly();
     }
 
-    /// Internal steps with control of their error, as long as there is a prospect that they reach the end. `if_smooth`: so many while few
-    /// of them are refused.
-    template <class Advance>
-    auto while_it_gets_on(double from, std::int64_t if_smooth, Advance advance)
-    {
-        auto counts = advance(from, kTrialSubsteps);
-        const std::int64_t otherwise = counts.reached - from > kHopeless * (h_ - from) ? kMostSubsteps : 0;
-        auto last = counts;
-        while (counts.reached < h_ && !system_.interrupted())
-        {
-            const std::int64_t made = counts.accepted + counts.refused;
-            const bool smooth = static_cast<double>(last.refused) < kMostRefused * static_cast<double>(last.accepted + last.refused);
-            const std::int64_t left = (smooth ? std::max(otherwise, if_smooth) : otherwise) - made;
-            if (left <= 0) break;
-            last = advance(counts.reached, std::min(left, kMostSubsteps));
-            counts.accepted += last.accepted, counts.refused += last.refused, counts.evaluations += last.evaluations;
-            counts.reached = last.reached;
-        }
-        return counts;
-    }
-
+    /// Radau5, as long as there is a prospect that it gets to the end of the step.
     void advance_implicitly()
     {
         say(Method::Radau5);
-        double next = 0;
-        const auto radau = [&](double from, std::int64_t most)
-        {
-            const Radau5Counts made = advance_by_radau(h_, kTolerance, most, m_.exponential.radau, system_, {from, next});
-            next = made.next;
-            return made;
-        };
-        Radau5Counts counts = radau(0, kFewSubsteps);
-        const bool slides = counts.reached < kLittle * h_ && is_sliding(counts.reached, h_ / kFewestOverJumps, m_.probe, system_);
-        if (counts.reached < h_ && !slides) counts = while_it_gets_on(counts.reached, kMostIfSmooth, radau);
+        prospect_ = {};
+        const Radau5Counts counts = advance_by_radau(h_, kTolerance, kMostIfSmooth, m_.exponential.radau, system_,
+                                                     [this](const Radau5Counts& c) { return gets_on(c); });
         if (!(counts.reached < h_) || system_.interrupted()) return;
         if (stiffness_ > kLimit * static_cast<double>(kMostSubsteps))
         {
@@ -237,6 +211,19 @@ private:
         }
         say(Method::OverJumps);
         finish_without_control(counts.reached, kFewestOverJumps);
+    }
+
+    /// Few are refused while the motion is smooth. Of the others some thousand may pass jumps, if the first hundred have got anywhere.
+    bool gets_on(const Radau5Counts& counts)
+    {
+        const std::int64_t made = counts.accepted + counts.refused;
+        if (made == kFewSubsteps && counts.reached < kLittle * h_)
+            return !is_sliding(counts.reached, m_.exponential.radau.y, h_ / kFewestOverJumps, m_.probe, system_);
+        if (made % kTrialSubsteps != 0) return true;
+        if (made == kTrialSubsteps) prospect_.is_good = counts.reached > kHopeless * h_;
+        const std::int64_t refused = std::exchange(prospect_.refused, counts.refused);
+        const bool smooth = static_cast<double>(counts.refused - refused) < kMostRefused * static_cast<double>(kTrialSubsteps);
+        return smooth || (prospect_.is_good && made < kMostSubsteps);
     }
 
     void finish_without_control(double from, std::int64_t fewest)
@@ -264,9 +251,14 @@ private:
     void advance_explicitly(double from)
     {
         say(Method::DormandPrince54);
-        const auto dormand = [&](double begin, std::int64_t most)
-        { return advance_by_dormand_prince(h_, kTolerance, most, m_.dormand, system_, begin); };
-        const DormandPrinceCounts counts = while_it_gets_on(from, 0, dormand);
+        DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kTrialSubsteps, m_.dormand, system_, from);
+        if (counts.reached < h_ && counts.reached - from > kHopeless * (h_ - from) && !system_.interrupted())
+        {
+            const DormandPrinceCounts more =
+                advance_by_dormand_prince(h_, kTolerance, kMostSubsteps - kTrialSubsteps, m_.dormand, system_, counts.reached);
+            counts.accepted += more.accepted, counts.refused += more.refused, counts.evaluations += more.evaluations;
+            counts.reached = more.reached;
+        }
         if (!(counts.reached < h_) || system_.interrupted()) return;
         if (!trial_)
             report_gave_up(start_, row_, counts,
@@ -345,6 +337,11 @@ private:
     AutomaticMemory& m_;
     DynamicSystem& system_;
     double spin_ = -1, stiffness_ = 0;  ///< spin below 0: not measured
+    struct
+    {
+        std::int64_t refused = 0;  ///< when last looked at
+        bool is_good = false;
+    } prospect_;
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 ///   a little stiff, many numbers         RungeKutta4 in parts (as many as make each part soft; |h lambda| up to 6.4, or 25.6 if large)
 ///   stiff otherwise                      Radau5               (rtol 1e-9)
 ///   stiff and large (200 numbers)        DormandPrince54      (explicit: many short internal steps)
-///   forces that jump to and fro          RungeKutta4 over jumps (64 parts or more, without control of the error; Radau5 tries it first)
+///   forces that jump to and fro          RungeKutta4 over jumps (32 parts or more, without control of the error; Radau5 tries it first)
 ///   fast spin, no joints                 RotationSplitting 4
 ///   else                                 RungeKutta4          (the same bits as Solver/RungeKutta4)
 ///

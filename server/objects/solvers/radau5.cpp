@@ -17,8 +17,8 @@ using namespace radau;
 class Radau5Step
 {
 public:
-    Radau5Step(double h, const Radau5Start& start, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
-        : h_(h), t_(start.from), size_(start.length > 0 ? start.length : h - start.from), m_(memory), flat_(system), stages_(flat_, memory)
+    Radau5Step(double h, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
+        : h_(h), m_(memory), flat_(system), stages_(flat_, memory)
     {
         // The estimate is of order 3: see the header.
         const double relative = 0.1 * std::pow(tolerance.relative, 2.0 / 3);
@@ -29,19 +29,22 @@ public:
         flat_.units(m_.units);
     }
 
-    Radau5Counts run(std::int64_t limit)
+    Radau5Counts run(std::int64_t limit, const GoesOn& goes_on)
     {
-        flat_.evaluate(t_, m_.y, m_.f0);
+        flat_.evaluate(0, m_.y, m_.f0);
+        double size = h_;
         while (t_ < h_ && counts_.accepted + counts_.refused < limit && all_finite(m_.f0) && !flat_.interrupted())
         {
             const double left = h_ - t_;
-            const bool last = size_ >= left * (1 - 1e-12);
-            const double step = last ? left : (2 * size_ > left ? 0.5 * left : size_);
+            const bool last = size >= left * (1 - 1e-12);
+            const double step = last ? left : (2 * size > left ? 0.5 * left : size);
             if (t_ + 0.1 * step <= t_) break;
-            size_ = go(step, last);
+            size = go(step, last);
+            counts_.reached = t_;
+            if (goes_on && !goes_on(counts_)) break;
         }
         flat_.write(m_.y);
-        counts_.evaluations = flat_.evaluations(), counts_.reached = t_, counts_.next = size_;
+        counts_.evaluations = flat_.evaluations(), counts_.reached = t_;
         return counts_;
     }
 
@@ -149,8 +152,7 @@ private:
 
     static constexpr double kSafety = 0.9, kShrink = 1.0 / 5, kGrow = 8;
     static constexpr double kLeast = 1e-10;  ///< of the whole step
-    double h_, t_;
-    double size_;  // s, of the next internal step
+    double h_, t_ = 0;
     Tolerance inner_;
     double newton_limit_ = 0;
     Radau5Memory& m_;
@@ -181,9 +183,9 @@ void Radau5Rows::describe(Schema& schema)
 }
 
 Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system,
-                              const Radau5Start& start)
+                              const GoesOn& goes_on)
 {
-    return Radau5Step(h, start, tolerance, memory, system).run(max_substeps);
+    return Radau5Step(h, tolerance, memory, system).run(max_substeps, goes_on);
 }
 
 void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts)

@@ -16,6 +16,8 @@
 /// Source: Hairer, Wanner, Solving ordinary differential equations II, section IV.8; the program RADAU5.
 #pragma once
 
+#include <functional>
+
 #include "radau5_stages.h"
 #include "reports.h"
 
@@ -25,13 +27,6 @@ namespace plab::solvers
 struct Radau5Counts : SubstepCounts
 {
     std::int64_t factorisations = 0;
-    double next = 0;  ///< s, length that the next internal step would have
-};
-
-/// Where to begin within a step, and with which length; 0: with all that is left. s.
-struct Radau5Start
-{
-    double from = 0, length = 0;
 };
 
 struct Radau5Rows : ErrorControlRows
@@ -46,9 +41,11 @@ struct Radau5Rows : ErrorControlRows
 /// One step over context.dt, from coordinates 0.
 void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, DynamicSystem& system);
 
+/// Asked after each internal step that was tried, whether to go on. memory.y is the state at counts.reached then.
+using GoesOn = std::function<bool(const Radau5Counts& counts)>;
 /// The method itself, for solvers that choose it. It has failed if reached < h.
 Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system,
-                              const Radau5Start& start = {});
+                              const GoesOn& goes_on = {});
 /// The event of an advance that did not reach its end; h in s.
 void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts);
 

@@ -128,16 +128,15 @@ double fastest_spin(DynamicSystem& system)
     return most;
 }
 
-bool is_sliding(double from, double length, ProbeMemory& m, DynamicSystem& system)
+bool is_sliding(double from, std::span<const double> y, double length, ProbeMemory& m, DynamicSystem& system)
 {
     constexpr std::size_t kProbes = 16;
     constexpr int kFewestChanges = 3;
     constexpr double kClose = 0.1;  // of the jump
     FlatSystem flat(system);
-    for (auto* v : {&m.start, &m.first, &m.rates, &m.change, &m.units}) v->resize(flat.size());
-    flat.read(m.start);
+    for (auto* v : {&m.first, &m.rates, &m.change, &m.units}) v->resize(flat.size());
     flat.units(m.units);
-    m.y = m.start;
+    m.y.assign(y.begin(), y.end());
     flat.evaluate(from, m.y, m.first);
     m.rates = m.first;
     std::array<double, kProbes> away{};  // from the rates at the start
@@ -148,7 +147,6 @@ bool is_sliding(double from, double length, ProbeMemory& m, DynamicSystem& syste
         for (std::size_t i = 0; i < m.y.size(); ++i) m.change[i] = i < flat.places() ? 0.0 : m.rates[i] - m.first[i];
         away[k] = FlatSystem::norm(m.change, m.units);
     }
-    flat.write(m.start);
     const double jump = *std::ranges::max_element(away);
     int changes = 0;
     bool was_far = false;

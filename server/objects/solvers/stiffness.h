@@ -24,11 +24,12 @@ struct Stiffness
 Stiffness stiffness_of(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone = false);
 
 /// Whether forces jump to and fro across a line that the motion follows (a sliding mode), as seen in 16 short Euler steps of `length`, s,
-/// from `from` on: their accelerations are close to one of two values, and change between them both ways. Leaves the state as it was.
+/// from `from` on, where the state is `y` (FlatSystem): their accelerations are close to one of two values, and change between them both
+/// ways. Leaves the system in another state.
 struct ProbeMemory
 {
-    std::vector<double> start, y, first, rates, change, units;
+    std::vector<double> y, first, rates, change, units;
 };
-bool is_sliding(double from, double length, ProbeMemory& memory, DynamicSystem& system);
+bool is_sliding(double from, std::span<const double> y, double length, ProbeMemory& memory, DynamicSystem& system);
 
 }  // namespace plab::solvers
