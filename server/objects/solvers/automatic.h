@@ -21,8 +21,10 @@
 /// bang-bang controllers do, lets no internal step through that is longer than it takes to cross the line (a sliding mode: Filippov,
 /// Differential equations with discontinuous righthand sides). Short equal steps zigzag along the line instead, and follow the sliding
 /// motion to their order 1. A force that jumps once in a step is still located. Each advance therefore takes at most 1000 internal steps,
-/// or 20,000 if few of them are refused. Sources: Hairer, Wanner, Solving ordinary differential equations II, section IV.2 (stiffness
-/// detection); the bounds: tests/unit/solvers/automatic_test.cpp.
+/// or 20,000 if few of them are refused.
+///
+/// Sources: Hairer, Wanner, Solving ordinary differential equations II, section IV.2 (stiffness detection); the bounds:
+/// tests/unit/solvers/automatic_test.cpp.
 #pragma once
 
 #include "dormand_prince54.h"
