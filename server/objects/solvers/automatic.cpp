@@ -204,12 +204,14 @@ private:
         const Radau5Counts counts = advance_by_radau(h_, kTolerance, kMostIfSmooth, m_.exponential.radau, system_,
                                                      [this](const Radau5Counts& c) { return gets_on(c); });
         if (!(counts.reached < h_) || system_.interrupted()) return;
-        if (stiffness_ > kLimit * static_cast<double>(kMostSubsteps))
+        // Measured across a jump, |h lambda| tells nothing; probes do.
+        if (prospect_.probed.grows && stiffness_ > kLimit * static_cast<double>(kMostSubsteps))
         {
             if (!trial_) report_radau_gave_up(start_, row_, counts);
             return;
         }
         say(Method::OverJumps);
+        if (!prospect_.probed.grows) return finish_by_runge_kutta4(h_, counts.reached, kFewestOverJumps, system_);
         finish_without_control(counts.reached, kFewestOverJumps);
     }
 
@@ -217,13 +219,17 @@ private:
     bool gets_on(const Radau5Counts& counts)
     {
         const std::int64_t made = counts.accepted + counts.refused;
-        if (made == kFewSubsteps && counts.reached < kLittle * h_)
-            return !is_sliding(counts.reached, m_.exponential.radau.y, h_ / kFewestOverJumps, m_.probe, system_);
+        const auto slides = [&]
+        {
+            prospect_.probed = probe(counts.reached, m_.exponential.radau.y, h_ / kFewestOverJumps, m_.probe, system_);
+            return prospect_.probed.slides;
+        };
+        if (made == kFewSubsteps && counts.reached < kLittle * h_) return !slides();
         if (made % kTrialSubsteps != 0) return true;
         if (made == kTrialSubsteps) prospect_.is_good = counts.reached > kHopeless * h_;
         const std::int64_t refused = std::exchange(prospect_.refused, counts.refused);
         const bool smooth = static_cast<double>(counts.refused - refused) < kMostRefused * static_cast<double>(kTrialSubsteps);
-        return smooth || (prospect_.is_good && made < kMostSubsteps);
+        return smooth || (!slides() && prospect_.is_good && made < kMostSubsteps);
     }
 
     void finish_without_control(double from, std::int64_t fewest)
@@ -341,6 +347,7 @@ private:
     {
         std::int64_t refused = 0;  ///< when last looked at
         bool is_good = false;
+        Probed probed;
     } prospect_;
 };
 

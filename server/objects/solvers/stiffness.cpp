@@ -128,25 +128,16 @@ double fastest_spin(DynamicSystem& system)
     return most;
 }
 
-bool is_sliding(double from, std::span<const double> y, double length, ProbeMemory& m, DynamicSystem& system)
+namespace
 {
-    constexpr std::size_t kProbes = 16;
+
+constexpr std::size_t kProbes = 16;
+
+/// Of the distances of rates from those at the start: whether they are near 0 or near the largest, and change between them both ways.
+bool jump_to_and_fro(const std::array<double, kProbes>& away)
+{
     constexpr int kFewestChanges = 3;
     constexpr double kClose = 0.1;  // of the jump
-    FlatSystem flat(system);
-    for (auto* v : {&m.first, &m.rates, &m.change, &m.units}) v->resize(flat.size());
-    flat.units(m.units);
-    m.y.assign(y.begin(), y.end());
-    flat.evaluate(from, m.y, m.first);
-    m.rates = m.first;
-    std::array<double, kProbes> away{};  // from the rates at the start
-    for (std::size_t k = 0; k < kProbes; ++k)
-    {
-        for (std::size_t i = 0; i < m.y.size(); ++i) m.y[i] += length * m.rates[i];
-        flat.evaluate(from + static_cast<double>(k + 1) * length, m.y, m.rates);
-        for (std::size_t i = 0; i < m.y.size(); ++i) m.change[i] = i < flat.places() ? 0.0 : m.rates[i] - m.first[i];
-        away[k] = FlatSystem::norm(m.change, m.units);
-    }
     const double jump = *std::ranges::max_element(away);
     int changes = 0;
     bool was_far = false;
@@ -157,6 +148,41 @@ bool is_sliding(double from, std::span<const double> y, double length, ProbeMemo
         changes += far != was_far ? 1 : 0, was_far = far;
     }
     return changes >= kFewestChanges;
+}
+
+/// Whether they grow for many steps on end; one that jumps does so once.
+bool grow(const std::array<double, kProbes>& away)
+{
+    constexpr double kGrowth = 1.25;
+    constexpr int kMany = 6;
+    int run = 0, longest = 0;
+    for (std::size_t k = 1; k < kProbes; ++k)
+    {
+        run = away[k] <= kGrowth * away[k - 1] ? 0 : run + 1;
+        longest = std::max(longest, run);
+    }
+    return longest >= kMany;
+}
+
+}  // namespace
+
+Probed probe(double from, std::span<const double> y, double length, ProbeMemory& m, DynamicSystem& system)
+{
+    FlatSystem flat(system);
+    for (auto* v : {&m.first, &m.rates, &m.change, &m.units}) v->resize(flat.size());
+    flat.units(m.units);
+    m.y.assign(y.begin(), y.end());
+    flat.evaluate(from, m.y, m.first);
+    m.rates = m.first;
+    std::array<double, kProbes> away{};
+    for (std::size_t k = 0; k < kProbes; ++k)
+    {
+        for (std::size_t i = 0; i < m.y.size(); ++i) m.y[i] += length * m.rates[i];
+        flat.evaluate(from + static_cast<double>(k + 1) * length, m.y, m.rates);
+        for (std::size_t i = 0; i < m.y.size(); ++i) m.change[i] = i < flat.places() ? 0.0 : m.rates[i] - m.first[i];
+        away[k] = FlatSystem::norm(m.change, m.units);
+    }
+    return {jump_to_and_fro(away), grow(away)};
 }
 
 Stiffness stiffness_of(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone)

@@ -23,13 +23,19 @@ struct Stiffness
 /// With `each_alone` each member is judged as if there were no others; what passes then also passes in any group.
 Stiffness stiffness_of(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone = false);
 
-/// Whether forces jump to and fro across a line that the motion follows (a sliding mode), as seen in 16 short Euler steps of `length`, s,
-/// from `from` on, where the state is `y` (FlatSystem): their accelerations are close to one of two values, and change between them both
-/// ways. Leaves the system in another state.
+/// Working vectors of probe().
 struct ProbeMemory
 {
     std::vector<double> y, first, rates, change, units;
 };
-bool is_sliding(double from, std::span<const double> y, double length, ProbeMemory& memory, DynamicSystem& system);
+/// What 16 short Euler steps show of forces that may jump.
+struct Probed
+{
+    bool slides = false;  ///< they jump to and fro: accelerations are close to one of two values, and change between them both ways
+    bool grows = true;    ///< changes grow from step to step: forces are stiff, and no explicit step of this length is stable
+};
+/// Steps of `length`, s, from `from` on, where the state is `y` (FlatSystem). Leaves the system in another state. Where the motion follows
+/// a line from both sides of which forces push it back (a sliding mode), it slides.
+Probed probe(double from, std::span<const double> y, double length, ProbeMemory& memory, DynamicSystem& system);
 
 }  // namespace plab::solvers

@@ -143,6 +143,20 @@ TEST_CASE("a script that pushes back from both sides of a line slides along it, 
     CHECK(automatic.resolved().find("over jumps") != std::string::npos);
 }
 
+TEST_CASE("a thruster that fires on one side of a line alone slides along it, too")
+{
+    // 20 m/s^2 where q + v / 5 < 1 / 2, and nothing beyond: there |h lambda| has no bound.
+    const double kMeets = (std::sqrt(5.0) - 1) / 20;
+    Automatic automatic;
+    Points lander({1}, {-3}, [](double, const auto& q, const auto& v, auto& a) { a[0] = 0.5 - q[0] - 0.2 * v[0] > 0 ? 20 : 0; });
+    lander.run(1.0 / 240, 240, std::ref(automatic));
+    const double above = (0.5 - 3 * kMeets + 10 * kMeets * kMeets) * std::exp(-5 * (1 - kMeets));
+    MESSAGE("error ", std::fabs(lander.place[0] - 0.5 - above), " m, ", lander.evaluations / 240, " evaluations a step");
+    CHECK(std::fabs(lander.place[0] - 0.5 - above) < 1e-4);  // 3e-4 where time stands still in ten of the steps
+    CHECK(std::fabs(lander.speed() + 5 * above) < 4e-3);
+    CHECK(automatic.events.count("solver.gave_up") == 0);
+}
+
 TEST_CASE("a force that jumps once in a step is located, and a fast smooth motion takes as many internal steps as it needs")
 {
     // Free until q = 0.1, and thrown back from there on.
