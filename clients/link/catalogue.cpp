@@ -12,8 +12,10 @@ namespace
 using Clock = std::chrono::steady_clock;
 
 // The bus gives no count of types: they arrive in one burst, and are considered complete when no more have arrived for this
-// long. Metrics are optional.
+// long.
 constexpr Seconds kQuiet(0.05);
+// Metrics are optional: a server may have none to send, as in a playback. One that has them answers a new reader within a step.
+constexpr Seconds kPatience(1);
 constexpr Seconds kSlice(0.05);
 
 template <class T>
@@ -100,8 +102,9 @@ Result<void> Catalogue::fetch(Seconds timeout, const Stop& stop)
         (void)update();
         if (version_ != before) last = Clock::now();
         const std::string gap = missing();
-        const bool is_counted = !has(parts_, Part::Types) && (!has(parts_, Part::Metrics) || now_.metrics);
-        if (gap.empty() && (is_counted || Clock::now() - last >= kQuiet)) return {};
+        const bool lacks_metrics = has(parts_, Part::Metrics) && !now_.metrics;
+        const Seconds quiet = lacks_metrics ? kPatience : has(parts_, Part::Types) ? kQuiet : Seconds(0);
+        if (gap.empty() && Clock::now() - last >= quiet) return {};
         if (Clock::now() >= end) return reason("server '" + session_->server() + "' did not send its complete catalogue; missing: " + gap);
         if (stop && stop()) return reason("interrupted");
         const Seconds left = std::min(kSlice, Seconds(end - Clock::now()));

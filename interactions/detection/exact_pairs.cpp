@@ -19,7 +19,7 @@ constexpr Vec3 kNoNormal{0, 0, 1};
 ContactPoint sphere_contact_point(double radius, const Vec3& nearest, const Vec3& n, double outside, bool on_face)
 {
     const double depth = radius - outside;
-    const Pivot pivot{Pivot::Of::A, Pivot::Arm::Constant, n * -(outside + 0.5 * depth)};
+    const Pivot pivot{.of = Pivot::Of::A, .arm = n * -(outside + 0.5 * depth)};
     return {nearest - n * (0.5 * depth), -n, depth, 0, on_face ? pivot : Pivot{}};
 }
 }  // namespace

@@ -57,7 +57,7 @@ void add_nearest(const Solid& sphere, const Solid& B, const Separation& s, Conta
 {
     const Vec3 point = (s.point_a + s.point_b) * 0.5;
     const bool on_face = -s.gap > -out.margin() && is_flat_towards(B, -s.normal);
-    out.add({point, s.normal, -s.gap, 0, on_face ? Pivot{Pivot::Of::A, Pivot::Arm::Constant, point - sphere.center()} : Pivot{}});
+    out.add({point, s.normal, -s.gap, 0, on_face ? Pivot{.of = Pivot::Of::A, .arm = point - sphere.center()} : Pivot{}});
 }
 
 void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, ContactPoints& out)

@@ -12,12 +12,12 @@ namespace
 Pivot pivot_on_rim(Pivot::Of of, const Solid& cylinder, bool upper, const Vec3& corner)
 {
     const double end = upper ? cylinder.size().z : -cylinder.size().z;
-    return {of, Pivot::Arm::OnRim, corner - (cylinder.pose().p + end * cylinder.axis(2))};
+    return {.of = of, .kind = Pivot::Arm::OnRim, .arm = corner - (cylinder.pose().p + end * cylinder.axis(2))};
 }
 
 Pivot pivot_of_core(Pivot::Of of, const Solid& solid, const Vec3& corner, const Vec3& point)
 {
-    return {of, Pivot::Arm::Constant, solid.radius() > 0 ? point - corner : Vec3{}};
+    return {.of = of, .arm = solid.radius() > 0 ? point - corner : Vec3{}};
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ Pivot pivot_at_edge(Pivot::Of of, const Solid& solid, const Vec3& on_edge, const
     const Vec3 from_middle = on_edge - solid.pose().p, u = solid.axis(2);
     const double along = dot(from_middle, u);
     const bool on_side = std::fabs(along) < solid.size().z;
-    return {of, Pivot::Arm::Constant, on_side ? from_middle - along * u : Vec3{}};
+    return {.of = of, .arm = on_side ? from_middle - along * u : Vec3{}};
 }
 
 Pivot pivot_at_end(Pivot::Of of, const Solid& solid, const Vec3& d, const Vec3& corner, const Vec3& point)

@@ -71,6 +71,14 @@ Vec3 on_rim(const Rim& rim, const Vec3& p)
     return across > 0 ? Vec3{rim.radius * p.x / across, rim.radius * p.y / across, rim.z} : Vec3{rim.radius, 0, rim.z};
 }
 
+/// Of a corner, or of a round end of `radius` with the `arm` to its contact point, towards the wall at n.
+Pivot pivot_in(const RoundWall& wall, double radius, const Vec3& n, const Vec3& arm)
+{
+    if (!(radius < wall.radius())) return {};
+    const Vec3 along = wall.is_bowl() ? n : Vec3{0, 0, 1};
+    return {.of = Pivot::Of::A, .hollow = Hollow::of(along / (wall.radius() - radius)), .arm = arm};
+}
+
 void meet_ball(const Vec3& c, double radius, std::uint32_t feature, const RoundWall& wall, MeetingSink& out)
 {
     if (wall.faces(c))
@@ -78,7 +86,8 @@ void meet_ball(const Vec3& c, double radius, std::uint32_t feature, const RoundW
         const Vec3 n = wall.outwards(c);
         const double outside = wall.radius() - length(wall.from_middle(c)), gap = outside - radius;
         // A ball that is entirely behind the wall has not come from inside.
-        if (outside >= -radius && gap < out.limit()) out.offer({gap, c + radius * n, c + outside * n, n, feature});
+        if (outside >= -radius && gap < out.limit())
+            out.offer({gap, c + radius * n, c + outside * n, n, feature, pivot_in(wall, radius, n, n * (radius + 0.5 * gap))});
         return;
     }
     for (const Rim& rim : wall.rims())
@@ -228,7 +237,9 @@ void meet_round_wall(const Solid& K, const Collider& collider, MeetingSink& out)
                         }
                         const Vec3 n = wall.outwards(p);
                         const double gap = wall.radius() - length(wall.from_middle(p));
-                        if (gap < out.limit()) out.offer({gap, p, p + gap * n, n, feature});
+                        // The point of a rim that is furthest from the centre is not fixed in the cylinder.
+                        const bool is_fixed = K.core() != Core::Cylinder || (number & 7) < RimPoints::kFurthest;
+                        if (gap < out.limit()) out.offer({gap, p, p + gap * n, n, feature, is_fixed ? pivot_in(wall, 0, n, {}) : Pivot{}});
                     });
     meet_edges(K, wall, out);
 }

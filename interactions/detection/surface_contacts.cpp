@@ -126,6 +126,7 @@ void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& su
     for (ContactPoint t : contact_points)
     {
         t.point = X_surface * t.point, t.normal = rotate(X_surface.q, t.normal), t.pivot.arm = rotate(X_surface.q, t.pivot.arm);
+        t.pivot.hollow = Hollow::of(rotate(X_surface.q, t.pivot.hollow.vector()));
         out.add(t);
     }
 }

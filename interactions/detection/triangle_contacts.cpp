@@ -160,7 +160,7 @@ private:
     void offer(double outside, const Vec3& n, const Vec3& closest, std::uint32_t t, bool on_face)
     {
         const double gap = outside - radius_;
-        const Pivot pivot{Pivot::Of::A, Pivot::Arm::Constant, n * (outside - 0.5 * gap)};
+        const Pivot pivot{.of = Pivot::Of::A, .arm = n * (outside - 0.5 * gap)};
         if (gap < out_.limit()) out_.offer({gap, c_ + radius_ * n, closest, n, t, on_face ? pivot : Pivot{}});
     }
 

@@ -150,7 +150,7 @@ void gather_and_clear(PacketList<W>& list, std::span<SoftPoint<W>> soft)
 }
 
 template <int W>
-double report_contacts(const PacketList<W>& list, std::span<Mover> movers, std::span<const SoftPoint<W>> soft, bool returned,
+double report_contacts(const PacketList<W>& list, std::span<Mover> movers, std::span<const SoftPoint<W>> soft, bool returned, double h,
                        std::span<Contact> contacts)
 {
     std::atomic<double> fastest{0};
@@ -170,11 +170,16 @@ double report_contacts(const PacketList<W>& list, std::span<Mover> movers, std::
                     const PacketPoint<W>& p = list.points()[i];
                     const LaneVec<W> u = velocity_of(frame, p, list.given(), i, a, b), j = frame.to_world(p.impulse + soft[i].sum);
                     const Lanes<W> slip = root(u.x * u.x + u.y * u.y), zero{};
-                    const Lanes<W> acts = soft[i].depth >= 0 ? p.inverse_normal : zero, closing = acts > 0 ? zero - u.z : zero;
-                    most = larger(most, returned ? (p.impulse.z > 0 ? zero : closing) : closing);
+                    Lanes<W> depth_before{};
                     list.visit_point(k, i,
                                      [&](std::uint32_t contact, int l)
-                                     { contacts[contact].impulse = lane(j, l), contacts[contact].slip = lane(slip, l); });
+                                     {
+                                         contacts[contact].impulse = lane(j, l), contacts[contact].slip = lane(slip, l);
+                                         set_lane(depth_before, l, contacts[contact].depth);
+                                     });
+                    const Lanes<W> growth = smaller(zero - u.z, (soft[i].depth - larger(depth_before, zero)) * (1 / h));
+                    const Lanes<W> acts = soft[i].depth >= 0 ? p.inverse_normal : zero, closing = acts > 0 ? growth : zero;
+                    most = larger(most, returned ? (p.impulse.z > 0 ? zero : closing) : closing);
                 }
             }
         });
@@ -184,16 +189,17 @@ double report_contacts(const PacketList<W>& list, std::span<Mover> movers, std::
     return fastest;
 }
 
-#define PLAB_INSTANTIATE(W)                                                                                          \
-    template void set_mobility<W>(PacketList<W>&, std::span<const Mover>);                                           \
-    template void set_mobility<W>(PacketList<W>&, std::span<const Mover>, std::size_t, std::size_t);                 \
-    template void sum_impulses<W>(const PacketList<W>&, std::span<Momentum>);                                        \
-    template double sweep_hard<W>(PacketList<W>&, std::span<Mover>, const HardSweep&);                               \
-    template void sweep_soft<W>(PacketList<W>&, std::span<Mover>, const SoftSweep&, std::span<SoftPoint<W>>);        \
-    template void follow_move<W>(PacketList<W>&, std::span<const Mover>, const Moved&, std::span<SoftPoint<W>>);     \
-    template void follow_move_and_sweep<W>(PacketList<W>&, std::span<Mover>, const Moved&, std::span<SoftPoint<W>>); \
-    template void gather_and_clear<W>(PacketList<W>&, std::span<SoftPoint<W>>);                                      \
-    template double report_contacts<W>(const PacketList<W>&, std::span<Mover>, std::span<const SoftPoint<W>>, bool, std::span<Contact>);
+#define PLAB_INSTANTIATE(W)                                                                                                 \
+    template void set_mobility<W>(PacketList<W>&, std::span<const Mover>);                                                  \
+    template void set_mobility<W>(PacketList<W>&, std::span<const Mover>, std::size_t, std::size_t);                        \
+    template void sum_impulses<W>(const PacketList<W>&, std::span<Momentum>);                                               \
+    template double sweep_hard<W>(PacketList<W>&, std::span<Mover>, const HardSweep&);                                      \
+    template void sweep_soft<W>(PacketList<W>&, std::span<Mover>, const SoftSweep&, std::span<SoftPoint<W>>);               \
+    template void follow_move<W>(PacketList<W>&, std::span<const Mover>, const Moved&, std::span<SoftPoint<W>>);            \
+    template void follow_move_and_sweep<W>(PacketList<W>&, std::span<Mover>, const Moved&, std::span<SoftPoint<W>>);        \
+    template void gather_and_clear<W>(PacketList<W>&, std::span<SoftPoint<W>>);                                             \
+    template double report_contacts<W>(const PacketList<W>&, std::span<Mover>, std::span<const SoftPoint<W>>, bool, double, \
+                                       std::span<Contact>);
 PLAB_INSTANTIATE(1)
 PLAB_INSTANTIATE(4)
 

@@ -100,6 +100,9 @@ int whole(std::int64_t n) { return static_cast<int>(std::min<std::int64_t>(n, 1'
 
 bool always(std::size_t) { return true; }
 
+/// s: what failed a shorter time ago belongs to the same heap that tumbles.
+constexpr double kQuiet = 0.5;
+
 template <class Rows>
 void add_all(const StepContext& context, Row row, std::span<const Island> islands, Rows& rows)
 {
@@ -117,7 +120,7 @@ void Account::describe(Schema& s)
     s.output(fallbacks, "fallbacks", unit::one, "islands for which a fallback algorithm had to finish the last step");
     s.output(step, "step", unit::one, "the step that these outputs refer to; -1: none yet").or_else(-1);
     s.output(last_failure, "last_failure", unit::one,
-             "the last step that did not converge; -1: none. An event reports the first of consecutive ones")
+             "the last step that did not converge; -1: none. An event reports the first one after half a second without")
         .or_else(-1);
 }
 
@@ -147,7 +150,8 @@ void Account::add(const StepContext& context, Row row, const Island& island, dou
     residual[row] = std::max(residual[row], island.residual);
     // A violation that does not matter appears in the output only, without an event.
     if (island.converged || !matters(island.residual, island, island.h)) return;
-    const bool reported = last_failure[row] >= 0 && last_failure[row] + 1 >= context.tick;
+    const Tick quiet = 1 + static_cast<Tick>(kQuiet / context.dt);
+    const bool reported = last_failure[row] >= 0 && last_failure[row] + quiet >= context.tick;
     if (!reported)
         context.emit(row, "manager.not_converged", Severity::Warning,
                      "contacts violate their conditions by " + rounded_text(island.residual) + " m/s; the tolerance is " +

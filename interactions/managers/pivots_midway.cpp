@@ -49,6 +49,15 @@ Movement movement_of(const Bodies& bodies, Ref body)
     return {bodies.velocity[body.index], bodies.angular_velocity[body.index], motion == Motion::Kinematic ? 2.0 : 1.0};
 }
 
+/// rad/s: of the normal n, from the wall to the body, as a point moves along the wall at v.
+Vec3 turn_of_normal(const Hollow& hollow, const Vec3& n, const Vec3& v)
+{
+    if (hollow.is_flat()) return {};
+    const Vec3 bend = hollow.vector(), about = cross(v, n);
+    const double curvature = length(bend);
+    return is_sphere(hollow, n) ? about * curvature : bend * (dot(bend, about) / curvature);
+}
+
 void turn_axes(Point& p, const Quat& by)
 {
     p.n = rotate(by, p.n), p.t1 = rotate(by, p.t1);
@@ -131,7 +140,8 @@ void Problem::put_pivots_midway(const Bodies& bodies, double h)
         for (std::size_t i = first; i < end; ++i)
         {
             Point& p = points[i];
-            if (stands)
+            // In a bowl a body turns as it slides, whatever it stands on.
+            if (stands && contacts_[i].pivot.hollow.is_flat())
                 carry_midway(p, contacts_[i], bodies, 0.5 * h);
             else if (contacts_[i].pivot.of != Pivot::Of::Neither)
                 put_midway(p, contacts_[i], bodies, 0.5 * h);
@@ -185,14 +195,18 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     Vec3 &r = of_b ? p.r_b : p.r_a, &r_other = of_b ? p.r_a : p.r_b;
     const Vec3 fixed = r - c.pivot.arm;
     const bool on_lever = is_lever(fixed, r);
-    const Turn turn = on_rim || on_lever ? turn_of(own.w, half) : Turn::Little, turn_of_face = turn_of(other.w, half);
+    const double sign = of_b ? 1 : -1;  // of u
+    // How the normal turns: with the face, and as the fixed point moves along a hollow one.
+    const Vec3 along = own.v + cross(own.w, fixed) - other.v - cross(other.w, r_other - c.pivot.arm);
+    const Vec3 bends = turn_of_normal(c.pivot.hollow, p.n * sign, along), normal_w = other.w + bends;
+    const Turn turn = on_rim || on_lever ? turn_of(own.w, half) : Turn::Little, turn_of_face = turn_of(normal_w, half);
     if (turn_of_face == Turn::Far || (turn == Turn::Little && turn_of_face == Turn::Little)) return;
     const std::uint32_t mover = of_b ? p.b : p.a;
     // What tumbles so far has another axis by then.
     const bool tumbles = mover != kNoIndex && !anchors[mover].midway && !movers[mover].isotropic;
     if (turn == Turn::Far && tumbles) return;
-    const double sign = of_b ? 1 : -1;  // of u
-    const Quat turned = half_turn_of(mover, own.w, half), turned_face = half_turn_of(of_b ? p.a : p.b, other.w, half);
+    const Quat turned = half_turn_of(mover, own.w, half);
+    const Quat turned_face = exp_rotation(bends * half) * half_turn_of(of_b ? p.a : p.b, other.w, half);
     const Vec3 arm = turned_arm(c.pivot, p.n * -sign, turned, turned_face);
     // What spins about its own axis, as a capsule or a coin that rolls, takes its lever along, however fast.
     if (!is_near(arm, c.pivot.arm) || (on_lever && !is_near(rotate(turned, fixed), fixed))) return;
@@ -202,7 +216,7 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     const Vec3 passing = own.v + around - other.v;
     const Vec3 turning = own.parts * cross(own.w, around) - other.parts * cross(other.w, passing);
     r = rotate(turned, fixed) + arm, r_other += passing * half;
-    const double tilting = dot(cross(other.w, p.n), slides);
+    const double tilting = dot(cross(normal_w, p.n), slides);
     if (turn_of_face == Turn::Some) turn_axes(p, turned_face);
     p.turning = to_contact(p, turning * (sign * half));
     p.turning.z += sign * half * tilting;

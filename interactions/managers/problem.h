@@ -83,7 +83,8 @@ public:
     /// With a move by the mean velocity this is the midpoint rule (Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), VII.1):
     /// turning is what the velocity of the point at the end differs from that with the levers of the middle, so u = 0 at both ends does
     /// no work. Along n_m, a point that slides on a face that tilts has (h / 2) (w_o x n) . u as well. Inertias are those of the middle,
-    /// too, and w has changed by what free rotation does until the end (Anchor::swings). Where a step is cut at an end of sliding
+    /// too, and w has changed by what free rotation does until the end (Anchor::swings). In a bowl w_o + (v_f x n) / R takes the place of
+    /// w_o where normals turn, v_f the speed of f along the wall (Pivot::hollow). Where a step is cut at an end of sliding
     /// (slip_end.h), the levers stay those of the whole step.
     void put_pivots_midway(const Bodies& bodies, double h);
     /// The same for rows, which are those of the middle of the step by now: J = J_m, turning = -(h / 2) (bias - d(rate)/dt).

@@ -372,7 +372,7 @@ template <int W>
 void SoftIsland<W>::finish(Verdict& out)
 {
     const double closing = report_contacts(contacts_, std::span<Mover>(problem_.movers), std::span<const SoftPoint<W>>(soft_), bounces_,
-                                           std::span<Contact>(island_.contacts));
+                                           island_.h, std::span<Contact>(island_.contacts));
     out.residual = std::max(out.residual, closing);
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "exact/motions.h"
+#include "sliding.h"
 #include "support/gravity.h"
 #include "support/scene.h"
 #include "support/text.h"
@@ -58,19 +59,6 @@ const std::string kBowl = "<component id='bowl' type='Shape/Bowl' radius='1'/><c
 const std::string kDome = "<component id='dome' type='Shape/Sphere' radius='1'/><component id='ground' type='State/Static' shape='dome'/>";
 const std::array<std::string, 3> kResponses{"Response/Rows' response.manager='Manager/Direct",
                                             "Response/Rows' response.manager='Manager/SequentialImpulse", "Response/Impulse"};
-
-/// Halving the step divides the error by four, except where the first step is too coarse.
-void check_order(const std::vector<double>& errors, double finest)
-{
-    for (std::size_t i = 1; i < errors.size(); ++i)
-    {
-        CAPTURE(i);
-        CAPTURE(errors[i - 1]);
-        CAPTURE(errors[i]);
-        CHECK(errors[i] < 0.3 * errors[i - 1]);
-    }
-    CHECK(errors.back() < finest);
-}
 
 /// m and m/s: errors of a ball that moves down in a bowl from 1 rad, rolling or sliding, after 1.5 s.
 double error_in_bowl(const std::string& response, double friction, int steps_per_second)

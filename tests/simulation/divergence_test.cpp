@@ -104,6 +104,30 @@ TEST_CASE("a spring within the stability limit is not reported, however large it
     }
 }
 
+TEST_CASE("joints of motion that diverged do much work on one another, which does not hide it")
+{
+    // Two links with a limit between them, and a weight on a spring: h w = 6 for RungeKutta4, which is stable up to 2.8.
+    const auto link = [](const char* id, const char* x, const char* mass)
+    {
+        const std::string inertia = std::string(mass) + "e-2";
+        return "<component id=\"" + std::string(id) + "\" type=\"State/RigidBody\" mass=\"" + mass + "\" inertia=\"" + inertia + " " +
+               inertia + " " + inertia + "\" position=\"" + x + " 0 0\"/>";
+    };
+    Scene s(
+        link("upper", "0", "1") + link("lower", "0.3", "1") + link("weight", "0.6", "0.3") +
+            "<component id=\"top\" type=\"Constraint/Hinge\" b=\"upper\" anchor=\"-0.15 0 0\" axis=\"0 1 0\"/>"
+            "<component id=\"knee\" type=\"Constraint/Hinge\" a=\"upper\" b=\"lower\" anchor=\"0.15 0 0\" axis=\"0 1 0\"/>"
+            "<component id=\"stop\" type=\"Constraint/Limit\" a=\"upper\" b=\"lower\" anchor=\"0.15 0 0\" axis=\"0 1 0\" "
+            "lower=\"-0.3\" upper=\"0.3\"/>"
+            "<component id=\"spring\" type=\"Constraint/SpringDamper\" a=\"lower\" b=\"weight\" anchor_a=\"0.1 0 0\" "
+            "anchor_b=\"0 0 0.05\" stiffness=\"40000\" damping=\"10\"/><component id=\"gravity\" type=\"Field/Gravity\" between=\"*\"/>",
+        "dt=\"1/60\" solver=\"Solver/RungeKutta4\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = s.keep_events = true;
+    s.run(0.5);
+    CHECK(s.count("motion.diverged") == 1);
+}
+
 TEST_CASE("a speed that doubles every few steps is reported; one that grows by a steady force, or slowly, is not")
 {
     Scene away(script("50 * driven.velocity"), kEuler);

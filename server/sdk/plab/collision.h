@@ -1,6 +1,7 @@
 /// Contacts: found by a detection, located in time by a resolution, resolved by a response.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,12 +12,24 @@
 namespace plab
 {
 
-/// Where a contact point goes while a body turns on a flat face of the other: it stays at an arm from a point that is fixed in the body.
+/// The curvature of a hollow face, as a vector: 1 / R (1/m, W) along the contact normal inside a sphere, along the axis inside a cylinder;
+/// zero if the face is flat. R is that of the sphere or cylinder on which the fixed point of a pivot is while the two touch.
+struct Hollow
+{
+    std::array<float, 3> bend{};  // float keeps contacts small; seven digits of a curvature are enough
+
+    bool is_flat() const { return bend[0] == 0 && bend[1] == 0 && bend[2] == 0; }
+    Vec3 vector() const { return {bend[0], bend[1], bend[2]}; }
+    static Hollow of(const Vec3& v) { return {{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}}; }
+};
+
+/// Where a contact point goes while a body turns and slides on a face of the other: it stays at an arm from a point that is fixed in the
+/// body.
 struct Pivot
 {
     enum class Of : std::uint8_t
     {
-        Neither,  ///< the other body is not flat there, edges cross, or it is not known
+        Neither,  ///< the other body has no face there, edges cross, or it is not known
         A,
         B,
     };
@@ -27,6 +40,7 @@ struct Pivot
     };
     Of of = Of::Neither;
     Arm kind = Arm::Constant;
+    Hollow hollow{};
     Vec3 arm{};  ///< W, m: from the point that is fixed in the body to the contact point
 };
 
@@ -182,10 +196,10 @@ struct Impact
     ImpactMode mode = ImpactMode::Impact;
     double dt = 0;  ///< s, Rest only: the step during which gaps may close
     std::span<Contact> contacts;
-    /// 1/kg, W: where joints hold bodies of these n contacts, n x n blocks by rows. Block (i, j) times an impulse at contact j (on b) is the
-    /// change of the velocity of b's point relative to a's at contact i, joints included. Of a contact without friction, column j is known
-    /// for impulses along its normal only. The host applies the impulses (Contact::impulse) then, and the response leaves the velocities
-    /// of the bodies as they are. Empty: bodies are free, and the response applies its impulses itself.
+    /// 1/kg, W: where joints hold bodies of these n contacts, n x n blocks by rows. Block (i, j) times an impulse at contact j (on b) is
+    /// the change of the velocity of b's point relative to a's at contact i, joints included. Of a contact without friction, column j is
+    /// known for impulses along its normal only. The host applies the impulses (Contact::impulse) then, and the response leaves the
+    /// velocities of the bodies as they are. Empty: bodies are free, and the response applies its impulses itself.
     std::span<const Mat3> mobility;
     int iterations = 0;       ///< out
     std::int64_t visits = 0;  ///< out: number of contacts processed, counted anew in each sweep: the work of the response

@@ -1,11 +1,20 @@
-/// Where the arm of a pivot (collision.h) is after a body and the face that it touches have turned.
+/// Pivots (collision.h): where the arm is after a body and the face that it touches have turned; the shape of a hollow face.
 #pragma once
+
+#include <cmath>
 
 #include "plab/collision.h"
 #include "plab/rotation.h"
 
 namespace plab
 {
+
+/// Whether a hollow face is the inside of a sphere, not of a cylinder.
+inline bool is_sphere(const Hollow& hollow, const Vec3& normal)
+{
+    const Vec3 bend = hollow.vector();
+    return std::fabs(dot(bend, normal)) > 0.5 * length(bend);
+}
 
 /// m, W. `towards` (unit, W): from the body to the face, before; `turned`, `turned_face`: how both have turned, in W. The arm of a round
 /// end keeps its direction to the face; so does that of a cylinder on its side, which rolls. On a tilted rim, the arm is the radius in the

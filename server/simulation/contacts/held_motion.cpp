@@ -7,6 +7,22 @@
 
 namespace plab::simulation
 {
+namespace
+{
+
+/// m: what a gap of -depth opens by if its point moves by d. n: from the face to the body. In a sphere or cylinder the gap is R less the
+/// distance from the centre or axis.
+double opened(double depth, const Vec3& d, const Vec3& n, const Hollow& hollow)
+{
+    const double along = dot(d, n);
+    if (hollow.is_flat()) return along;
+    const Vec3 bend = hollow.vector();
+    const double k = length(bend), axial = is_sphere(hollow, n) ? 0 : dot(d, bend) / k, across = length_squared(d) - axial * axial;
+    const double a = 1 + k * depth, now = a * a - 2 * a * k * along + k * k * across;
+    return (2 * a * along - k * across) / (a + std::sqrt(std::max(0.0, now)));
+}
+
+}  // namespace
 
 void HeldMotion::begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std::span<const std::uint32_t> members,
                        std::span<const std::uint32_t> member_of_body, std::span<const std::uint32_t> roots, std::span<Contact> contacts,
@@ -345,7 +361,7 @@ double HeldMotion::depth_on_face(std::size_t contact) const
     Vec3 displacement = moved(own, arm_own, c.point - c.pivot.arm) - moved(face, arm_face, c.point);
     if (c.pivot.arm != Vec3{}) displacement += turned_arm(c.pivot, of_b ? -c.normal : c.normal, turned(own), turned_face) - c.pivot.arm;
     const Vec3 normal = face_turns ? rotate(turned_face, c.normal) : c.normal;
-    return arms_[contact].depth - (of_b ? dot(displacement, normal) : -dot(displacement, normal));
+    return arms_[contact].depth - opened(arms_[contact].depth, displacement, of_b ? normal : -normal, c.pivot.hollow);
 }
 
 }  // namespace plab::simulation

@@ -55,6 +55,16 @@ bool sealed(const world::HostTables& host)
            std::none_of(host.shafts.motion.begin(), host.shafts.motion.end(), moved);
 }
 
+/// Whether it holds objects: a joint, a coupling, a manager or a response.
+bool holds(const world::World& world, std::uint32_t component)
+{
+    const auto& commands = world.type_of(component)->info.commands;
+    return std::any_of(
+        commands.begin(), commands.end(),
+        [](const CommandInfo& c)
+        { return c.phase == Phase::Constrain || c.phase == Phase::Couple || c.phase == Phase::Solve || c.phase == Phase::Respond; });
+}
+
 Event warning(const RunView& s, Ref object, const char* what, std::vector<double> values)
 {
     Event e;
@@ -155,12 +165,18 @@ DivergenceWatch::Sources DivergenceWatch::sources(const RunView& s) const
 {
     const Stepper& stepper = s.stepper;
     const double other = stepper.departed_work() + stepper.requests_work() - m_.start_other_work;
-    Sources out{other, std::fabs(other)};
+    Sources out{other, std::fabs(other), std::fabs(other)};
+    double of_holding = 0;
     for (std::size_t c = 0; c < std::min(m_.start_work.size(), stepper.work().size()); ++c)
     {
         const double work = m_.passive[c] != 0 ? 0 : stepper.work()[c] - m_.start_work[c];
         out.net += work, out.gross += std::fabs(work);
+        if (m_.sealed && work != 0 && holds(s.world, static_cast<std::uint32_t>(c)))
+            of_holding += work;
+        else
+            out.given += std::fabs(work);
     }
+    out.given += std::max(of_holding, 0.0);
     return out;
 }
 
@@ -245,8 +261,8 @@ void DivergenceWatch::watch_energy(const RunView& s, std::vector<Event>& events)
         return;
     }
     m_.last_kinetic = std::max(now, m_.last_kinetic);
-    const Sources given = sources(s);
-    const double scale = std::fabs(m_.start_energy) + given.gross, gain = energy(s, now) - m_.start_energy - given.net;
+    const Sources from = sources(s);
+    const double scale = std::fabs(m_.start_energy) + from.given, gain = energy(s, now) - m_.start_energy - from.net;
     if (!(gain > kMostGain * scale + least_energy(host, s.dt)))
     {
         m_.gaining_steps = 0;

@@ -4,13 +4,15 @@
 ///   energy   E(t) - E(t0) - W > kMostGain S + E_f. E: kinetic energy plus the energy that components store (Phase::Potential). W: work of
 ///            all components except those that store energy, which have none to supply. Responses count even if they store energy,
 ///            because the ledger divides the simultaneous work of contacts and forces only to first order.
-///            S = E(t0) + sum |W_i|, J. Evaluated only when the kinetic energy has grown fourfold since the last evaluation, so it costs
-///            next to nothing; then it must hold for kPatience consecutive steps. Where bodies or shafts are moved from outside
-///            (kinematic), W is the work of all components and E is kinetic only.
+///            S = E(t0) + sum |W_i|, J, where joints, managers and responses count together, if their sum is positive: what one of them
+///            takes another gives, and motion that has diverged makes both large. Evaluated only when the kinetic energy has grown
+///            fourfold since the last evaluation, so it costs next to nothing; then it must hold for kPatience consecutive steps.
+///            Where bodies or shafts are moved from outside (kinematic), W is the work of all components, each counts, and E is kinetic
+///            only.
 ///   growth   the speed of a body or shaft has doubled kMostDoublings times in a row, each time within kQuickSteps steps, which no
 ///            resolved motion does.
 ///   contacts the event contact.gains_energy, once per manager or response: the energy that its contacts have created since counting
-///            began, although contacts can only dissipate, exceeds kMostCreated S.
+///            began, although contacts can only dissipate, exceeds kMostCreated (E(t0) + sum |W_i|).
 /// A kinetic energy that overflows is reported, too. Energies below E_f = sum 1/2 I (kSmallTurn/h)^2 are ignored: no body turns by a
 /// thousandth of a radian, or moves by a thousandth of its radius of gyration, in a step h. Non-finite motion is another event,
 /// state.not_finite.
@@ -68,7 +70,9 @@ public:
 private:
     struct Sources
     {
-        double net = 0, gross = 0;  ///< J
+        double net = 0;    ///< J, W above
+        double gross = 0;  ///< J, sum of |W_i|
+        double given = 0;  ///< J, the same, holding components together
     };
 
     bool report_once(Ref object);
