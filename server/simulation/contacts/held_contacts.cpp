@@ -320,8 +320,19 @@ void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
     for (const Contact& c : contacts)
         if (c.depth >= least) run.most_depth = std::max(run.most_depth, std::fabs(c.depth));
     if (island.has_rows) return;
-    if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return midpoint_.turns(c, h); }))
+    if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return !has_pivot(c) && midpoint_.turns(c, h); }))
         std::atomic_ref(island.turns).store(true, std::memory_order_relaxed);
+}
+
+/// Whether managers put the point midway themselves, better than midpoint_contacts.h: bodies turn there as well. Balls in bowls do not
+/// need that.
+bool HeldIslands::has_pivot(const Contact& c) const
+{
+    constexpr double kRounding = 0x1p-20;
+    if (c.pivot.of == Pivot::Of::Neither) return false;
+    const Ref own = c.pivot.of == Pivot::Of::A ? c.a : c.b;
+    const Vec3 lever = c.point - c.pivot.arm - step_.world.host().bodies.position[own.index];
+    return c.pivot.hollow.is_flat() || length_squared(lever) > kRounding * kRounding * length_squared(c.pivot.arm);
 }
 
 void HeldIslands::take_known(Contact& c, const Contact& found, KnownContact& known, bool trial)
