@@ -104,7 +104,7 @@ Result<void> Catalogue::fetch(Seconds timeout, const Stop& stop)
         const std::string gap = missing();
         const bool lacks_metrics = has(parts_, Part::Metrics) && !now_.metrics;
         const Seconds quiet = lacks_metrics ? kPatience : has(parts_, Part::Types) ? kQuiet : Seconds(0);
-        if (gap.empty() && Clock::now() - last >= quiet) return {};
+        if (gap.empty() && (Clock::now() - last >= quiet || Clock::now() >= end)) return {};
         if (Clock::now() >= end) return reason("server '" + session_->server() + "' did not send its complete catalogue; missing: " + gap);
         if (stop && stop()) return reason("interrupted");
         const Seconds left = std::min(kSlice, Seconds(end - Clock::now()));

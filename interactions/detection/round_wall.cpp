@@ -74,9 +74,10 @@ Vec3 on_rim(const Rim& rim, const Vec3& p)
 /// Of a corner, or of a round end of `radius` with the `arm` to its contact point, towards the wall at n.
 Pivot pivot_in(const RoundWall& wall, double radius, const Vec3& n, const Vec3& arm)
 {
-    if (!(radius < wall.radius())) return {};
-    const Vec3 along = wall.is_bowl() ? n : Vec3{0, 0, 1};
-    return {.of = Pivot::Of::A, .hollow = Hollow::of(along / (wall.radius() - radius)), .arm = arm};
+    constexpr double kMost = 1e30;  // 1/m: a curvature that a float can hold
+    const double curvature = 1 / (wall.radius() - radius);
+    if (!(curvature > 0 && curvature < kMost)) return {};
+    return {.of = Pivot::Of::A, .hollow = Hollow::of((wall.is_bowl() ? n : Vec3{0, 0, 1}) * curvature), .arm = arm};
 }
 
 void meet_ball(const Vec3& c, double radius, std::uint32_t feature, const RoundWall& wall, MeetingSink& out)

@@ -22,7 +22,7 @@ void AutomaticRows::describe(Schema& s)
     s.param(max_points, "max_points", unit::one,
             "an island of at most so many contact points and rows is solved exactly; up to 16 times as many if rows of joints are twice as "
             "many as contact points, as sweeps would let them stretch")
-        .or_else(80)
+        .or_else(kSolvedExactly)
         .not_negative()
         .at_most(20000);
     s.param(max_resting, "max_resting", unit::one,

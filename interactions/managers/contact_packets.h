@@ -312,8 +312,9 @@ template <int W>
 void gather_and_clear(PacketList<W>& list, std::span<SoftPoint<W>> soft);
 
 /// Reports the impulse and the slip of each contact: `sum` and the present impulse. `returned`: the latter is that of restitution;
-/// otherwise it is that of the last sub-step. Returns the largest speed at which overlap grows although its contact may act, m/s: at the
-/// end, and in the mean over the step of h (s), as bodies that have just met are answered by the sub-steps that follow.
+/// otherwise it is that of the last sub-step. Returns the largest speed at which overlap grows although its contact may act, m/s: that at
+/// the end or that in the mean over the step of h (s), which is less, as bodies that have just met are answered by the sub-steps that
+/// follow.
 template <int W>
 double report_contacts(const PacketList<W>& list, std::span<Mover> movers, std::span<const SoftPoint<W>> soft, bool returned, double h,
                        std::span<Contact> contacts);

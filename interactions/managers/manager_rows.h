@@ -83,6 +83,9 @@ struct SoftStepRows
 };
 void solve_all_softly(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, std::span<Island> islands);
 
+/// Contact points up to which an island is solved exactly, unless a scene says otherwise.
+inline constexpr int kSolvedExactly = 80;
+
 /// Manager/Automatic: exact where that is affordable, and of a fixed cost where an island is large.
 ///
 ///   an island of at most `max_points` contact points and rows                     Direct

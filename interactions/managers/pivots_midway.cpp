@@ -19,10 +19,10 @@ enum class Turn : std::uint8_t
 };
 Turn turn_of(const Vec3& w, double half)
 {
-    constexpr double kLittle = 0x1p-20, kFar = 0.05;  // rad
+    constexpr double kLittle = 0x1p-20;  // rad
     const double turn = length(w) * half;
     if (!(turn > kLittle)) return Turn::Little;
-    return turn < kFar ? Turn::Some : Turn::Far;
+    return turn < kFarthestTurn ? Turn::Some : Turn::Far;
 }
 
 /// Whether the point that is fixed in the body is beside its centre of mass, and not only by rounding.
@@ -52,10 +52,9 @@ Movement movement_of(const Bodies& bodies, Ref body)
 /// rad/s: of the normal n, from the wall to the body, as a point moves along the wall at v.
 Vec3 turn_of_normal(const Hollow& hollow, const Vec3& n, const Vec3& v)
 {
-    if (hollow.is_flat()) return {};
     const Vec3 bend = hollow.vector(), about = cross(v, n);
     const double curvature = length(bend);
-    return is_sphere(hollow, n) ? about * curvature : bend * (dot(bend, about) / curvature);
+    return is_sphere(bend, n) ? about * curvature : bend * (dot(bend, about) / curvature);
 }
 
 void turn_axes(Point& p, const Quat& by)
@@ -197,8 +196,13 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     const bool on_lever = is_lever(fixed, r);
     const double sign = of_b ? 1 : -1;  // of u
     // How the normal turns: with the face, and as the fixed point moves along a hollow one.
-    const Vec3 along = own.v + cross(own.w, fixed) - other.v - cross(other.w, r_other - c.pivot.arm);
-    const Vec3 bends = turn_of_normal(c.pivot.hollow, p.n * sign, along), normal_w = other.w + bends;
+    Vec3 bends;
+    if (!c.pivot.hollow.is_flat())
+    {
+        const Vec3 along = own.v + cross(own.w, fixed) - other.v - cross(other.w, r_other - c.pivot.arm);
+        bends = turn_of_normal(c.pivot.hollow, p.n * sign, along);
+    }
+    const Vec3 normal_w = other.w + bends;
     const Turn turn = on_rim || on_lever ? turn_of(own.w, half) : Turn::Little, turn_of_face = turn_of(normal_w, half);
     if (turn_of_face == Turn::Far || (turn == Turn::Little && turn_of_face == Turn::Little)) return;
     const std::uint32_t mover = of_b ? p.b : p.a;
@@ -206,7 +210,8 @@ void Problem::put_midway(Point& p, const Contact& c, const Bodies& bodies, doubl
     const bool tumbles = mover != kNoIndex && !anchors[mover].midway && !movers[mover].isotropic;
     if (turn == Turn::Far && tumbles) return;
     const Quat turned = half_turn_of(mover, own.w, half);
-    const Quat turned_face = exp_rotation(bends * half) * half_turn_of(of_b ? p.a : p.b, other.w, half);
+    Quat turned_face = half_turn_of(of_b ? p.a : p.b, other.w, half);
+    if (!c.pivot.hollow.is_flat()) turned_face = exp_rotation(bends * half) * turned_face;
     const Vec3 arm = turned_arm(c.pivot, p.n * -sign, turned, turned_face);
     // What spins about its own axis, as a capsule or a coin that rolls, takes its lever along, however fast.
     if (!is_near(arm, c.pivot.arm) || (on_lever && !is_near(rotate(turned, fixed), fixed))) return;

@@ -153,8 +153,6 @@ Exit run_top(Context& c, const TopOptions& o)
     auto catalogue = link::Catalogue::open(c.session(), link::Part::Server | link::Part::Metrics);
     if (!catalogue) return c.fail(Exit::Failed, catalogue.errors());
     if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
-    // Metrics are not kept for late joiners: they come four times a second.
-    for (int slices = 0; slices < 10 && !catalogue->now().metrics && !c.stopped(); ++slices) (void)catalogue->wait(link::Seconds(0.1));
     Curves curves;
     const auto print_now = [&](const link::CatalogueContents& now)
     {

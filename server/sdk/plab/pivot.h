@@ -9,12 +9,11 @@
 namespace plab
 {
 
-/// Whether a hollow face is the inside of a sphere, not of a cylinder.
-inline bool is_sphere(const Hollow& hollow, const Vec3& normal)
-{
-    const Vec3 bend = hollow.vector();
-    return std::fabs(dot(bend, normal)) > 0.5 * length(bend);
-}
+/// rad, in half a step: what turns further has no middle that says much about the rest.
+inline constexpr double kFarthestTurn = 0.05;
+
+/// Whether a hollow face (Hollow::vector() is `bend`) is the inside of a sphere, not of a cylinder.
+inline bool is_sphere(const Vec3& bend, const Vec3& normal) { return std::fabs(dot(bend, normal)) > 0.5 * length(bend); }
 
 /// m, W. `towards` (unit, W): from the body to the face, before; `turned`, `turned_face`: how both have turned, in W. The arm of a round
 /// end keeps its direction to the face; so does that of a cylinder on its side, which rolls. On a tilted rim, the arm is the radius in the

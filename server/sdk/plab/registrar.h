@@ -144,11 +144,13 @@ struct TypeInfo
     bool by_rows = false;      ///< response: contacts are rows solved by a manager, including impacts
     bool by_force = false;     ///< response: contacts are forces, evaluated at every solver stage
     bool uniform = false;      ///< force: independent of time and state
-    std::string accuracy;      ///< in addition to `order`: "times of impact to one step"
-    std::string strengths;     ///< for which scenes it is suited
-    std::string cost;          ///< for example "4 force evaluations per step"
-    std::string limits;        ///< where it fails
-    std::string source;        ///< paper or book, with the equation
+    /// manager: the largest number of contact points of an island whose pivots (plab/collision.h) it puts midway
+    std::size_t pivots_up_to = 0;
+    std::string accuracy;   ///< in addition to `order`: "times of impact to one step"
+    std::string strengths;  ///< for which scenes it is suited
+    std::string cost;       ///< for example "4 force evaluations per step"
+    std::string limits;     ///< where it fails
+    std::string source;     ///< paper or book, with the equation
 };
 
 namespace detail
@@ -315,6 +317,7 @@ public:
     TypeBuilder& by_rows() { return info_->by_rows = true, *this; }
     TypeBuilder& by_force() { return info_->by_force = true, *this; }
     TypeBuilder& uniform() { return info_->uniform = true, *this; }
+    TypeBuilder& pivots_up_to(std::size_t points) { return info_->pivots_up_to = points, *this; }
     TypeBuilder& accuracy(std::string text) { return info_->accuracy = std::move(text), *this; }
     TypeBuilder& strengths(std::string text) { return info_->strengths = std::move(text), *this; }
     TypeBuilder& cost(std::string text) { return info_->cost = std::move(text), *this; }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "plab/pivot.h"
 #include "simulation/contacts/held_islands.h"
 
 namespace plab::simulation
@@ -320,19 +321,28 @@ void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
     for (const Contact& c : contacts)
         if (c.depth >= least) run.most_depth = std::max(run.most_depth, std::fabs(c.depth));
     if (island.has_rows) return;
-    if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return !has_pivot(c) && midpoint_.turns(c, h); }))
+    if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return midpoint_.turns(c, h) && !has_pivot(island, c, h); }))
         std::atomic_ref(island.turns).store(true, std::memory_order_relaxed);
 }
 
-/// Whether managers put the point midway themselves, better than midpoint_contacts.h: bodies turn there as well. Balls in bowls do not
-/// need that.
-bool HeldIslands::has_pivot(const Contact& c) const
+/// Whether the island's manager puts the point midway itself (pivot.h), better than midpoint_contacts.h: bodies turn there as well. Balls
+/// in bowls do not need that.
+bool HeldIslands::has_pivot(const HeldIsland& island, const Contact& c, double h) const
 {
     constexpr double kRounding = 0x1p-20;
-    if (c.pivot.of == Pivot::Of::Neither) return false;
-    const Ref own = c.pivot.of == Pivot::Of::A ? c.a : c.b;
-    const Vec3 lever = c.point - c.pivot.arm - step_.world.host().bodies.position[own.index];
-    return c.pivot.hollow.is_flat() || length_squared(lever) > kRounding * kRounding * length_squared(c.pivot.arm);
+    if (c.pivot.of == Pivot::Of::Neither || island.contacts.size() > step_.world.type_of(island.manager)->info.pivots_up_to) return false;
+    const Bodies& bodies = step_.world.host().bodies;
+    const Ref own = c.pivot.of == Pivot::Of::A ? c.a : c.b, face = c.pivot.of == Pivot::Of::A ? c.b : c.a;
+    const auto turns_far = [&](double w) { return !(w * 0.5 * h < kFarthestTurn); };
+    const auto spin = [&](Ref body)
+    { return bodies.motion[body.index] == Motion::Static ? 0.0 : length(bodies.angular_velocity[body.index]); };
+    if (turns_far(spin(own))) return false;
+    if (c.pivot.hollow.is_flat()) return !turns_far(spin(face));
+    const Vec3 fixed = c.point - c.pivot.arm;
+    if (length(fixed - bodies.position[own.index]) <= kRounding * length(c.pivot.arm)) return false;
+    const auto speed = [&](Ref body)
+    { return bodies.motion[body.index] == Motion::Static ? Vec3{} : bodies.velocity_at(body.index, fixed); };
+    return !turns_far(spin(face) + length(speed(own) - speed(face)) * length(c.pivot.hollow.vector()));
 }
 
 void HeldIslands::take_known(Contact& c, const Contact& found, KnownContact& known, bool trial)

@@ -225,7 +225,7 @@ private:
     void fill_run(HeldIsland& island, Run& run, double h, bool trial);
     void make_room(std::span<HeldIsland*> islands);
     static void prefetch(const HeldIsland& island, const Run& run);
-    bool has_pivot(const Contact& contact) const;
+    bool has_pivot(const HeldIsland& island, const Contact& contact, double h) const;
     static void take_known(Contact& contact, const Contact& found, KnownContact& known, bool trial);
     void make_islands(DisjointSets& islands);
     void set_approach(HeldIsland& island, const GroupSystem& system, double h);

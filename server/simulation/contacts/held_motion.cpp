@@ -10,16 +10,16 @@ namespace plab::simulation
 namespace
 {
 
-/// m: what a gap of -depth opens by if its point moves by d. n: from the face to the body. In a sphere or cylinder the gap is R less the
-/// distance from the centre or axis.
-double opened(double depth, const Vec3& d, const Vec3& n, const Hollow& hollow)
+/// m: what a gap of -depth opens by if its point moves by d. n: from the face to the body; `bend`: Hollow::vector(). In a sphere or
+/// cylinder the gap is R less the distance from the centre or axis.
+double opened(double depth, const Vec3& d, const Vec3& n, const Vec3& bend)
 {
-    const double along = dot(d, n);
-    if (hollow.is_flat()) return along;
-    const Vec3 bend = hollow.vector();
-    const double k = length(bend), axial = is_sphere(hollow, n) ? 0 : dot(d, bend) / k, across = length_squared(d) - axial * axial;
-    const double a = 1 + k * depth, now = a * a - 2 * a * k * along + k * k * across;
-    return (2 * a * along - k * across) / (a + std::sqrt(std::max(0.0, now)));
+    const double along = dot(d, n), k = length(bend);
+    if (k == 0) return along;
+    const double axial = is_sphere(bend, n) ? 0 : dot(d, bend) / k, across = length_squared(d) - axial * axial;
+    const double a = std::max(0.0, 1 + k * depth), now = a * a - 2 * a * k * along + k * k * across;
+    const double sum = a + std::sqrt(std::max(0.0, now));
+    return sum > 0 ? (2 * a * along - k * across) / sum : along;
 }
 
 }  // namespace
@@ -360,8 +360,9 @@ double HeldMotion::depth_on_face(std::size_t contact) const
     const Quat turned_face = face_turns ? turned(face) : Quat{};
     Vec3 displacement = moved(own, arm_own, c.point - c.pivot.arm) - moved(face, arm_face, c.point);
     if (c.pivot.arm != Vec3{}) displacement += turned_arm(c.pivot, of_b ? -c.normal : c.normal, turned(own), turned_face) - c.pivot.arm;
-    const Vec3 normal = face_turns ? rotate(turned_face, c.normal) : c.normal;
-    return arms_[contact].depth - opened(arms_[contact].depth, displacement, of_b ? normal : -normal, c.pivot.hollow);
+    Vec3 normal = c.normal, bend = c.pivot.hollow.vector();
+    if (face_turns) normal = rotate(turned_face, normal), bend = rotate(turned_face, bend);
+    return arms_[contact].depth - opened(arms_[contact].depth, displacement, of_b ? normal : -normal, bend);
 }
 
 }  // namespace plab::simulation
