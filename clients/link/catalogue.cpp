@@ -14,7 +14,8 @@ using Clock = std::chrono::steady_clock;
 // The bus gives no count of types: they arrive in one burst, and are considered complete when no more have arrived for this
 // long.
 constexpr Seconds kQuiet(0.05);
-// Metrics are optional: a server may have none to send, as in a playback. One that has them answers a new reader within a step.
+// Metrics are optional: a server may have none to send, as in a playback. One that has them answers a new reader soon, but no sooner than
+// 50 ms after its last sample, and later if it is busy.
 constexpr Seconds kPatience(1);
 constexpr Seconds kSlice(0.05);
 

@@ -32,8 +32,11 @@ bool is_lever(const Vec3& fixed, const Vec3& r)
     return length_squared(fixed) > kRounding * kRounding * length_squared(r);
 }
 
-/// Whether a radius or a lever has turned by less than 0.05 rad.
-bool is_near(const Vec3& arm, const Vec3& before) { return length_squared(arm - before) <= 0.05 * 0.05 * length_squared(before); }
+/// Whether a radius or a lever has turned by no more than kFarthestTurn.
+bool is_near(const Vec3& arm, const Vec3& before)
+{
+    return length_squared(arm - before) <= kFarthestTurn * kFarthestTurn * length_squared(before);
+}
 
 /// How a body moves, and how many halves of a step its points have yet to go from where their velocity is taken: the levers of movers are
 /// put midway, the velocity of other bodies is read where the step begins, and static bodies stay.

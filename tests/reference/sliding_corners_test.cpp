@@ -18,7 +18,7 @@ namespace
 constexpr double kReleased = 0.6;                                      // rad
 constexpr double kOfBox = (0.1 * 0.1 + 0.12 * 0.12) / 3;               // kg m^2
 constexpr double kOfCapsule = 0.02, kEndRadius = 0.06, kEndsAt = 0.2;  // kg m^2, m, m: as given
-constexpr const char* kHollow = "Shape/Bowl' radius='1";
+constexpr const char* kRoundBowl = "Shape/Bowl' radius='1";
 constexpr const char* kPipe = "Shape/Bore' radius='1' height='4' orientation='axis 1 0 0 90 deg";
 
 enum class Kind
@@ -100,10 +100,10 @@ TEST_CASE("solids slide on corners and round ends in bowls and pipes: order 2")
     const double in_bowl = std::sqrt(1 - 0.1 * 0.1 - 0.07 * 0.07) - 0.12, in_pipe = std::sqrt(1 - 0.1 * 0.1) - 0.12,
                  on_ends = std::sqrt((1 - kEndRadius) * (1 - kEndRadius) - kEndsAt * kEndsAt);
     for (const Slider& slider :
-         {Slider{"box in a bowl", Kind::Box, kHollow, in_bowl}, Slider{"box in a pipe", Kind::Box, kPipe, in_pipe},
-          Slider{"two halves of a box in a bowl", Kind::TwoHalves, kHollow, in_bowl},
-          Slider{"capsule in a bowl", Kind::Capsule, kHollow, on_ends}, Slider{"capsule in a pipe", Kind::Capsule, kPipe, on_ends},
-          Slider{"box in a bowl that moves", Kind::Box, kHollow, in_bowl, 0.5},
+         {Slider{"box in a bowl", Kind::Box, kRoundBowl, in_bowl}, Slider{"box in a pipe", Kind::Box, kPipe, in_pipe},
+          Slider{"two halves of a box in a bowl", Kind::TwoHalves, kRoundBowl, in_bowl},
+          Slider{"capsule in a bowl", Kind::Capsule, kRoundBowl, on_ends}, Slider{"capsule in a pipe", Kind::Capsule, kPipe, on_ends},
+          Slider{"box in a bowl that moves", Kind::Box, kRoundBowl, in_bowl, 0.5},
           Slider{"box in a pipe that turns", Kind::Box, kPipe, in_pipe, 0, 1}})
         for (const char* manager : {"Direct", "Automatic"})
         {

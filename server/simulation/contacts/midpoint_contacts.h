@@ -19,8 +19,8 @@
 /// midpoint rule on the curve, of order 2. If the condition would need a pulling impulse, the impulse is zero: the body leaves the curve,
 /// at a time that is correct to order 2.
 ///
-/// Contacts that have a pivot (plab/collision.h) are left to the managers, which put them midway themselves, but for those of balls and in
-/// islands that need this for another contact.
+/// Contacts that have a pivot (plab/collision.h) are left to managers that put them midway themselves (TypeInfo::pivots_up_to), but for
+/// those of balls, and in islands that need this for another contact.
 ///
 /// Limits: orientations are advanced for the forces but not for the contacts, so a curve that rotates with its body (a tumbling capsule)
 /// stays at order 1, and so do pivots (Contact::pivot) in its island. Forces that depend on velocities are evaluated with v0. Joints would
