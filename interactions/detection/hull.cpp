@@ -22,6 +22,17 @@ void find_bounds(Hull& hull)
     for (const Vec3& p : hull.vertices) hull.extent = std::max(hull.extent, length(p - hull.center));
 }
 
+void find_reaches(Hull& hull)
+{
+    for (const auto& face : hull.faces)
+    {
+        const Vec3 middle = (hull.vertices[face[0]] + hull.vertices[face[1]] + hull.vertices[face[2]]) / 3;
+        double reach = 0;
+        for (const Index corner : face) reach = std::max(reach, length(hull.vertices[corner] - middle));
+        hull.middles.push_back(middle), hull.reaches.push_back(reach);
+    }
+}
+
 void find_edges(Hull& hull)
 {
     for (std::size_t f = 0; f < hull.faces.size(); ++f)
@@ -98,6 +109,7 @@ Result<Hull> make_hull(std::span<const Vec3> points)
     Hull hull;
     static_cast<ConvexHull&>(hull) = convex.take();
     find_bounds(hull);
+    find_reaches(hull);
     find_edges(hull);
     find_polygons(hull);
     hull.vertex_columns = PointColumns(hull.vertices), hull.loop_normal_columns = PointColumns(hull.loop_normals);

@@ -17,6 +17,9 @@ struct Hull : ConvexHull
     Vec3 lower, upper;  ///< bounds, m
     Vec3 center;        ///< mean of the vertices, m; it is inside
     double extent = 0;  ///< m: the largest distance of a vertex from the centre
+    /// Of each triangle: its middle, and the largest distance of a corner from it, m.
+    std::vector<Vec3> middles;
+    std::vector<double> reaches;
     PointColumns vertex_columns, loop_normal_columns;
 };
 

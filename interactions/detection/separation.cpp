@@ -104,16 +104,22 @@ void leave(const Solid& S, const Vec3& c, double& outside, Vec3& n)
     if (across - S.size().x > outside) outside = across - S.size().x, n = across > 0 ? Vec3{c.x / across, c.y / across, 0} : Vec3{1, 0, 0};
 }
 
-/// The closest point of a hull to a point outside lies on a face that is visible from that point.
+/// The closest point of a hull to a point outside lies on a face that is visible from that point, and no farther away than any point of the
+/// hull: the nearest middle of a face excludes most others.
 ClosestPoint closest_point_on_hull(const Solid& S, const Vec3& q)
 {
+    constexpr double kRounding = 1 + 0x1p-40;
     const Hull& hull = S.hull();
     const Vec3 c = S.to_local(q);
+    double nearest = HUGE_VAL;
+    for (const Vec3& middle : hull.middles) nearest = std::min(nearest, length_squared(middle - c));
+    nearest = std::sqrt(nearest) * kRounding;
     ClosestPoint best;
     double least = HUGE_VAL;
     for (std::size_t f = 0; f < hull.faces.size(); ++f)
     {
-        if (dot(hull.normals[f], c) <= hull.offsets[f]) continue;
+        const double within = nearest + hull.reaches[f];
+        if (length_squared(hull.middles[f] - c) > within * within || dot(hull.normals[f], c) <= hull.offsets[f]) continue;
         const auto& v = hull.faces[f];
         const ClosestPoint closest = closest_point_on_facelet(c, {{hull.vertices[v[0]], hull.vertices[v[1]], hull.vertices[v[2]]}, 3});
         if (const double d = length_squared(c - closest.p); d < least) least = d, best = closest;

@@ -8,59 +8,6 @@ namespace plab::managers
 namespace
 {
 
-/// kappa of law_of: the stiffness rho of an active contact is kappa / K.
-constexpr double kSoftest = 1e2, kUsualStiffness = 1e6, kMostStiffness = 1e12;
-
-/// The linearised law of a point: dj = change - G du. Whether the point presses, sticks or slides is decided from tau with rho =
-/// 1 / K, for which impulses and velocities have the same weight; the active directions then use the stiffer rho = kappa / K.
-void law_of(const Point& p, const Vec3& u, double kappa, Vec3& change, Mat3& G)
-{
-    const double rho = 1 / p.K(2, 2), stiff = kappa * rho;
-    G = {};
-    change = -p.impulse;
-    const double normal = p.impulse.z - rho * (u.z - p.least);
-    if (normal <= 0) return;
-    G(2, 2) = stiff;
-    // Written so that the change of an active contact is -rho u itself: the digits of j do not enter.
-    change.z = -stiff * (u.z - p.least);
-    if (!p.frictional()) return;
-    const double x = p.impulse.x - rho * u.x, y = p.impulse.y - rho * u.y, size = std::hypot(x, y);
-    const double radius = p.friction * normal;
-    if (size <= radius)
-    {
-        G(0, 0) = G(1, 1) = stiff;
-        change.x = -stiff * u.x, change.y = -stiff * u.y;
-        return;
-    }
-    // Along the slip direction the friction is mu j_n; across it, the direction of tau turns with j and u. Across the slip
-    // direction j equals rho u, since tau has no component there. Substituting rho u keeps the rounding errors of j from being
-    // amplified by `share`, which is large where sliding begins.
-    const double c = x / size, s = y / size, beta = radius / size;
-    const double along = p.friction * (p.impulse.z + change.z) - (c * p.impulse.x + s * p.impulse.y);
-    const double share = std::min(1 / (1 - beta), kappa), turn = rho * beta * share;
-    const double across = -rho * (c * u.y - s * u.x) * share;
-    change.x = along * c - across * s, change.y = along * s + across * c;
-    G(0, 0) = turn * s * s, G(0, 1) = G(1, 0) = -turn * c * s, G(1, 1) = turn * c * c;
-    G(0, 2) = p.friction * c * stiff, G(1, 2) = p.friction * s * stiff;
-}
-
-/// The piece of the law that a point is in: 0 separated, 1 sticking (or without friction), 2 sliding; as law_of decides it.
-char piece_of(const Point& p, const Vec3& u)
-{
-    if (!(p.K(2, 2) > 0)) return 0;
-    const double rho = 1 / p.K(2, 2), normal = p.impulse.z - rho * (u.z - p.least);
-    if (normal <= 0) return 0;
-    const bool slides = p.frictional() && std::hypot(p.impulse.x - rho * u.x, p.impulse.y - rho * u.y) > p.friction * normal;
-    return slides ? 2 : 1;
-}
-
-/// 1 where a row acts within its bounds, or 0.
-char piece_of(const Line& line, double gap)
-{
-    const double wanted = line.impulse - gap / line.admittance();
-    return line.count > 0 && wanted >= line.least && wanted <= line.most ? 1 : 0;
-}
-
 /// Square root of the sum of the squared violations: smooth enough to compare steps by.
 double total_violation(const Problem& problem)
 {
@@ -153,20 +100,14 @@ bool NewtonSolver::find_step(const Problem& problem, double kappa)
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         const Point& p = problem.points[i];
-        laws_[i] = {};
-        if (!(p.K(2, 2) > 0)) continue;
-        law_of(p, problem.relative_velocity(p), kappa, laws_[i].change, laws_[i].G);
+        laws_[i] = law_of(p, problem.relative_velocity(p), kappa);
         add_push(step_, p, laws_[i].change);
         if (laws_[i].G(2, 2) != 0) matrix_.add(problem, i, laws_[i].G);
     }
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
     {
         const Line& line = problem.lines[i];
-        line_laws_[i] = {};
-        if (line.count == 0) continue;
-        const double gap = problem.gap(line), stiff = line.stiffness(kappa), wanted = line.impulse - gap / line.admittance();
-        const double held = std::clamp(wanted, line.least, line.most);
-        line_laws_[i] = held == wanted ? LineLaw{-stiff * gap, stiff} : LineLaw{held - line.impulse, 0};
+        line_laws_[i] = law_of(line, problem.gap(line), kappa);
         add_push(step_, line, line_laws_[i].change);
         if (line_laws_[i].G != 0) matrix_.add(problem, i, line_laws_[i].G);
     }
@@ -402,9 +343,23 @@ bool NewtonSolver::settles_by_sweeps(Problem& problem, double guess, const Solvi
     return false;
 }
 
+/// A mechanism with few contacts is solved in their impulses alone.
+bool NewtonSolver::solve_mechanism(Problem& problem, const Solving& how, Solved& out)
+{
+    const double close = std::max(how.enough, how.close);
+    const DelassusSolver::Found found = mechanism_.solve(problem, {how.tolerance, close});
+    out.steps += found.steps, out.sweeps += found.sweeps;
+    if (!found.solved) return false;
+    out.ended = true, out.fell_back = found.fell_back;
+    out.residual = violation(problem);
+    out.converged = out.residual <= std::max({how.tolerance, problem.rounding(terms_of(problem)), close});
+    return true;
+}
+
 Solved NewtonSolver::solve(Problem& problem, const Solving& how)
 {
     Solved out;
+    if (solve_mechanism(problem, how, out)) return out;
     Solving exact = how;
     exact.finest = how.tolerance;
     const double terms = terms_of(problem);

@@ -30,6 +30,8 @@
 
 #include <cstdint>
 
+#include "contact_law.h"
+#include "delassus.h"
 #include "joint_solver.h"
 #include "lagrangian.h"
 #include "sequential.h"
@@ -68,21 +70,13 @@ public:
     Solved solve(Problem& problem, const Solving& how);
 
 private:
-    struct Law
-    {
-        Vec3 change;  ///< P(tau) - j
-        Mat3 G;       ///< contact coordinates
-    };
-    struct LineLaw
-    {
-        double change = 0, G = 0;
-    };
     bool find_step(const Problem& problem, double kappa);
     void go(Problem& problem, double share);
     double advance(Problem& problem, double now);
     /// Whether a point or row is in another piece of the law than when this was last asked.
     bool changes_pieces(const Problem& problem);
     bool newton(Problem& problem, const Solving& how, Solved& out);
+    bool solve_mechanism(Problem& problem, const Solving& how, Solved& out);
     void polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out);
     void keep_guess(const Problem& problem);
     void recall_guess(Problem& problem);
@@ -96,8 +90,9 @@ private:
 
     IslandMatrix matrix_;
     JointSolver joints_;
+    DelassusSolver mechanism_;
     Lagrangian lagrangian_;
-    std::vector<Law> laws_;
+    std::vector<PointLaw> laws_;
     std::vector<LineLaw> line_laws_;
     std::vector<Column6> step_;
     std::vector<char> pieces_;

@@ -12,13 +12,6 @@ namespace plab::managers
 namespace
 {
 
-/// Largest eigenvalue of the tangential 2 x 2 part of K.
-double slip_mobility(const Mat3& K)
-{
-    const double mean = 0.5 * (K(0, 0) + K(1, 1)), half = 0.5 * (K(0, 0) - K(1, 1));
-    return mean + std::sqrt(half * half + K(0, 1) * K(0, 1));
-}
-
 void add_mobility(Point& p, const Mover& m, const Vec3& r)
 {
     add_turning_mobility(p.K, m.inverse_inertia, r, p.t1, p.t2, p.n);

@@ -218,6 +218,13 @@ double violation(const Line& line, double gap);
 /// The largest violation over all points and lines.
 double violation(const Problem& problem);
 
+/// Largest eigenvalue of the tangential 2 x 2 part of K.
+inline double slip_mobility(const Mat3& K)
+{
+    const double mean = 0.5 * (K(0, 0) + K(1, 1)), half = 0.5 * (K(0, 0) - K(1, 1));
+    return mean + std::sqrt(half * half + K(0, 1) * K(0, 1));
+}
+
 /// J, of the movers at their present velocities, and at those without impulses.
 double kinetic_energy(const Problem& problem);
 double kinetic_energy_without(const Problem& problem);

@@ -74,6 +74,7 @@ Result<ImportedScene> import_text(std::string_view text, const std::string& file
     Assembly assembly = assemble(robot, document);
     if (document.failed()) return document.errors();
     const std::vector<CollisionExclusion> exclusions = collision_rules(robot, assembly, document);
+    if (document.failed()) return document.errors();
     WrittenScene written = write_blueprint(robot, assembly, exclusions, options.part ? options.part->name : "", document);
     if (document.failed()) return document.errors();
     return ImportedScene{std::move(written.blueprint), std::move(written.root), document.losses(), written.bodies, written.joints};

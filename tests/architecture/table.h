@@ -128,6 +128,7 @@ inline const std::vector<Layer>& layers()
         {"server/figures", {"server/picture"}, {"cairo/"}, false},
         {"server/render", {"server/picture"}, {"GL/", "cairo/"}},
         {"server/objects/cameras", {"server/sdk", "server/render"}, {}},
+        {"server/objects/solvers", {"server/sdk", "server/linear"}, {}},
         {"server/objects/*", {"server/sdk"}, {}},
         {"interactions/detection", {"server/sdk", "server/geometry"}, {"ode/", "Eigen/"}},
         {"interactions/constraints/joints", {"server/sdk", "interactions/constraints/angular_velocity"}, {}},

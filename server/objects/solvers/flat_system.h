@@ -3,11 +3,13 @@
 #include <span>
 #include <vector>
 
-#include "dense.h"
+#include "linear/dense.h"
 #include "plab/dynamics.h"
 
 namespace plab::solvers
 {
+
+using linear::Complex, linear::Factors, linear::SquareMatrix;
 
 /// A DynamicSystem as one flat equation y' = f(t, y), for methods that treat coordinates and speeds alike; and df/dy by differences.
 /// The tolerated error of a component: absolute * unit + relative * size.

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dense_view.h"
+#include "linear/dense_view.h"
 
 namespace plab::solvers
 {
 namespace
 {
+
+using linear::multiply, linear::view, linear::DenseMatrix, linear::DenseVector;
 
 constexpr double kTaylorReach = 0.7;  // 0.7^17 / 17! is below 1e-17
 constexpr int kMostSquarings = 60;

@@ -1,10 +1,12 @@
 /// exp(A) of small dense matrices.
 #pragma once
 
-#include "dense.h"
+#include "linear/dense.h"
 
 namespace plab::solvers
 {
+
+using linear::SquareMatrix;
 
 /// exp(A) and its square roots exp(A / 2^p) by balancing, scaling, a Taylor polynomial of degree 16 and squaring. Eigen's exp
 /// (unsupported/Eigen/MatrixFunctions) is not used, because it does not balance, which costs digits where the units of rows differ

@@ -116,7 +116,11 @@ void RowEquations::factor(double implied, double others)
     any_small_ = std::find(small.begin(), small.end(), std::uint8_t{1}) != small.end();
 }
 
-void RowEquations::clear_right_hand_side() { std::fill(rhs_.begin(), rhs_.end(), 0.0); }
+void RowEquations::clear_right_hand_side()
+{
+    std::fill(rhs_.begin(), rhs_.end(), 0.0);
+    std::fill(joint_load_.begin(), joint_load_.end(), 0.0);
+}
 
 double RowEquations::moved(std::size_t s) const
 {
@@ -136,7 +140,7 @@ double RowEquations::moved(std::size_t s) const
 void RowEquations::subtract_rows()
 {
     std::fill(joint_error_.begin(), joint_error_.end(), 0.0);
-    std::fill(joint_scale_.begin(), joint_scale_.end(), 0.0);
+    std::copy(joint_load_.begin(), joint_load_.end(), joint_scale_.begin());
     for (const Slot& slot : slots_)
     {
         const std::uint32_t u = unknown_of(slot);
@@ -255,10 +259,28 @@ bool RowEquations::solve()
     return is_finite();
 }
 
+/// What rows have to stop belongs to the scale of their residuals: of members at rest all other terms are as small as the errors.
+void RowEquations::scale_by_loads()
+{
+    for (const Slot& slot : slots_)
+    {
+        double sum = 0;
+        for (std::uint32_t e = slot.first_entry; e < slot.first_entry + slot.entries; ++e)
+        {
+            const Entry& entry = entries_[e];
+            double free[6];
+            over_mass(members_[entry.member], &rhs_[factors_.offset(entry.member)], free);
+            for (std::uint32_t c = 0; c < size_of(members_[entry.member]); ++c) sum += std::fabs(entry.j[c] * free[c]);
+        }
+        joint_load_[slot.joint] = std::fmax(joint_load_[slot.joint], sum);
+    }
+}
+
 bool RowEquations::solve_refined()
 {
     if (!solve()) return false;
     if (!any_compliant_ && !any_small_) return true;
+    scale_by_loads();
     double left = residual();
     for (int i = 0; i < kMostRefinements && left > kResidualFloor; ++i)
     {

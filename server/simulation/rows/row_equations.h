@@ -182,6 +182,7 @@ private:
     void over_mass(const Member& member, const double* g, double* out) const;
     double mobility_of(const Entry& entry) const;
     bool is_finite() const;
+    void scale_by_loads();
     double residual();
     void subtract_rows();
     double worst_of_rows() const;
@@ -207,9 +208,9 @@ private:
     linear::SparseBlocks factors_;
     double compliance_ = -1;  ///< -1: not factored yet
     bool any_small_ = false;
-    std::vector<std::uint8_t> implied_;                         // by slot; empty: not noted
-    std::vector<double> rhs_, x_, r_, before_, blunt_, scale_;  // by unknown
-    std::vector<double> joint_error_, joint_scale_;             // by joint
+    std::vector<std::uint8_t> implied_;                           // by slot; empty: not noted
+    std::vector<double> rhs_, x_, r_, before_, blunt_, scale_;    // by unknown
+    std::vector<double> joint_error_, joint_scale_, joint_load_;  // by joint; loads: speeds per s that they alone would give
 };
 
 }  // namespace plab::simulation

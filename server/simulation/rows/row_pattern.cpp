@@ -99,7 +99,7 @@ private:
         out_.factors_.analyse(nodes, edges_);
         for (auto* v : {&out_.rhs_, &out_.x_, &out_.r_, &out_.before_, &out_.blunt_, &out_.scale_})
             v->assign(out_.factors_.unknowns(), 0.0);
-        for (auto* v : {&out_.joint_error_, &out_.joint_scale_}) v->assign(out_.joints_.size(), 0.0);
+        for (auto* v : {&out_.joint_error_, &out_.joint_scale_, &out_.joint_load_}) v->assign(out_.joints_.size(), 0.0);
     }
 
     RowEquations& out_;

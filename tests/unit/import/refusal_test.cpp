@@ -74,6 +74,9 @@ TEST_CASE("faulty MJCF is refused with its place and a reason")
     check("<body><geom size='1'/><joint axis='0 0 0'/></body>", "robot:3:23: <joint>: axis must be a direction, not the zero vector");
     check("<body><geom size='1'/><joint type='spin'/></body>",
           "robot:3:23: <joint>: type must be one of free, ball, slide, hinge, not 'spin'");
+    CHECK(refusal("<mujoco><contact>\n<pair geom1='g' geom2='floor' friction='1'/></contact><worldbody><body><freejoint/><geom name='g' "
+                  "size='1'/></body></worldbody></mujoco>",
+                  SceneFormat::Mjcf) == "robot:2:1: <pair>: there is no geom 'floor'");
     check("<body><geom size='1' quat='0 0 0 0'/></body>", "robot:3:7: <geom>: quat must not be zero");
 }
 

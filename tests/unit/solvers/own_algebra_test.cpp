@@ -1,5 +1,5 @@
 // Linear algebra of the solvers that is not Eigen's: cases in which Eigen's functions lose digits, or time.
-#include "objects/solvers/dense_view.h"
+#include "linear/dense_view.h"
 #include "objects/solvers/matrix_exponential.h"
 #include "support/shortest.h"
 
@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <unsupported/Eigen/MatrixFunctions>
 
+using namespace plab::linear;
 using namespace plab::solvers;
 
 TEST_CASE("LU: Eigen's does not scale rows, and loses all digits if their units differ")

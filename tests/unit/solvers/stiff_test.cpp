@@ -1,10 +1,11 @@
 /// The implicit solvers: Radau5 on the field's standard stiff problems, and ImplicitMidpoint.
-#include "objects/solvers/dense.h"
+#include "linear/dense.h"
 #include "objects/solvers/implicit_midpoint.h"
 #include "objects/solvers/radau5.h"
 #include "unit/solvers/problems.h"
 
 using namespace plab;
+using namespace plab::linear;
 using namespace plab::solvers;
 using namespace plab::test;
 

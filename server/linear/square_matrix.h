@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace plab::solvers
+namespace plab::linear
 {
 
 /// An n x n matrix, column-major. Keeps its memory when it is resized.
@@ -25,4 +25,4 @@ private:
     std::vector<T> a_;
 };
 
-}  // namespace plab::solvers
+}  // namespace plab::linear

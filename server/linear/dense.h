@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "square_matrix.h"
+#include "linear/square_matrix.h"
 
-namespace plab::solvers
+namespace plab::linear
 {
 
 using Complex = std::complex<double>;
@@ -56,4 +56,4 @@ private:
 extern template class Factors<double>;
 extern template class Factors<Complex>;
 
-}  // namespace plab::solvers
+}  // namespace plab::linear

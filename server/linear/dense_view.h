@@ -2,9 +2,9 @@
 #pragma once
 
 #include "plab/eigen.h"
-#include "square_matrix.h"
+#include "linear/square_matrix.h"
 
-namespace plab::solvers
+namespace plab::linear
 {
 
 template <class T>
@@ -25,4 +25,4 @@ Eigen::Map<const DenseMatrix<T>> view(const SquareMatrix<T>& a)
     return {a.all().data(), n, n};
 }
 
-}  // namespace plab::solvers
+}  // namespace plab::linear

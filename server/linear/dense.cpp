@@ -1,11 +1,11 @@
-#include "dense.h"
+#include "linear/dense.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "dense_view.h"
+#include "linear/dense_view.h"
 
-namespace plab::solvers
+namespace plab::linear
 {
 namespace
 {
@@ -122,4 +122,4 @@ void Factors<T>::solve(std::span<T> b) const
 template class Factors<double>;
 template class Factors<Complex>;
 
-}  // namespace plab::solvers
+}  // namespace plab::linear

@@ -1,0 +1,391 @@
+#include "delassus.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sequential.h"
+
+namespace plab::managers
+{
+namespace
+{
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Columns of W: with more, its factorisation costs more than that of the whole island.
+constexpr std::size_t kMostImpulses = 192;
+/// A point that the mechanism can move by less than this share of what its two bodies alone could is locked: no impulse opens it.
+constexpr double kLocked = 1e-11;
+
+}  // namespace
+
+// Which points and rows take part ----------------------------------------------------------------------------------------
+
+void DelassusSolver::add_place(std::uint32_t index, std::uint32_t count, bool line)
+{
+    (line ? line_in_ : point_in_)[index] = 1;
+    places_.push_back({index, static_cast<std::uint32_t>(size_), count, line});
+    size_ += count;
+}
+
+/// Adds what has an impulse, or breaks its law at the present velocities. False if there is nothing to add.
+bool DelassusSolver::add_missing(const Problem& problem, double tolerance)
+{
+    const std::size_t before = places_.size();
+    for (std::uint32_t i = 0; i < problem.points.size(); ++i)
+    {
+        const Point& p = problem.points[i];
+        if (point_in_[i] != 0 || !(p.K(2, 2) > 0)) continue;
+        if (p.impulse != Vec3{} || violation(p, problem.relative_velocity(p)) > tolerance) add_place(i, p.frictional() ? 3 : 1, false);
+    }
+    for (std::uint32_t i = 0; i < problem.lines.size(); ++i)
+    {
+        const Line& line = problem.lines[i];
+        if (line_in_[i] != 0 || line.count == 0) continue;
+        if (line.impulse != 0 || violation(line, problem.gap(line)) > tolerance) add_place(i, 1, true);
+    }
+    return places_.size() > before;
+}
+
+// The reduced problem ----------------------------------------------------------------------------------------------------
+
+/// The velocities of the mechanism without r.
+void DelassusSolver::find_free(Problem& problem)
+{
+    columns_.assign(problem.movers.size(), Column6{});
+    joints_.move_with(problem, columns_);
+    for (std::size_t m = 0; m < columns_.size(); ++m) problem.movers[m].v = first(columns_[m]), problem.movers[m].w = last(columns_[m]);
+}
+
+/// Of the places from this one on, and by symmetry of the others.
+void DelassusSolver::find_columns(const Problem& problem, std::size_t from)
+{
+    const auto at = [this](std::size_t r, std::size_t c) -> double& { return W_[c * kMostImpulses + r]; };
+    for (std::size_t k = from; k < places_.size(); ++k)
+        for (std::uint32_t axis = 0; axis < places_[k].count; ++axis)
+        {
+            const Place& own = places_[k];
+            columns_.assign(problem.movers.size(), Column6{});
+            if (own.line)
+                add_push(columns_, problem.lines[own.index], 1);
+            else
+                add_push(columns_, problem.points[own.index],
+                         own.count == 1 ? Vec3{0, 0, 1} : Vec3{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0});
+            joints_.respond(columns_);
+            const std::size_t c = own.first + axis;
+            for (const Place& other : places_)
+            {
+                if (other.line)
+                    at(other.first, c) = rate_of(columns_, problem.lines[other.index]);
+                else
+                {
+                    const Vec3 u = relative_velocity_of(columns_, problem.points[other.index]);
+                    if (other.count == 1)
+                        at(other.first, c) = u.z;
+                    else
+                        at(other.first, c) = u.x, at(other.first + 1, c) = u.y, at(other.first + 2, c) = u.z;
+                }
+                if (&other - places_.data() < static_cast<std::ptrdiff_t>(from))
+                    for (std::uint32_t r = other.first; r < other.first + other.count; ++r) at(c, r) = at(r, c);
+            }
+        }
+}
+
+/// Takes the points and rows over, with the mobilities of the mechanism, and the guess. The movers have the velocities without r.
+bool DelassusSolver::set_up(const Problem& problem)
+{
+    points_.clear(), lines_.clear();
+    q_.resize(size_), r_.resize(size_), u_.resize(size_);
+    const auto at = [this](std::size_t r, std::size_t c) { return W_[c * kMostImpulses + r]; };
+    for (const Place& place : places_)
+    {
+        Point& p = points_.emplace_back();
+        Line& line = lines_.emplace_back();
+        const std::uint32_t f = place.first;
+        if (place.line)
+        {
+            line = problem.lines[place.index];
+            if (!(at(f, f) > kLocked * line.mobility)) return false;
+            line.mobility = at(f, f);
+            q_[f] = problem.rate(line), r_[f] = line.impulse;
+            continue;
+        }
+        p = problem.points[place.index];
+        const Vec3 u = problem.relative_velocity(p);
+        const std::uint32_t normal = f + place.count - 1;
+        if (!(at(normal, normal) > kLocked * p.K(2, 2))) return false;
+        p.K = {};
+        if (place.count == 1)
+        {
+            p.K(2, 2) = at(f, f), q_[f] = u.z, r_[f] = p.impulse.z;
+            continue;
+        }
+        for (std::uint32_t i = 0; i < 3; ++i)
+            for (std::uint32_t k = 0; k < 3; ++k) p.K(i, k) = at(f + i, f + k);
+        p.slip_mobility = slip_mobility(p.K);
+        q_[f] = u.x, q_[f + 1] = u.y, q_[f + 2] = u.z;
+        r_[f] = p.impulse.x, r_[f + 1] = p.impulse.y, r_[f + 2] = p.impulse.z;
+    }
+    return true;
+}
+
+/// Gives r to the problem, and the velocities of the whole mechanism with it.
+void DelassusSolver::take_velocities(Problem& problem)
+{
+    columns_.assign(problem.movers.size(), Column6{});
+    for (std::size_t k = 0; k < places_.size(); ++k)
+    {
+        const Place& place = places_[k];
+        if (place.line)
+        {
+            problem.lines[place.index].impulse = r_[place.first];
+            add_push(columns_, problem.lines[place.index], r_[place.first]);
+            continue;
+        }
+        problem.points[place.index].impulse = points_[k].impulse;
+        add_push(columns_, problem.points[place.index], points_[k].impulse);
+    }
+    joints_.move_with(problem, columns_);
+    for (std::size_t m = 0; m < columns_.size(); ++m) problem.movers[m].v = first(columns_[m]), problem.movers[m].w = last(columns_[m]);
+}
+
+// Its solution -----------------------------------------------------------------------------------------------------------
+
+Vec3 DelassusSolver::velocity(const Place& place) const
+{
+    const double* u = &u_[place.first];
+    return place.count == 1 ? Vec3{0, 0, u[0]} : Vec3{u[0], u[1], u[2]};
+}
+
+double DelassusSolver::gap(std::size_t k) const
+{
+    const Line& line = lines_[k];
+    return u_[places_[k].first] + line.compliance * line.impulse - line.target;
+}
+
+/// Writes r to the points and rows, and sets u = q + W r.
+void DelassusSolver::find_velocities()
+{
+    for (std::size_t k = 0; k < places_.size(); ++k)
+    {
+        const double* r = &r_[places_[k].first];
+        if (places_[k].line)
+            lines_[k].impulse = r[0];
+        else
+            points_[k].impulse = places_[k].count == 1 ? Vec3{0, 0, r[0]} : Vec3{r[0], r[1], r[2]};
+    }
+    std::copy(q_.begin(), q_.end(), u_.begin());
+    for (std::size_t c = 0; c < size_; ++c)
+        if (r_[c] != 0)
+            for (std::size_t i = 0; i < size_; ++i) u_[i] += W_[c * kMostImpulses + i] * r_[c];
+}
+
+double DelassusSolver::residual() const
+{
+    double largest = 0;
+    for (std::size_t k = 0; k < places_.size(); ++k)
+        largest = std::max(largest, places_[k].line ? violation(lines_[k], gap(k)) : violation(points_[k], velocity(places_[k])));
+    return largest;
+}
+
+/// m/s: what rounding leaves of the sums u.
+double DelassusSolver::rounding() const
+{
+    double largest = 0;
+    for (std::size_t i = 0; i < size_; ++i)
+    {
+        double sum = std::fabs(q_[i]);
+        for (std::size_t c = 0; c < size_; ++c) sum += std::fabs(W_[c * kMostImpulses + i] * r_[c]);
+        largest = std::max(largest, sum);
+    }
+    return 16 * kEpsilon * largest;
+}
+
+bool DelassusSolver::changes_pieces()
+{
+    bool changes = false;
+    pieces_.resize(places_.size());
+    for (std::size_t k = 0; k < places_.size(); ++k)
+    {
+        const char now = places_[k].line ? piece_of(lines_[k], gap(k)) : piece_of(points_[k], velocity(places_[k]));
+        changes = changes || pieces_[k] != now;
+        pieces_[k] = now;
+    }
+    return changes;
+}
+
+/// (1 + G W) dr = change.
+bool DelassusSolver::find_step(double kappa)
+{
+    linear::SquareMatrix<double>& A = factors_.matrix();
+    A.resize(size_);
+    std::ranges::fill(A.all(), 0.0);
+    step_.assign(size_, 0.0);
+    const auto add_row = [&](std::uint32_t row, std::uint32_t of, double g)
+    {
+        if (g == 0) return;
+        for (std::size_t c = 0; c < size_; ++c) A(row, c) += g * W_[c * kMostImpulses + of];
+    };
+    for (std::size_t k = 0; k < places_.size(); ++k)
+    {
+        const std::uint32_t f = places_[k].first;
+        if (places_[k].line)
+        {
+            const LineLaw law = law_of(lines_[k], gap(k), kappa);
+            step_[f] = law.change;
+            add_row(f, f, law.G);
+            continue;
+        }
+        const PointLaw law = law_of(points_[k], velocity(places_[k]), kappa);
+        const std::uint32_t skip = 3 - places_[k].count;
+        for (std::uint32_t i = skip; i < 3; ++i)
+        {
+            step_[f + i - skip] = law.change[i];
+            for (std::uint32_t j = skip; j < 3; ++j) add_row(f + i - skip, f + j - skip, law.G(i, j));
+        }
+    }
+    for (std::size_t i = 0; i < size_; ++i) A(i, i) += 1;
+    if (!factors_.factorise()) return false;
+    factors_.solve(step_);
+    return std::ranges::all_of(step_, [](double s) { return std::isfinite(s); });
+}
+
+void DelassusSolver::go(double share)
+{
+    for (std::size_t i = 0; i < size_; ++i) r_[i] += share * step_[i];
+    find_velocities();
+}
+
+/// Newton's method from r; ends at the best r that it finds. Returns its residual.
+double DelassusSolver::newton(double tolerance, int most, Found& out)
+{
+    constexpr double kTooFar = 2, kFactor = 1e2;
+    constexpr int kHalvings = 4, kPatience = 5;
+    double now = residual(), best = now, kappa = kUsualStiffness;
+    best_ = r_;
+    (void)changes_pieces();
+    for (int i = 0, since_best = 0; i < most && since_best < kPatience && best > tolerance; ++i, ++since_best, ++out.steps)
+    {
+        if (!find_step(kappa)) break;
+        const double before = now;
+        double at = 1;
+        go(1);
+        now = residual();
+        for (int n = 0; n < kHalvings && !(now < kTooFar * before); ++n)
+        {
+            go(-0.5 * at);
+            at *= 0.5, now = residual();
+        }
+        const bool same = !changes_pieces();
+        if (same && now > 0.05 * before) kappa = std::min(kMostStiffness, kappa * kFactor);
+        if (!(now < best)) continue;
+        if (now < 0.5 * best) since_best = -1;
+        best = now, best_ = r_;
+    }
+    r_ = best_;
+    find_velocities();
+    return best;
+}
+
+void DelassusSolver::change(std::size_t at, double by)
+{
+    if (by == 0) return;
+    r_[at] += by;
+    for (std::size_t i = 0; i < size_; ++i) u_[i] += W_[at * kMostImpulses + i] * by;
+}
+
+/// Satisfies the law of one point or row, with all others as they are.
+void DelassusSolver::relax(std::size_t k)
+{
+    const std::uint32_t f = places_[k].first;
+    if (places_[k].line)
+    {
+        Line& line = lines_[k];
+        const double held = std::clamp(line.impulse - gap(k) / line.admittance(), line.least, line.most);
+        change(f, held - line.impulse);
+        line.impulse = held;
+        return;
+    }
+    Point& p = points_[k];
+    const std::uint32_t n = f + places_[k].count - 1;
+    const double normal = std::max(0.0, p.impulse.z - (u_[n] - p.least) / p.K(2, 2));
+    change(n, normal - p.impulse.z);
+    p.impulse.z = normal;
+    if (places_[k].count == 1) return;
+    const Vec3 wanted{p.impulse.x - u_[f] / p.slip_mobility, p.impulse.y - u_[f + 1] / p.slip_mobility, normal};
+    const Vec3 held = within_disc(wanted, p.friction * normal);
+    change(f, held.x - p.impulse.x), change(f + 1, held.y - p.impulse.y);
+    p.impulse = held;
+}
+
+void DelassusSolver::sweep(int times)
+{
+    for (int n = 0; n < times; ++n)
+        for (std::size_t k = 0; k < places_.size(); ++k) relax(n % 2 == 0 ? k : places_.size() - 1 - k);
+    find_velocities();
+}
+
+bool DelassusSolver::find_impulses(const Bounds& bounds, Found& out)
+{
+    constexpr int kSteps = 30, kRounds = 20, kSweeps = 100;
+    find_velocities();
+    for (int round = 0;; ++round)
+    {
+        const double tolerance = std::max(bounds.tolerance, rounding());
+        const double left = newton(tolerance, kSteps, out);
+        if (left <= tolerance) return true;
+        if (round == kRounds) return left <= bounds.close;
+        sweep(kSweeps);
+        out.sweeps += kSweeps;
+    }
+}
+
+/// From no impulses, each sweep takes energy.
+void DelassusSolver::sweep_from_none(Found& out)
+{
+    constexpr int kSweeps = 1000;
+    std::ranges::fill(r_, 0.0);
+    find_velocities();
+    sweep(kSweeps);
+    out.sweeps += kSweeps;
+}
+
+DelassusSolver::Found DelassusSolver::solve(Problem& problem, const Bounds& bounds)
+{
+    constexpr int kMostRounds = 12;
+    Found out;
+    if (!joints_.shape(problem) || !joints_.factor(problem)) return out;
+    guess_points_.clear(), guess_lines_.clear();
+    for (const Point& p : problem.points) guess_points_.push_back(p.impulse);
+    for (const Line& line : problem.lines) guess_lines_.push_back(line.impulse);
+    point_in_.assign(problem.points.size(), 0);
+    line_in_.assign(joints_.holds().begin(), joints_.holds().end());
+    places_.clear(), size_ = 0;
+    W_.resize(kMostImpulses * kMostImpulses);
+    find_free(problem);
+    for (int round = 0; round < kMostRounds && !out.solved; ++round)
+    {
+        const std::size_t known = places_.size();
+        if (!add_missing(problem, bounds.tolerance)) out.solved = true;
+        if (out.solved || size_ > kMostImpulses) break;
+        find_columns(problem, known);
+        find_free(problem);
+        if (!set_up(problem)) break;
+        out.fell_back = !find_impulses(bounds, out);
+        take_velocities(problem);
+        if (!out.fell_back || !makes_energy(problem)) continue;
+        sweep_from_none(out);
+        take_velocities(problem);
+    }
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+        if (!out.solved) problem.points[i].impulse = guess_points_[i];
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+        if (!out.solved)
+            problem.lines[i].impulse = guess_lines_[i];
+        else if (joints_.holds()[i] != 0)
+            problem.lines[i].impulse = joints_.impulse(i);
+    problem.apply_impulses();
+    return out;
+}
+
+}  // namespace plab::managers

@@ -1,0 +1,219 @@
+#include "joint_equations.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::managers
+{
+namespace
+{
+
+bool is_held(const Line& line) { return line.count > 0 && line.least == -HUGE_VAL && line.most == HUGE_VAL; }
+
+}  // namespace
+
+void JointEquations::list_rows(const Problem& problem)
+{
+    rows_.clear(), hard_.assign(problem.lines.size(), 0), holds_.assign(problem.lines.size(), 0);
+    for (std::uint32_t i = 0; i < problem.lines.size(); ++i)
+    {
+        const Line& line = problem.lines[i];
+        if (!is_held(line)) continue;
+        holds_[i] = 1, hard_[i] = line.compliance == 0 ? 1 : 0;
+        Row& row = rows_.emplace_back();
+        row.line = i;
+        row.movers.fill(kNoIndex);
+        std::copy_n(line.mover.begin(), line.count, row.movers.begin());
+        std::sort(row.movers.begin(), row.movers.end());
+        const auto end = std::unique(row.movers.begin(), row.movers.end());
+        std::fill(end, row.movers.end(), kNoIndex);
+    }
+    std::sort(rows_.begin(), rows_.end());
+}
+
+void JointEquations::list_joints(const Problem& problem)
+{
+    joints_.clear();
+    joint_of_.assign(problem.lines.size(), kNoIndex), place_.assign(problem.lines.size(), 0), unknown_.assign(problem.lines.size(), 0);
+    for (const Row& row : rows_)
+    {
+        if (joints_.empty() || joints_.back().movers != row.movers || joints_.back().rows == linear::SparseBlocks::kMostSize)
+        {
+            Joint& fresh = joints_.emplace_back();
+            fresh.movers = row.movers;
+            fresh.count = static_cast<std::uint32_t>(std::ranges::count_if(row.movers, [](std::uint32_t m) { return m != kNoIndex; }));
+        }
+        Joint& joint = joints_.back();
+        joint_of_[row.line] = static_cast<std::uint32_t>(joints_.size() - 1), place_[row.line] = joint.rows++;
+        joint.hard += hard_[row.line];
+    }
+}
+
+/// Goes through a joint from one of its movers, or from the ground, and reaches the others. False if its rows could depend on those that
+/// have been gone through: they are more than the others can move.
+bool JointEquations::reach(std::uint32_t number, std::uint32_t from)
+{
+    Joint& joint = joints_[number];
+    joint.toward_root = from;
+    std::uint32_t ways = 0;
+    for (std::uint32_t k = 0; k < joint.count; ++k)
+    {
+        std::uint8_t& reached = reached_[joint.movers[k]];
+        if ((reached & 1) != 0) continue;
+        ways += (reached & 2) != 0 ? 1 : 6;
+        reached |= 1, waiting_.push_back(joint.movers[k]);
+    }
+    return joint.hard <= ways;
+}
+
+/// Joints of two movers first: a coupling that refers to the two bodies of a hinge adds the shaft to them.
+bool JointEquations::find_tree(const Problem& problem)
+{
+    reached_.assign(problem.movers.size(), 0);  // 1: reached, 2: a shaft
+    for (std::size_t m = 0; m < problem.movers.size(); ++m) reached_[m] = problem.anchors[m].shaft ? 2 : 0;
+    if (joints_of_.size() < problem.movers.size()) joints_of_.resize(problem.movers.size());
+    for (auto& list : joints_of_) list.clear();
+    std::vector<std::uint8_t> done(joints_.size(), 0);
+    std::vector<std::uint32_t> wide;
+    waiting_.clear();
+    bool independent = true;
+    for (std::uint32_t j = 0; j < joints_.size(); ++j)
+        for (std::uint32_t k = 0; k < joints_[j].count; ++k) joints_of_[joints_[j].movers[k]].push_back(j);
+    const auto go_through = [&](std::uint32_t j, std::uint32_t from)
+    {
+        done[j] = 1;
+        independent = reach(j, from) && independent;
+    };
+    std::size_t next = 0, next_wide = 0;
+    const auto follow = [&]
+    {
+        while (next < waiting_.size() || next_wide < wide.size())
+        {
+            if (next == waiting_.size())
+            {
+                const std::uint32_t j = wide[next_wide++];
+                if (done[j] != 0) continue;
+                const auto from = std::ranges::find_if(joints_[j].movers, [&](std::uint32_t m) { return (reached_[m] & 1) != 0; });
+                go_through(j, *from);
+                continue;
+            }
+            const std::uint32_t mover = waiting_[next++];
+            for (const std::uint32_t j : joints_of_[mover])
+                if (done[j] == 0 && joints_[j].count > 2)
+                    wide.push_back(j);
+                else if (done[j] == 0)
+                    go_through(j, mover);
+        }
+    };
+    for (std::uint32_t j = 0; j < joints_.size(); ++j)
+        if (joints_[j].count == 1) go_through(j, kNoIndex);
+    follow();
+    for (std::uint32_t m = 0; m < problem.movers.size(); ++m)
+    {
+        if ((reached_[m] & 1) != 0 || joints_of_[m].empty()) continue;
+        reached_[m] |= 1, waiting_.push_back(m);
+        follow();
+    }
+    return independent;
+}
+
+void JointEquations::analyse(std::size_t movers)
+{
+    std::vector<linear::SparseNode> nodes(movers, {linear::SparseBlocks::kMostSize});
+    std::vector<linear::SparseEdge> edges;
+    for (Joint& joint : joints_)
+    {
+        for (std::uint32_t k = 0; k < joint.count; ++k)
+        {
+            joint.edges[k] = static_cast<std::uint32_t>(edges.size());
+            edges.push_back({static_cast<std::uint32_t>(nodes.size()), joint.movers[k]});
+        }
+        nodes.push_back({joint.rows, true, true, joint.toward_root});
+    }
+    matrix_.analyse(nodes, edges);
+    for (std::uint32_t i = 0; i < joint_of_.size(); ++i)
+        if (joint_of_[i] != kNoIndex) unknown_[i] = matrix_.offset(static_cast<std::uint32_t>(movers) + joint_of_[i]) + place_[i];
+    x_.assign(matrix_.unknowns(), 0.0);
+}
+
+bool JointEquations::shape(const Problem& problem)
+{
+    list_rows(problem);
+    if (rows_.empty()) return false;
+    if (rows_ == known_rows_ && hard_ == known_hard_ && problem.movers.size() == known_movers_) return is_tree_;
+    list_joints(problem);
+    is_tree_ = std::ranges::any_of(joints_, [](const Joint& j) { return j.hard > 0; }) && find_tree(problem);
+    if (is_tree_) analyse(problem.movers.size());
+    known_rows_ = rows_, known_hard_ = hard_, known_movers_ = problem.movers.size();
+    return is_tree_;
+}
+
+bool JointEquations::factor(const Problem& problem)
+{
+    constexpr std::size_t n = linear::SparseBlocks::kMostSize;
+    matrix_.clear();
+    for (std::uint32_t i = 0; i < problem.movers.size(); ++i)
+    {
+        double* const d = matrix_.diagonal(i);
+        const Anchor& m = problem.anchors[i];
+        d[0] = d[7] = d[14] = m.mass;
+        for (std::size_t r = 0; r < 3; ++r)
+            for (std::size_t c = 0; c <= r; ++c) d[n * (3 + r) + 3 + c] = m.inertia.m[r][c];
+    }
+    const auto movers = static_cast<std::uint32_t>(problem.movers.size());
+    for (const Row& row : rows_)
+    {
+        const Line& line = problem.lines[row.line];
+        const Joint& joint = joints_[joint_of_[row.line]];
+        const std::uint32_t place = place_[row.line];
+        for (std::uint32_t k = 0; k < line.count; ++k)
+        {
+            std::uint32_t e = 0;
+            while (joint.movers[e] != line.mover[k]) ++e;
+            for (std::uint32_t c = 0; c < 3; ++c)
+            {
+                matrix_.add(joint.edges[e], place, c, line.linear[k][c]);
+                matrix_.add(joint.edges[e], place, 3 + c, line.angular[k][c]);
+            }
+        }
+        matrix_.diagonal(movers + joint_of_[row.line])[place * (joint.rows + 1)] = -line.compliance;
+        matrix_.set_floor(unknown_[row.line], 0, line.mobility);
+    }
+    return matrix_.factor(problem.interruption) && std::ranges::none_of(matrix_.small(), [](std::uint8_t small) { return small != 0; });
+}
+
+void JointEquations::put(std::span<const Column6> x)
+{
+    std::ranges::fill(x_, 0.0);
+    for (std::size_t i = 0; i < x.size(); ++i) std::copy_n(x[i].begin(), x[i].size(), &x_[x[i].size() * i]);
+}
+
+void JointEquations::solve(std::span<Column6> x)
+{
+    matrix_.solve(x_);
+    for (std::size_t i = 0; i < x.size(); ++i) std::copy_n(&x_[x[i].size() * i], x[i].size(), x[i].begin());
+}
+
+void JointEquations::respond(std::span<Column6> x)
+{
+    put(x);
+    solve(x);
+}
+
+void JointEquations::move_with(const Problem& problem, std::span<Column6> x)
+{
+    for (std::size_t i = 0; i < x.size(); ++i)
+    {
+        const Anchor& m = problem.anchors[i];
+        add(x[i], m.v * m.mass, m.inertia * m.w);
+    }
+    put(x);
+    for (const Row& row : rows_)
+    {
+        const Line& line = problem.lines[row.line];
+        x_[unknown_[row.line]] = line.target - line.given - line.turning;
+    }
+    solve(x);
+}
+
+}  // namespace plab::managers

@@ -1,0 +1,76 @@
+/// How impulses move the movers of an island whose joints hold:
+///
+///   M (v - v0) - J^T lambda = push,   J v + C lambda = target
+///
+/// J: the rows that no bound limits (joints, couplings, changes of forces), C: their compliance, 0 but for changes of forces; lambda: their
+/// impulses. The matrix [M J^T; J -C] is factored as it stands, along the tree of joints (linear/sparse_blocks.h): neither a stiffness stands for
+/// a joint, as in joint_solver.h, nor is J M^-1 J^T multiplied out. A link of a hundred-thousandth of the mass, as between the axes of
+/// one shoulder, so costs no digits. Where joints may depend on one another (closed loops) this does not serve.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "island_matrix.h"
+
+namespace plab::managers
+{
+
+class JointEquations
+{
+public:
+    /// Finds the joints. False if there are none, or if rows may depend on one another.
+    bool shape(const Problem& problem);
+    /// Of the present attitudes. False if rows depend on one another.
+    bool factor(const Problem& problem);
+    /// By line: 1 if it is one of the rows that hold here.
+    std::span<const std::uint8_t> holds() const { return holds_; }
+
+    /// `x`: the sum of all other impulses on each mover (N s, N m s), which becomes its velocities (m/s, rad/s).
+    void move_with(const Problem& problem, std::span<Column6> x);
+    /// The part of them that is due to `x`.
+    void respond(std::span<Column6> x);
+    /// lambda of the last call of move_with().
+    double impulse(std::size_t line) const { return -x_[unknown_[line]]; }
+
+private:
+    using Movers = std::array<std::uint32_t, ConstraintRow::kMostBlocks>;
+    /// Rows between the same movers, at most as many as a block has unknowns.
+    struct Joint
+    {
+        Movers movers{};  ///< ascending; the rest is kNoIndex
+        std::uint32_t count = 0, rows = 0, hard = 0;
+        std::uint32_t toward_root = kNoIndex;
+        std::array<std::uint32_t, ConstraintRow::kMostBlocks> edges{};
+    };
+    struct Row
+    {
+        Movers movers{};
+        std::uint32_t line = 0;
+        friend auto operator<=>(const Row&, const Row&) = default;
+    };
+
+    void list_rows(const Problem& problem);
+    void list_joints(const Problem& problem);
+    bool find_tree(const Problem& problem);
+    bool reach(std::uint32_t joint, std::uint32_t from);
+    void analyse(std::size_t movers);
+    void put(std::span<const Column6> x);
+    void solve(std::span<Column6> x);
+
+    linear::SparseBlocks matrix_;
+    std::vector<std::uint8_t> holds_;
+    std::vector<Row> rows_, known_rows_;
+    std::vector<std::uint8_t> hard_, known_hard_;  ///< by line: has no compliance
+    std::size_t known_movers_ = 0;
+    bool is_tree_ = false;
+    std::vector<Joint> joints_;
+    std::vector<std::uint32_t> joint_of_, place_, unknown_;  ///< by line
+    std::vector<std::uint8_t> reached_;                      ///< by mover
+    std::vector<std::vector<std::uint32_t>> joints_of_;      ///< by mover
+    std::vector<std::uint32_t> waiting_;
+    std::vector<double> x_;
+};
+
+}  // namespace plab::managers
