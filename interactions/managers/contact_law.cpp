@@ -59,6 +59,29 @@ LineLaw law_of(const Line& line, double gap, double kappa)
     return held == wanted ? LineLaw{-stiff * gap, stiff} : LineLaw{held - line.impulse, 0};
 }
 
+Vec3 within_cone(const Vec3& tau, double mu, double rho, Mat3* G)
+{
+    if (G) *G = {};
+    const double size = mu > 0 ? std::hypot(tau.x, tau.y) : 0.0;
+    // A point exactly on the boundary counts as active, so that a pile at rest starts with all its contacts.
+    if (size <= mu * tau.z && tau.z >= 0)
+    {
+        if (G) *G = mu > 0 ? Mat3::diagonal(rho, rho, rho) : Mat3::diagonal(0, 0, rho);
+        return {mu > 0 ? tau.x : 0.0, mu > 0 ? tau.y : 0.0, tau.z};
+    }
+    if (mu * size <= -tau.z) return {};
+    const double share = 1 / (1 + mu * mu), c = tau.x / size, s = tau.y / size, normal = (tau.z + mu * size) * share;
+    if (G)
+    {
+        const double turn = rho * mu * normal / size, along = rho * share * mu * mu, cross_term = rho * share * mu;
+        (*G)(0, 0) = turn * s * s + along * c * c, (*G)(1, 1) = turn * c * c + along * s * s;
+        (*G)(0, 1) = (*G)(1, 0) = (along - turn) * c * s;
+        (*G)(0, 2) = (*G)(2, 0) = cross_term * c, (*G)(1, 2) = (*G)(2, 1) = cross_term * s;
+        (*G)(2, 2) = rho * share;
+    }
+    return {mu * normal * c, mu * normal * s, normal};
+}
+
 char piece_of(const Point& p, const Vec3& u)
 {
     if (!(p.K(2, 2) > 0)) return 0;

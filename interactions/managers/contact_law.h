@@ -27,6 +27,9 @@ struct LineLaw
 PointLaw law_of(const Point& p, const Vec3& u, double kappa);
 LineLaw law_of(const Line& line, double gap, double kappa);
 
+/// The point of the cone |j_t| <= mu j_n that is nearest to tau; G, if asked for: rho times the derivative of this projection.
+Vec3 within_cone(const Vec3& tau, double mu, double rho, Mat3* G);
+
 /// The piece of the law that a point is in: 0 separated, 1 sticking (or without friction), 2 sliding; as law_of decides it.
 char piece_of(const Point& p, const Vec3& u);
 /// 1 where a row acts within its bounds, or 0.

@@ -12,8 +12,8 @@ namespace
 {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// Columns of W: with more, its factorisation costs more than that of the whole island.
-constexpr std::size_t kMostImpulses = 192;
+/// Of all factorisations for one set of places, in cubes of the number of impulses: some 0.1 s.
+constexpr double kMostWork = 2.4e8;
 /// A point that the mechanism can move by less than this share of what its two bodies alone could is locked: no impulse opens it.
 constexpr double kLocked = 1e-11;
 
@@ -28,21 +28,23 @@ void DelassusSolver::add_place(std::uint32_t index, std::uint32_t count, bool li
     size_ += count;
 }
 
-/// Adds what has an impulse, or breaks its law at the present velocities. False if there is nothing to add.
-bool DelassusSolver::add_missing(const Problem& problem, double tolerance)
+/// Adds what has an impulse, or closes at the present velocities by more than -`least` (m/s). Of several solutions, which are not rare in
+/// an impact, the one that is found depends on what takes part, so rounding must not decide on that: what neither closes nor opens does,
+/// and so does a brake at rest. False if there is nothing to add.
+bool DelassusSolver::add_missing(const Problem& problem, double least)
 {
     const std::size_t before = places_.size();
     for (std::uint32_t i = 0; i < problem.points.size(); ++i)
     {
         const Point& p = problem.points[i];
         if (point_in_[i] != 0 || !(p.K(2, 2) > 0)) continue;
-        if (p.impulse != Vec3{} || violation(p, problem.relative_velocity(p)) > tolerance) add_place(i, p.frictional() ? 3 : 1, false);
+        if (p.impulse != Vec3{} || problem.relative_velocity(p).z - p.least < least) add_place(i, p.frictional() ? 3 : 1, false);
     }
     for (std::uint32_t i = 0; i < problem.lines.size(); ++i)
     {
         const Line& line = problem.lines[i];
         if (line_in_[i] != 0 || line.count == 0) continue;
-        if (line.impulse != 0 || violation(line, problem.gap(line)) > tolerance) add_place(i, 1, true);
+        if (line.impulse != 0 || line.least < 0 || problem.gap(line) < least) add_place(i, 1, true);
     }
     return places_.size() > before;
 }
@@ -96,7 +98,6 @@ bool DelassusSolver::set_up(const Problem& problem)
 {
     points_.clear(), lines_.clear();
     q_.resize(size_), r_.resize(size_), u_.resize(size_);
-    const auto at = [this](std::size_t r, std::size_t c) { return W_[c * kMostImpulses + r]; };
     for (const Place& place : places_)
     {
         Point& p = points_.emplace_back();
@@ -105,23 +106,24 @@ bool DelassusSolver::set_up(const Problem& problem)
         if (place.line)
         {
             line = problem.lines[place.index];
-            if (!(at(f, f) > kLocked * line.mobility)) return false;
-            line.mobility = at(f, f);
-            q_[f] = problem.rate(line), r_[f] = line.impulse;
+            // A row of a loop that the others imply has nothing to do.
+            if (!(W(f, f) > kLocked * line.mobility)) line.count = 0;
+            line.mobility = W(f, f);
+            q_[f] = problem.rate(line), r_[f] = line.count > 0 ? line.impulse : 0.0;
             continue;
         }
         p = problem.points[place.index];
         const Vec3 u = problem.relative_velocity(p);
         const std::uint32_t normal = f + place.count - 1;
-        if (!(at(normal, normal) > kLocked * p.K(2, 2))) return false;
+        if (!(W(normal, normal) > kLocked * p.K(2, 2))) return false;
         p.K = {};
         if (place.count == 1)
         {
-            p.K(2, 2) = at(f, f), q_[f] = u.z, r_[f] = p.impulse.z;
+            p.K(2, 2) = W(f, f), q_[f] = u.z, r_[f] = p.impulse.z;
             continue;
         }
         for (std::uint32_t i = 0; i < 3; ++i)
-            for (std::uint32_t k = 0; k < 3; ++k) p.K(i, k) = at(f + i, f + k);
+            for (std::uint32_t k = 0; k < 3; ++k) p.K(i, k) = W(f + i, f + k);
         p.slip_mobility = slip_mobility(p.K);
         q_[f] = u.x, q_[f + 1] = u.y, q_[f + 2] = u.z;
         r_[f] = p.impulse.x, r_[f + 1] = p.impulse.y, r_[f + 2] = p.impulse.z;
@@ -174,10 +176,21 @@ void DelassusSolver::find_velocities()
         else
             points_[k].impulse = places_[k].count == 1 ? Vec3{0, 0, r[0]} : Vec3{r[0], r[1], r[2]};
     }
-    std::copy(q_.begin(), q_.end(), u_.begin());
+    velocities_with(r_, u_);
+}
+
+/// to += W r.
+void DelassusSolver::add_responses(std::span<const double> r, std::span<double> to) const
+{
     for (std::size_t c = 0; c < size_; ++c)
-        if (r_[c] != 0)
-            for (std::size_t i = 0; i < size_; ++i) u_[i] += W_[c * kMostImpulses + i] * r_[c];
+        if (r[c] != 0)
+            for (std::size_t i = 0; i < size_; ++i) to[i] += W(i, c) * r[c];
+}
+
+void DelassusSolver::velocities_with(std::span<const double> r, std::span<double> u) const
+{
+    std::copy(q_.begin(), q_.end(), u.begin());
+    add_responses(r, u);
 }
 
 double DelassusSolver::residual() const
@@ -195,7 +208,7 @@ double DelassusSolver::rounding() const
     for (std::size_t i = 0; i < size_; ++i)
     {
         double sum = std::fabs(q_[i]);
-        for (std::size_t c = 0; c < size_; ++c) sum += std::fabs(W_[c * kMostImpulses + i] * r_[c]);
+        for (std::size_t c = 0; c < size_; ++c) sum += std::fabs(W(i, c) * r_[c]);
         largest = std::max(largest, sum);
     }
     return 16 * kEpsilon * largest;
@@ -214,6 +227,14 @@ bool DelassusSolver::changes_pieces()
     return changes;
 }
 
+/// Adds g times a row of W to one of the matrix.
+void DelassusSolver::add_row(std::uint32_t row, std::uint32_t of, double g)
+{
+    if (g == 0) return;
+    linear::SquareMatrix<double>& A = factors_.matrix();
+    for (std::size_t c = 0; c < size_; ++c) A(row, c) += g * W(of, c);
+}
+
 /// (1 + G W) dr = change.
 bool DelassusSolver::find_step(double kappa)
 {
@@ -221,11 +242,6 @@ bool DelassusSolver::find_step(double kappa)
     A.resize(size_);
     std::ranges::fill(A.all(), 0.0);
     step_.assign(size_, 0.0);
-    const auto add_row = [&](std::uint32_t row, std::uint32_t of, double g)
-    {
-        if (g == 0) return;
-        for (std::size_t c = 0; c < size_; ++c) A(row, c) += g * W_[c * kMostImpulses + of];
-    };
     for (std::size_t k = 0; k < places_.size(); ++k)
     {
         const std::uint32_t f = places_[k].first;
@@ -262,9 +278,12 @@ double DelassusSolver::newton(double tolerance, int most, Found& out)
     constexpr double kTooFar = 2, kFactor = 1e2;
     constexpr int kHalvings = 4, kPatience = 5;
     double now = residual(), best = now, kappa = kUsualStiffness;
-    best_ = r_;
+    best_ = r_, contradicts_ = false;
+    bool raised = false;
     (void)changes_pieces();
-    for (int i = 0, since_best = 0; i < most && since_best < kPatience && best > tolerance; ++i, ++since_best, ++out.steps)
+    // One step at least: a residual within the tolerance, added up over many steps of the island, may still be a drift.
+    for (int i = 0, since_best = 0; i < most && out.steps < last_step_ && since_best < kPatience && (i == 0 || best > tolerance);
+         ++i, ++since_best, ++out.steps)
     {
         if (!find_step(kappa)) break;
         const double before = now;
@@ -277,10 +296,12 @@ double DelassusSolver::newton(double tolerance, int most, Found& out)
             at *= 0.5, now = residual();
         }
         const bool same = !changes_pieces();
-        if (same && now > 0.05 * before) kappa = std::min(kMostStiffness, kappa * kFactor);
-        if (!(now < best)) continue;
+        contradicts_ = raised && same && now > 0.99 * before && now < kTooFar * before;
+        raised = same && now > 0.05 * before;
+        if (raised) kappa = std::min(kMostStiffness, kappa * kFactor);
         if (now < 0.5 * best) since_best = -1;
-        best = now, best_ = r_;
+        if (now < best) best = now, best_ = r_;
+        if (contradicts_) break;
     }
     r_ = best_;
     find_velocities();
@@ -291,7 +312,7 @@ void DelassusSolver::change(std::size_t at, double by)
 {
     if (by == 0) return;
     r_[at] += by;
-    for (std::size_t i = 0; i < size_; ++i) u_[i] += W_[at * kMostImpulses + i] * by;
+    for (std::size_t i = 0; i < size_; ++i) u_[i] += W(i, at) * by;
 }
 
 /// Satisfies the law of one point or row, with all others as they are.
@@ -301,6 +322,7 @@ void DelassusSolver::relax(std::size_t k)
     if (places_[k].line)
     {
         Line& line = lines_[k];
+        if (line.count == 0) return;
         const double held = std::clamp(line.impulse - gap(k) / line.admittance(), line.least, line.most);
         change(f, held - line.impulse);
         line.impulse = held;
@@ -329,15 +351,47 @@ bool DelassusSolver::find_impulses(const Bounds& bounds, Found& out)
 {
     constexpr int kSteps = 30, kRounds = 20, kSweeps = 100;
     find_velocities();
-    for (int round = 0;; ++round)
+    contradicts_ = false;
+    const double cubed = static_cast<double>(size_ * size_ * size_);
+    last_step_ = out.steps + static_cast<int>(kMostWork / cubed) + 1;
+    // From no impulses Newton's method may find one of several solutions or another, as rounding has it.
+    const bool is_warm = std::ranges::any_of(r_, [](double r) { return r != 0; });
+    double left = HUGE_VAL;
+    if (is_warm) left = newton(std::max(bounds.tolerance, rounding()), kSteps, out);
+    if (left <= std::max(bounds.tolerance, rounding()) || (contradicts_ && left <= bounds.enough)) return true;
+    if (share_anew(left, bounds, out)) return true;
+    for (int round = 0; round < kRounds; ++round)
     {
-        const double tolerance = std::max(bounds.tolerance, rounding());
-        const double left = newton(tolerance, kSteps, out);
-        if (left <= tolerance) return true;
-        if (round == kRounds) return left <= bounds.close;
         sweep(kSweeps);
         out.sweeps += kSweeps;
+        const double tolerance = std::max(bounds.tolerance, rounding());
+        left = newton(tolerance, kSteps, out);
+        if (left <= std::max({tolerance, bounds.enough, bounds.close})) return true;
     }
+    return false;
+}
+
+/// Forgets how contacts shared their load. Where more of them stick than the mechanism has ways to move, they contradict one another by a
+/// trifle (the wheels of a car are not parallel to the last digit): then friction is at its bounds here and there, and in each step at
+/// other places. From no load, soft contacts that become stiffer share it evenly. If that does not come close, r becomes the better of
+/// what it was, with the residual `left`, and what has been found.
+bool DelassusSolver::share_anew(double left, const Bounds& bounds, Found& out)
+{
+    constexpr int kRounds = 7, kSteps = 20, kGrowth = 8;
+    guess_ = r_;
+    std::ranges::fill(r_, 0.0);
+    find_velocities();
+    double kappa = 100;
+    for (int i = 0; i < kRounds; ++i, kappa *= kGrowth)
+    {
+        if (!round(kappa, bounds.tolerance, out)) break;
+        const double tolerance = std::max(bounds.tolerance, rounding());
+        if (newton(tolerance, kSteps, out) <= std::max({tolerance, bounds.enough, bounds.close})) return true;
+    }
+    if (residual() < left) return false;
+    r_ = guess_;
+    find_velocities();
+    return false;
 }
 
 /// From no impulses, each sweep takes energy.
@@ -366,12 +420,13 @@ DelassusSolver::Found DelassusSolver::solve(Problem& problem, const Bounds& boun
     for (int round = 0; round < kMostRounds && !out.solved; ++round)
     {
         const std::size_t known = places_.size();
-        if (!add_missing(problem, bounds.tolerance)) out.solved = true;
+        if (!add_missing(problem, std::max(bounds.close, bounds.tolerance))) out.solved = true;
         if (out.solved || size_ > kMostImpulses) break;
         find_columns(problem, known);
         find_free(problem);
         if (!set_up(problem)) break;
         out.fell_back = !find_impulses(bounds, out);
+        if (out.fell_back && bounds.or_nothing) break;
         take_velocities(problem);
         if (!out.fell_back || !makes_energy(problem)) continue;
         sweep_from_none(out);
@@ -384,6 +439,9 @@ DelassusSolver::Found DelassusSolver::solve(Problem& problem, const Bounds& boun
             problem.lines[i].impulse = guess_lines_[i];
         else if (joints_.holds()[i] != 0)
             problem.lines[i].impulse = joints_.impulse(i);
+    problem.apply_impulses();
+    if (!out.solved) return out;
+    joints_.correct(problem);
     problem.apply_impulses();
     return out;
 }

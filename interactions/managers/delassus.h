@@ -1,5 +1,5 @@
-/// Solves the contact law of a mechanism exactly, in the impulses of its contacts and bounded rows alone (stops, brakes, motors). These are
-/// few, however many joints there are. With r these impulses and the joints held,
+/// Solves the contact law of a mechanism exactly, in the impulses alone of its contacts, of bounded rows (stops, brakes, motors) and of
+/// rows that close loops. These are few, however many joints there are. With r these impulses and the joints held,
 ///
 ///   u = q + W r,   W = J_c A^-1 J_c^T
 ///
@@ -27,7 +27,9 @@ public:
     struct Bounds
     {
         double tolerance = 1e-12;  ///< m/s, aimed at
-        double close = 0;          ///< m/s, which will do where nothing better is found
+        double enough = 0;         ///< m/s, which will do where sweeps do not lead on
+        double close = 0;          ///< m/s, likewise after some rounds
+        bool or_nothing = false;   ///< an approximation will not do
     };
     struct Found
     {
@@ -46,27 +48,42 @@ private:
         bool line = false;
     };
 
-    bool add_missing(const Problem& problem, double tolerance);
+    /// Columns of W: with more, its factorisation costs more than that of the whole island.
+    static constexpr std::size_t kMostImpulses = 192;
+
+    bool add_missing(const Problem& problem, double least);
     void add_place(std::uint32_t index, std::uint32_t count, bool line);
     void find_columns(const Problem& problem, std::size_t from);
     void find_free(Problem& problem);
     bool set_up(const Problem& problem);
     void take_velocities(Problem& problem);
 
+    double W(std::size_t r, std::size_t c) const { return W_[c * kMostImpulses + r]; }
+    void add_responses(std::span<const double> r, std::span<double> to) const;
+    void velocities_with(std::span<const double> r, std::span<double> u) const;
     Vec3 velocity(const Place& place) const;
     double gap(std::size_t place) const;
     void find_velocities();
     double residual() const;
     double rounding() const;
     bool changes_pieces();
+    void add_row(std::uint32_t row, std::uint32_t of, double g);
     bool find_step(double kappa);
     void go(double share);
     double newton(double tolerance, int most, Found& out);
+    bool share_anew(double left, const Bounds& bounds, Found& out);
     void sweep(int times);
     void sweep_from_none(Found& out);
     void relax(std::size_t place);
     void change(std::size_t at, double by);
     bool find_impulses(const Bounds& bounds, Found& out);
+
+    // delassus_rounds.cpp
+    void start_round(double kappa);
+    Vec3 held(std::size_t place, std::span<const double> u, Mat3* G) const;
+    double find_pull(bool with_matrix);
+    double slope(double t);
+    bool round(double kappa, double tolerance, Found& out);
 
     JointEquations joints_;
     std::vector<Place> places_;
@@ -75,8 +92,12 @@ private:
     std::vector<Line> lines_;    ///< by place: likewise
     std::size_t size_ = 0;       ///< of r
     std::vector<double> W_;      ///< by column, each of kMost
-    std::vector<double> q_, r_, u_, best_, step_;
+    std::vector<double> q_, r_, u_, best_, guess_, step_;
+    std::vector<double> y_, pull_, rates_, trial_;  ///< of a round, as are these, by place
+    std::vector<double> rho_, bias_;
     linear::Factors<double> factors_;
+    int last_step_ = 0;         ///< no factorisation is affordable after so many
+    bool contradicts_ = false;  ///< newton() has ended where a larger stiffness gains nothing
     std::vector<char> pieces_;
     std::vector<Column6> columns_;
     std::vector<Vec3> guess_points_;

@@ -14,13 +14,13 @@ bool is_held(const Line& line) { return line.count > 0 && line.least == -HUGE_VA
 
 void JointEquations::list_rows(const Problem& problem)
 {
-    rows_.clear(), hard_.assign(problem.lines.size(), 0), holds_.assign(problem.lines.size(), 0);
+    fresh_rows_.clear(), hard_.assign(problem.lines.size(), 0);
     for (std::uint32_t i = 0; i < problem.lines.size(); ++i)
     {
         const Line& line = problem.lines[i];
         if (!is_held(line)) continue;
-        holds_[i] = 1, hard_[i] = line.compliance == 0 ? 1 : 0;
-        Row& row = rows_.emplace_back();
+        hard_[i] = line.compliance == 0 ? 1 : 0;
+        Row& row = fresh_rows_.emplace_back();
         row.line = i;
         row.movers.fill(kNoIndex);
         std::copy_n(line.mover.begin(), line.count, row.movers.begin());
@@ -28,7 +28,7 @@ void JointEquations::list_rows(const Problem& problem)
         const auto end = std::unique(row.movers.begin(), row.movers.end());
         std::fill(end, row.movers.end(), kNoIndex);
     }
-    std::sort(rows_.begin(), rows_.end());
+    std::sort(fresh_rows_.begin(), fresh_rows_.end());
 }
 
 void JointEquations::list_joints(const Problem& problem)
@@ -49,9 +49,9 @@ void JointEquations::list_joints(const Problem& problem)
     }
 }
 
-/// Goes through a joint from one of its movers, or from the ground, and reaches the others. False if its rows could depend on those that
-/// have been gone through: they are more than the others can move.
-bool JointEquations::reach(std::uint32_t number, std::uint32_t from)
+/// Goes through a joint from one of its movers, or from the ground, and reaches the others. It closes a loop if its rows are more than the
+/// others have ways to move.
+void JointEquations::reach(std::uint32_t number, std::uint32_t from)
 {
     Joint& joint = joints_[number];
     joint.toward_root = from;
@@ -63,11 +63,11 @@ bool JointEquations::reach(std::uint32_t number, std::uint32_t from)
         ways += (reached & 2) != 0 ? 1 : 6;
         reached |= 1, waiting_.push_back(joint.movers[k]);
     }
-    return joint.hard <= ways;
+    joint.closes = joint.hard > ways;
 }
 
 /// Joints of two movers first: a coupling that refers to the two bodies of a hinge adds the shaft to them.
-bool JointEquations::find_tree(const Problem& problem)
+void JointEquations::find_tree(const Problem& problem)
 {
     reached_.assign(problem.movers.size(), 0);  // 1: reached, 2: a shaft
     for (std::size_t m = 0; m < problem.movers.size(); ++m) reached_[m] = problem.anchors[m].shaft ? 2 : 0;
@@ -76,13 +76,12 @@ bool JointEquations::find_tree(const Problem& problem)
     std::vector<std::uint8_t> done(joints_.size(), 0);
     std::vector<std::uint32_t> wide;
     waiting_.clear();
-    bool independent = true;
     for (std::uint32_t j = 0; j < joints_.size(); ++j)
         for (std::uint32_t k = 0; k < joints_[j].count; ++k) joints_of_[joints_[j].movers[k]].push_back(j);
     const auto go_through = [&](std::uint32_t j, std::uint32_t from)
     {
         done[j] = 1;
-        independent = reach(j, from) && independent;
+        reach(j, from);
     };
     std::size_t next = 0, next_wide = 0;
     const auto follow = [&]
@@ -114,7 +113,6 @@ bool JointEquations::find_tree(const Problem& problem)
         reached_[m] |= 1, waiting_.push_back(m);
         follow();
     }
-    return independent;
 }
 
 void JointEquations::analyse(std::size_t movers)
@@ -139,13 +137,21 @@ void JointEquations::analyse(std::size_t movers)
 bool JointEquations::shape(const Problem& problem)
 {
     list_rows(problem);
-    if (rows_.empty()) return false;
-    if (rows_ == known_rows_ && hard_ == known_hard_ && problem.movers.size() == known_movers_) return is_tree_;
+    if (fresh_rows_ == known_rows_ && hard_ == known_hard_ && problem.movers.size() == known_movers_) return !joints_.empty();
+    known_rows_ = rows_ = fresh_rows_, known_hard_ = hard_, known_movers_ = problem.movers.size();
     list_joints(problem);
-    is_tree_ = std::ranges::any_of(joints_, [](const Joint& j) { return j.hard > 0; }) && find_tree(problem);
-    if (is_tree_) analyse(problem.movers.size());
-    known_rows_ = rows_, known_hard_ = hard_, known_movers_ = problem.movers.size();
-    return is_tree_;
+    find_tree(problem);
+    const auto closes = [this](const Row& row) { return joints_[joint_of_[row.line]].closes; };
+    if (std::erase_if(rows_, closes) > 0)
+    {
+        list_joints(problem);
+        find_tree(problem);
+    }
+    holds_.assign(problem.lines.size(), 0);
+    for (const Row& row : rows_) holds_[row.line] = 1;
+    if (std::ranges::none_of(joints_, [](const Joint& j) { return j.hard > 0; })) joints_.clear();
+    if (!joints_.empty()) analyse(problem.movers.size());
+    return !joints_.empty();
 }
 
 bool JointEquations::factor(const Problem& problem)
@@ -198,6 +204,14 @@ void JointEquations::respond(std::span<Column6> x)
 {
     put(x);
     solve(x);
+}
+
+void JointEquations::correct(Problem& problem)
+{
+    std::ranges::fill(x_, 0.0);
+    for (const Row& row : rows_) x_[unknown_[row.line]] = -problem.gap(problem.lines[row.line]);
+    matrix_.solve(x_);
+    for (const Row& row : rows_) problem.lines[row.line].impulse += impulse(row.line);
 }
 
 void JointEquations::move_with(const Problem& problem, std::span<Column6> x)

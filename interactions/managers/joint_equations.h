@@ -3,9 +3,9 @@
 ///   M (v - v0) - J^T lambda = push,   J v + C lambda = target
 ///
 /// J: the rows that no bound limits (joints, couplings, changes of forces), C: their compliance, 0 but for changes of forces; lambda: their
-/// impulses. The matrix [M J^T; J -C] is factored as it stands, along the tree of joints (linear/sparse_blocks.h): neither a stiffness stands for
-/// a joint, as in joint_solver.h, nor is J M^-1 J^T multiplied out. A link of a hundred-thousandth of the mass, as between the axes of
-/// one shoulder, so costs no digits. Where joints may depend on one another (closed loops) this does not serve.
+/// impulses. The matrix [M J^T; J -C] is factored as it stands, along the tree of joints (linear/sparse_blocks.h): neither a stiffness
+/// stands for a joint, as in joint_solver.h, nor is J M^-1 J^T multiplied out. A link of a hundred-thousandth of the mass, as between the
+/// axes of one shoulder, so costs no digits. Rows that close a loop may depend on others, and are left out.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace plab::managers
 class JointEquations
 {
 public:
-    /// Finds the joints. False if there are none, or if rows may depend on one another.
+    /// Finds the joints. False if there are none.
     bool shape(const Problem& problem);
     /// Of the present attitudes. False if rows depend on one another.
     bool factor(const Problem& problem);
@@ -31,6 +31,8 @@ public:
     void move_with(const Problem& problem, std::span<Column6> x);
     /// The part of them that is due to `x`.
     void respond(std::span<Column6> x);
+    /// Takes what rounding has left of the rows at the present velocities: adds to their impulses.
+    void correct(Problem& problem);
     /// lambda of the last call of move_with().
     double impulse(std::size_t line) const { return -x_[unknown_[line]]; }
 
@@ -42,6 +44,7 @@ private:
         Movers movers{};  ///< ascending; the rest is kNoIndex
         std::uint32_t count = 0, rows = 0, hard = 0;
         std::uint32_t toward_root = kNoIndex;
+        bool closes = false;  ///< a loop
         std::array<std::uint32_t, ConstraintRow::kMostBlocks> edges{};
     };
     struct Row
@@ -53,18 +56,18 @@ private:
 
     void list_rows(const Problem& problem);
     void list_joints(const Problem& problem);
-    bool find_tree(const Problem& problem);
-    bool reach(std::uint32_t joint, std::uint32_t from);
+    void find_tree(const Problem& problem);
+    void reach(std::uint32_t joint, std::uint32_t from);
     void analyse(std::size_t movers);
     void put(std::span<const Column6> x);
     void solve(std::span<Column6> x);
 
     linear::SparseBlocks matrix_;
     std::vector<std::uint8_t> holds_;
-    std::vector<Row> rows_, known_rows_;
+    std::vector<Row> rows_;                        ///< of the joints
+    std::vector<Row> fresh_rows_, known_rows_;     ///< with those that close loops: of this problem, and of the last analysis
     std::vector<std::uint8_t> hard_, known_hard_;  ///< by line: has no compliance
     std::size_t known_movers_ = 0;
-    bool is_tree_ = false;
     std::vector<Joint> joints_;
     std::vector<std::uint32_t> joint_of_, place_, unknown_;  ///< by line
     std::vector<std::uint8_t> reached_;                      ///< by mover

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact_law.h"
+
 namespace plab::managers
 {
 
@@ -27,29 +29,9 @@ Vec3 Lagrangian::tau_of(const Problem& problem, std::size_t i, const Vec3& u) co
     return p.impulse - (u + Vec3{0, 0, bias_[i] - p.least}) * rho_[i];
 }
 
-/// The point of the cone |j_t| <= mu j_n that is nearest to tau, and rho times the derivative of this projection.
 Vec3 Lagrangian::project(const Problem& problem, std::size_t i, const Vec3& tau, Mat3* G) const
 {
-    const double rho = rho_[i], mu = problem.points[i].friction;
-    if (G) *G = {};
-    const double size = mu > 0 ? std::hypot(tau.x, tau.y) : 0.0;
-    // A point exactly on the boundary counts as active, so that a pile at rest starts with all its contacts.
-    if (size <= mu * tau.z && tau.z >= 0)
-    {
-        if (G) *G = mu > 0 ? Mat3::diagonal(rho, rho, rho) : Mat3::diagonal(0, 0, rho);
-        return {mu > 0 ? tau.x : 0.0, mu > 0 ? tau.y : 0.0, tau.z};
-    }
-    if (mu * size <= -tau.z) return {};
-    const double share = 1 / (1 + mu * mu), c = tau.x / size, s = tau.y / size, normal = (tau.z + mu * size) * share;
-    if (G)
-    {
-        const double turn = rho * mu * normal / size, along = rho * share * mu * mu, cross_term = rho * share * mu;
-        (*G)(0, 0) = turn * s * s + along * c * c, (*G)(1, 1) = turn * c * c + along * s * s;
-        (*G)(0, 1) = (*G)(1, 0) = (along - turn) * c * s;
-        (*G)(0, 2) = (*G)(2, 0) = cross_term * c, (*G)(1, 2) = (*G)(2, 1) = cross_term * s;
-        (*G)(2, 2) = rho * share;
-    }
-    return {mu * normal * c, mu * normal * s, normal};
+    return within_cone(tau, problem.points[i].friction, rho_[i], G);
 }
 
 double Lagrangian::project_line(const Line& line, double tau, double rho, double* g) const
@@ -146,27 +128,6 @@ double Lagrangian::slope(const Problem& problem, double t)
     return sum;
 }
 
-/// The step length t that minimises the function along the step: false position on its slope, which increases with t.
-double Lagrangian::search(const Problem& problem, double at_zero)
-{
-    constexpr int kTrials = 12;
-    constexpr double kFlat = 0.05;
-    double low = 0, high = 1, f_low = at_zero, f_high = slope(problem, 1);
-    if (!(f_high > kFlat * std::fabs(at_zero))) return 1;
-    for (int i = 0; i < kTrials; ++i)
-    {
-        const double guess = low - f_low * (high - low) / (f_high - f_low);
-        const double t = std::clamp(guess, low + 0.05 * (high - low), high - 0.05 * (high - low));
-        const double f = slope(problem, t);
-        if (std::fabs(f) <= kFlat * std::fabs(at_zero)) return t;
-        if (f < 0)
-            low = t, f_low = f, f_high *= 0.7;
-        else
-            high = t, f_high = f, f_low *= 0.7;
-    }
-    return low > 0 ? low : high;
-}
-
 void Lagrangian::move(Problem& problem, double t)
 {
     for (std::size_t i = 0; i < problem.movers.size(); ++i)
@@ -206,7 +167,7 @@ bool Lagrangian::round(Problem& problem, IslandMatrix& matrix, double kappa, boo
         for (std::size_t i = 0; i < problem.points.size(); ++i) velocity_steps_[i] = relative_velocity_of(step_, problem.points[i]);
         for (std::size_t i = 0; i < problem.lines.size(); ++i) rate_steps_[i] = rate_of(step_, problem.lines[i]);
         if (!(at_zero < 0)) break;
-        move(problem, search(problem, at_zero));
+        move(problem, least_along([&](double t) { return slope(problem, t); }, at_zero));
     }
     if (from_welded || size <= std::max(tolerance, 10 * kEnough * before / kappa)) take_impulses(problem);
     return size <= std::max(tolerance, 10 * kEnough * before / kappa);

@@ -14,10 +14,36 @@
 /// shift; Castro et al., IEEE T-RO 38 (2022), for Newton's method in velocities with line search.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "island_matrix.h"
 
 namespace plab::managers
 {
+
+/// The step length t in (0, 1] that minimises a convex function along a step: false position on its slope, which increases with t and is
+/// `at_zero` < 0 at 0.
+template <class Slope>
+double least_along(const Slope& slope, double at_zero)
+{
+    constexpr int kTrials = 12;
+    constexpr double kFlat = 0.05;
+    double low = 0, high = 1, f_low = at_zero, f_high = slope(1.0);
+    if (!(f_high > kFlat * std::fabs(at_zero))) return 1;
+    for (int i = 0; i < kTrials; ++i)
+    {
+        const double guess = low - f_low * (high - low) / (f_high - f_low);
+        const double t = std::clamp(guess, low + 0.05 * (high - low), high - 0.05 * (high - low));
+        const double f = slope(t);
+        if (std::fabs(f) <= kFlat * std::fabs(at_zero)) return t;
+        if (f < 0)
+            low = t, f_low = f, f_high *= 0.7;
+        else
+            high = t, f_high = f, f_low *= 0.7;
+    }
+    return low > 0 ? low : high;
+}
 
 class Lagrangian
 {
@@ -40,7 +66,6 @@ private:
     double gradient(const Problem& problem, IslandMatrix* matrix);
     void weld(Problem& problem, IslandMatrix& matrix);
     double slope(const Problem& problem, double t);
-    double search(const Problem& problem, double at_zero);
     void move(Problem& problem, double t);
     void take_impulses(Problem& problem);
 

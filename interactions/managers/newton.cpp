@@ -90,6 +90,13 @@ bool may_share_loads(const Problem& problem)
     return points >= kFewestPoints && points <= kMostPoints;
 }
 
+/// Whether joints are so many that a step of Newton's method on all movers costs more than one on the contacts alone.
+bool has_many_joints(const Problem& problem)
+{
+    constexpr std::ptrdiff_t kManyRows = 64;
+    return std::ranges::count_if(problem.lines, is_joint) >= kManyRows;
+}
+
 }  // namespace
 
 bool NewtonSolver::find_step(const Problem& problem, double kappa)
@@ -343,23 +350,23 @@ bool NewtonSolver::settles_by_sweeps(Problem& problem, double guess, const Solvi
     return false;
 }
 
-/// A mechanism with few contacts is solved in their impulses alone.
-bool NewtonSolver::solve_mechanism(Problem& problem, const Solving& how, Solved& out)
+/// A mechanism is solved in the impulses of its contacts alone. With `or_nothing` only if that satisfies the law.
+bool NewtonSolver::solve_mechanism(Problem& problem, const Solving& how, bool or_nothing, Solved& out)
 {
-    const double close = std::max(how.enough, how.close);
-    const DelassusSolver::Found found = mechanism_.solve(problem, {how.tolerance, close});
+    const DelassusSolver::Found found = mechanism_.solve(problem, {how.tolerance, how.enough, how.close, or_nothing});
     out.steps += found.steps, out.sweeps += found.sweeps;
     if (!found.solved) return false;
     out.ended = true, out.fell_back = found.fell_back;
     out.residual = violation(problem);
-    out.converged = out.residual <= std::max({how.tolerance, problem.rounding(terms_of(problem)), close});
+    out.converged = out.residual <= std::max({how.tolerance, problem.rounding(terms_of(problem)), how.enough, how.close});
     return true;
 }
 
 Solved NewtonSolver::solve(Problem& problem, const Solving& how)
 {
     Solved out;
-    if (solve_mechanism(problem, how, out)) return out;
+    const bool many = has_many_joints(problem);
+    if (many && solve_mechanism(problem, how, false, out)) return out;
     Solving exact = how;
     exact.finest = how.tolerance;
     const double terms = terms_of(problem);
@@ -393,6 +400,7 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
     out.residual = violation(problem);
     out.converged = out.residual <= std::max(exact.tolerance, out.ended ? std::max(how.enough, how.close) : 0.0);
     if (out.converged) return out;
+    if (!many && how.rounds > 0 && solve_mechanism(problem, how, true, out)) return out;
     out.fell_back = true;
     if (how.rounds == 0) return out;
     finish_by_sweeps(problem, exact, out);

@@ -76,7 +76,7 @@ private:
     /// Whether a point or row is in another piece of the law than when this was last asked.
     bool changes_pieces(const Problem& problem);
     bool newton(Problem& problem, const Solving& how, Solved& out);
-    bool solve_mechanism(Problem& problem, const Solving& how, Solved& out);
+    bool solve_mechanism(Problem& problem, const Solving& how, bool or_nothing, Solved& out);
     void polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out);
     void keep_guess(const Problem& problem);
     void recall_guess(Problem& problem);

@@ -6,7 +6,6 @@
 
 #include "import/component_text.h"
 #include "import/joint_text.h"
-#include "import/step_length.h"
 #include "import/surface_law.h"
 #include "model/numbers.h"
 #include "plab/symmetric.h"
@@ -85,7 +84,8 @@ public:
         write_gravity();
         write_contacts();
         write_manager();
-        const std::string settings = (robot_.title.empty() ? "" : attribute("title", robot_.title)) + step();
+        const std::string settings =
+            (robot_.title.empty() ? "" : attribute("title", robot_.title)) + (robot_.step.empty() ? "" : attribute("dt", robot_.step));
         out_.blueprint = "<plab version=\"1\">\n  <scene" + settings + ">" + camera(assembly_) + "</scene>\n" + text_ + "</plab>\n";
         return std::move(out_);
     }
@@ -100,17 +100,6 @@ private:
     void write_manager()
     {
         if (manager_) line("<component" + attribute("id", ids_.prefix() + "manager") + " type=\"Manager/Automatic\"/>");
-    }
-
-    /// The attribute dt.
-    std::string step()
-    {
-        const StepChoice choice = choose_step(robot_, assembly_);
-        if (!choice.why) return robot_.step.empty() ? "" : attribute("dt", robot_.step);
-        document_.lost(choice.why->where, "<joint> " + quoted(choice.why->name),
-                       "its springs and dampers need steps of " + model::format_real(choice.step) + " s: the scene has these, not " +
-                           (robot_.step.empty() ? "1/240" : robot_.step) + " s");
-        return attribute("dt", choice.step);
     }
 
     void line(const std::string& component) { text_ += "  " + component + "\n"; }

@@ -116,11 +116,7 @@ void RowEquations::factor(double implied, double others)
     any_small_ = std::find(small.begin(), small.end(), std::uint8_t{1}) != small.end();
 }
 
-void RowEquations::clear_right_hand_side()
-{
-    std::fill(rhs_.begin(), rhs_.end(), 0.0);
-    std::fill(joint_load_.begin(), joint_load_.end(), 0.0);
-}
+void RowEquations::clear_right_hand_side() { std::fill(rhs_.begin(), rhs_.end(), 0.0); }
 
 double RowEquations::moved(std::size_t s) const
 {
@@ -140,7 +136,7 @@ double RowEquations::moved(std::size_t s) const
 void RowEquations::subtract_rows()
 {
     std::fill(joint_error_.begin(), joint_error_.end(), 0.0);
-    std::copy(joint_load_.begin(), joint_load_.end(), joint_scale_.begin());
+    std::fill(joint_scale_.begin(), joint_scale_.end(), 0.0);
     for (const Slot& slot : slots_)
     {
         const std::uint32_t u = unknown_of(slot);
@@ -259,9 +255,10 @@ bool RowEquations::solve()
     return is_finite();
 }
 
-/// What rows have to stop belongs to the scale of their residuals: of members at rest all other terms are as small as the errors.
-void RowEquations::scale_by_loads()
+/// Sets joint_load_.
+void RowEquations::find_joint_loads()
 {
+    std::fill(joint_load_.begin(), joint_load_.end(), 0.0);
     for (const Slot& slot : slots_)
     {
         double sum = 0;
@@ -276,20 +273,29 @@ void RowEquations::scale_by_loads()
     }
 }
 
+/// The residuals of the rows, relative to what they have to stop. Of members at rest all terms of a residual are as small as the residual.
+double RowEquations::worst_of_loads() const
+{
+    double worst = 0;
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+        if (joint_load_[j] > 0) worst = std::fmax(worst, joint_error_[j] / joint_load_[j]);
+    return worst;
+}
+
 bool RowEquations::solve_refined()
 {
     if (!solve()) return false;
     if (!any_compliant_ && !any_small_) return true;
-    scale_by_loads();
-    double left = residual();
+    find_joint_loads();
+    double left = residual(), left_of_loads = worst_of_loads();
     for (int i = 0; i < kMostRefinements && left > kResidualFloor; ++i)
     {
-        const double before = left;
+        const double before = left, before_of_loads = left_of_loads;
         std::copy(x_.begin(), x_.end(), before_.begin());
         factors_.solve(r_);
         for (std::size_t u = 0; u < x_.size(); ++u) x_[u] += r_[u];
-        left = residual();
-        if (left < 0.5 * before) continue;
+        left = residual(), left_of_loads = worst_of_loads();
+        if (left < 0.5 * before || (before_of_loads > kResidualFloor && left_of_loads < 0.5 * before_of_loads)) continue;
         if (!(left <= before)) std::copy(before_.begin(), before_.end(), x_.begin());
         break;
     }

@@ -182,7 +182,8 @@ private:
     void over_mass(const Member& member, const double* g, double* out) const;
     double mobility_of(const Entry& entry) const;
     bool is_finite() const;
-    void scale_by_loads();
+    void find_joint_loads();
+    double worst_of_loads() const;
     double residual();
     void subtract_rows();
     double worst_of_rows() const;
