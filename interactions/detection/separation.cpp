@@ -105,21 +105,23 @@ void leave(const Solid& S, const Vec3& c, double& outside, Vec3& n)
 }
 
 /// The closest point of a hull to a point outside lies on a face that is visible from that point, and no farther away than any point of the
-/// hull: the nearest middle of a face excludes most others.
+/// hull: the nearest middle of one excludes most others.
 ClosestPoint closest_point_on_hull(const Solid& S, const Vec3& q)
 {
     constexpr double kRounding = 1 + 0x1p-40;
     const Hull& hull = S.hull();
     const Vec3 c = S.to_local(q);
+    const auto is_visible = [&](std::size_t f) { return dot(hull.normals[f], c) > hull.offsets[f]; };
     double nearest = HUGE_VAL;
-    for (const Vec3& middle : hull.middles) nearest = std::min(nearest, length_squared(middle - c));
-    nearest = std::sqrt(nearest) * kRounding;
+    for (std::size_t f = 0; f < hull.faces.size(); ++f)
+        if (is_visible(f)) nearest = std::min(nearest, length_squared(hull.middles[f] - c));
+    nearest = std::sqrt(nearest);
     ClosestPoint best;
     double least = HUGE_VAL;
     for (std::size_t f = 0; f < hull.faces.size(); ++f)
     {
-        const double within = nearest + hull.reaches[f];
-        if (length_squared(hull.middles[f] - c) > within * within || dot(hull.normals[f], c) <= hull.offsets[f]) continue;
+        const double within = (nearest + hull.reaches[f]) * kRounding;
+        if (length_squared(hull.middles[f] - c) > within * within || !is_visible(f)) continue;
         const auto& v = hull.faces[f];
         const ClosestPoint closest = closest_point_on_facelet(c, {{hull.vertices[v[0]], hull.vertices[v[1]], hull.vertices[v[2]]}, 3});
         if (const double d = length_squared(c - closest.p); d < least) least = d, best = closest;

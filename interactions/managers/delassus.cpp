@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "joint_solver.h"
 #include "sequential.h"
 
 namespace plab::managers
@@ -12,146 +13,12 @@ namespace
 {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// Of all factorisations for one set of places, in cubes of the number of impulses: some 0.1 s.
+/// Of all factorisations of a solve, in cubes of the number of impulses: some 0.1 s.
 constexpr double kMostWork = 2.4e8;
-/// A point that the mechanism can move by less than this share of what its two bodies alone could is locked: no impulse opens it.
-constexpr double kLocked = 1e-11;
+/// Summands of Problem::rounding.
+constexpr double kTerms = 4096;
 
 }  // namespace
-
-// Which points and rows take part ----------------------------------------------------------------------------------------
-
-void DelassusSolver::add_place(std::uint32_t index, std::uint32_t count, bool line)
-{
-    (line ? line_in_ : point_in_)[index] = 1;
-    places_.push_back({index, static_cast<std::uint32_t>(size_), count, line});
-    size_ += count;
-}
-
-/// Adds what has an impulse, or closes at the present velocities by more than -`least` (m/s). Of several solutions, which are not rare in
-/// an impact, the one that is found depends on what takes part, so rounding must not decide on that: what neither closes nor opens does,
-/// and so does a brake at rest. False if there is nothing to add.
-bool DelassusSolver::add_missing(const Problem& problem, double least)
-{
-    const std::size_t before = places_.size();
-    for (std::uint32_t i = 0; i < problem.points.size(); ++i)
-    {
-        const Point& p = problem.points[i];
-        if (point_in_[i] != 0 || !(p.K(2, 2) > 0)) continue;
-        if (p.impulse != Vec3{} || problem.relative_velocity(p).z - p.least < least) add_place(i, p.frictional() ? 3 : 1, false);
-    }
-    for (std::uint32_t i = 0; i < problem.lines.size(); ++i)
-    {
-        const Line& line = problem.lines[i];
-        if (line_in_[i] != 0 || line.count == 0) continue;
-        if (line.impulse != 0 || line.least < 0 || problem.gap(line) < least) add_place(i, 1, true);
-    }
-    return places_.size() > before;
-}
-
-// The reduced problem ----------------------------------------------------------------------------------------------------
-
-/// The velocities of the mechanism without r.
-void DelassusSolver::find_free(Problem& problem)
-{
-    columns_.assign(problem.movers.size(), Column6{});
-    joints_.move_with(problem, columns_);
-    for (std::size_t m = 0; m < columns_.size(); ++m) problem.movers[m].v = first(columns_[m]), problem.movers[m].w = last(columns_[m]);
-}
-
-/// Of the places from this one on, and by symmetry of the others.
-void DelassusSolver::find_columns(const Problem& problem, std::size_t from)
-{
-    const auto at = [this](std::size_t r, std::size_t c) -> double& { return W_[c * kMostImpulses + r]; };
-    for (std::size_t k = from; k < places_.size(); ++k)
-        for (std::uint32_t axis = 0; axis < places_[k].count; ++axis)
-        {
-            const Place& own = places_[k];
-            columns_.assign(problem.movers.size(), Column6{});
-            if (own.line)
-                add_push(columns_, problem.lines[own.index], 1);
-            else
-                add_push(columns_, problem.points[own.index],
-                         own.count == 1 ? Vec3{0, 0, 1} : Vec3{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0});
-            joints_.respond(columns_);
-            const std::size_t c = own.first + axis;
-            for (const Place& other : places_)
-            {
-                if (other.line)
-                    at(other.first, c) = rate_of(columns_, problem.lines[other.index]);
-                else
-                {
-                    const Vec3 u = relative_velocity_of(columns_, problem.points[other.index]);
-                    if (other.count == 1)
-                        at(other.first, c) = u.z;
-                    else
-                        at(other.first, c) = u.x, at(other.first + 1, c) = u.y, at(other.first + 2, c) = u.z;
-                }
-                if (&other - places_.data() < static_cast<std::ptrdiff_t>(from))
-                    for (std::uint32_t r = other.first; r < other.first + other.count; ++r) at(c, r) = at(r, c);
-            }
-        }
-}
-
-/// Takes the points and rows over, with the mobilities of the mechanism, and the guess. The movers have the velocities without r.
-bool DelassusSolver::set_up(const Problem& problem)
-{
-    points_.clear(), lines_.clear();
-    q_.resize(size_), r_.resize(size_), u_.resize(size_);
-    for (const Place& place : places_)
-    {
-        Point& p = points_.emplace_back();
-        Line& line = lines_.emplace_back();
-        const std::uint32_t f = place.first;
-        if (place.line)
-        {
-            line = problem.lines[place.index];
-            // A row of a loop that the others imply has nothing to do.
-            if (!(W(f, f) > kLocked * line.mobility)) line.count = 0;
-            line.mobility = W(f, f);
-            q_[f] = problem.rate(line), r_[f] = line.count > 0 ? line.impulse : 0.0;
-            continue;
-        }
-        p = problem.points[place.index];
-        const Vec3 u = problem.relative_velocity(p);
-        const std::uint32_t normal = f + place.count - 1;
-        if (!(W(normal, normal) > kLocked * p.K(2, 2))) return false;
-        p.K = {};
-        if (place.count == 1)
-        {
-            p.K(2, 2) = W(f, f), q_[f] = u.z, r_[f] = p.impulse.z;
-            continue;
-        }
-        for (std::uint32_t i = 0; i < 3; ++i)
-            for (std::uint32_t k = 0; k < 3; ++k) p.K(i, k) = W(f + i, f + k);
-        p.slip_mobility = slip_mobility(p.K);
-        q_[f] = u.x, q_[f + 1] = u.y, q_[f + 2] = u.z;
-        r_[f] = p.impulse.x, r_[f + 1] = p.impulse.y, r_[f + 2] = p.impulse.z;
-    }
-    return true;
-}
-
-/// Gives r to the problem, and the velocities of the whole mechanism with it.
-void DelassusSolver::take_velocities(Problem& problem)
-{
-    columns_.assign(problem.movers.size(), Column6{});
-    for (std::size_t k = 0; k < places_.size(); ++k)
-    {
-        const Place& place = places_[k];
-        if (place.line)
-        {
-            problem.lines[place.index].impulse = r_[place.first];
-            add_push(columns_, problem.lines[place.index], r_[place.first]);
-            continue;
-        }
-        problem.points[place.index].impulse = points_[k].impulse;
-        add_push(columns_, problem.points[place.index], points_[k].impulse);
-    }
-    joints_.move_with(problem, columns_);
-    for (std::size_t m = 0; m < columns_.size(); ++m) problem.movers[m].v = first(columns_[m]), problem.movers[m].w = last(columns_[m]);
-}
-
-// Its solution -----------------------------------------------------------------------------------------------------------
 
 Vec3 DelassusSolver::velocity(const Place& place) const
 {
@@ -261,10 +128,19 @@ bool DelassusSolver::find_step(double kappa)
         }
     }
     for (std::size_t i = 0; i < size_; ++i) A(i, i) += 1;
-    if (!factors_.factorise()) return false;
+    if (!factorise()) return false;
     factors_.solve(step_);
     return std::ranges::all_of(step_, [](double s) { return std::isfinite(s); });
 }
+
+bool DelassusSolver::factorise()
+{
+    work_ += static_cast<double>(size_ * size_ * size_);
+    return factors_.factorise();
+}
+
+/// Whether nothing more is to be tried.
+bool DelassusSolver::is_spent() const { return work_ > kMostWork || (interruption_ && interruption_->due()); }
 
 void DelassusSolver::go(double share)
 {
@@ -282,7 +158,7 @@ double DelassusSolver::newton(double tolerance, int most, Found& out)
     bool raised = false;
     (void)changes_pieces();
     // One step at least: a residual within the tolerance, added up over many steps of the island, may still be a drift.
-    for (int i = 0, since_best = 0; i < most && out.steps < last_step_ && since_best < kPatience && (i == 0 || best > tolerance);
+    for (int i = 0, since_best = 0; i < most && !is_spent() && since_best < kPatience && (i == 0 || best > tolerance);
          ++i, ++since_best, ++out.steps)
     {
         if (!find_step(kappa)) break;
@@ -349,18 +225,16 @@ void DelassusSolver::sweep(int times)
 
 bool DelassusSolver::find_impulses(const Bounds& bounds, Found& out)
 {
-    constexpr int kSteps = 30, kRounds = 20, kSweeps = 100;
+    constexpr int kSteps = 30, kRounds = 20, kSweeps = 100, kMostSweeps = 4000;
     find_velocities();
     contradicts_ = false;
-    const double cubed = static_cast<double>(size_ * size_ * size_);
-    last_step_ = out.steps + static_cast<int>(kMostWork / cubed) + 1;
     // From no impulses Newton's method may find one of several solutions or another, as rounding has it.
     const bool is_warm = std::ranges::any_of(r_, [](double r) { return r != 0; });
-    double left = HUGE_VAL;
+    double left = residual();
     if (is_warm) left = newton(std::max(bounds.tolerance, rounding()), kSteps, out);
-    if (left <= std::max(bounds.tolerance, rounding()) || (contradicts_ && left <= bounds.enough)) return true;
+    if (is_warm && (left <= std::max(bounds.tolerance, rounding()) || (contradicts_ && left <= bounds.enough))) return true;
     if (share_anew(left, bounds, out)) return true;
-    for (int round = 0; round < kRounds; ++round)
+    for (int round = 0; round < kRounds && out.sweeps < kMostSweeps && !is_spent(); ++round)
     {
         sweep(kSweeps);
         out.sweeps += kSweeps;
@@ -388,8 +262,7 @@ bool DelassusSolver::share_anew(double left, const Bounds& bounds, Found& out)
         const double tolerance = std::max(bounds.tolerance, rounding());
         if (newton(tolerance, kSteps, out) <= std::max({tolerance, bounds.enough, bounds.close})) return true;
     }
-    if (residual() < left) return false;
-    r_ = guess_;
+    if (!(residual() < left)) r_ = guess_;
     find_velocities();
     return false;
 }
@@ -404,17 +277,39 @@ void DelassusSolver::sweep_from_none(Found& out)
     out.sweeps += kSweeps;
 }
 
+/// Gives their impulses to the joints, or everything back to the problem.
+void DelassusSolver::finish(Problem& problem, const Bounds& bounds, Found& out)
+{
+    const auto give_back = [&]
+    {
+        for (std::size_t i = 0; i < problem.points.size(); ++i) problem.points[i].impulse = guess_points_[i];
+        for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = guess_lines_[i];
+        problem.apply_impulses();
+        out.solved = false;
+    };
+    if (!out.solved || !std::ranges::all_of(r_, [](double r) { return std::isfinite(r); })) return give_back();
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+        if (joints_->holds()[i] != 0) problem.lines[i].impulse = joints_->impulse(i);
+    problem.apply_impulses();
+    joints_->correct(problem);
+    problem.apply_impulses();
+    const double most = std::max({bounds.tolerance, bounds.enough, bounds.close, problem.rounding(kTerms)});
+    if (!out.fell_back && !(violation(problem) <= most)) give_back();
+}
+
 DelassusSolver::Found DelassusSolver::solve(Problem& problem, const Bounds& bounds)
 {
     constexpr int kMostRounds = 12;
     Found out;
-    if (!joints_.shape(problem) || !joints_.factor(problem)) return out;
+    joints_ = has_forces(problem) ? &with_forces_ : &without_forces_;
+    if (!joints_->shape(problem) || !joints_->factor(problem)) return out;
+    interruption_ = problem.interruption, work_ = 0;
     guess_points_.clear(), guess_lines_.clear();
     for (const Point& p : problem.points) guess_points_.push_back(p.impulse);
     for (const Line& line : problem.lines) guess_lines_.push_back(line.impulse);
     point_in_.assign(problem.points.size(), 0);
-    line_in_.assign(joints_.holds().begin(), joints_.holds().end());
-    places_.clear(), size_ = 0;
+    line_in_.assign(joints_->holds().begin(), joints_->holds().end());
+    places_.clear(), r_.clear(), size_ = 0;
     W_.resize(kMostImpulses * kMostImpulses);
     find_free(problem);
     for (int round = 0; round < kMostRounds && !out.solved; ++round)
@@ -424,7 +319,7 @@ DelassusSolver::Found DelassusSolver::solve(Problem& problem, const Bounds& boun
         if (out.solved || size_ > kMostImpulses) break;
         find_columns(problem, known);
         find_free(problem);
-        if (!set_up(problem)) break;
+        if (!set_up(problem, bounds.locked)) break;
         out.fell_back = !find_impulses(bounds, out);
         if (out.fell_back && bounds.or_nothing) break;
         take_velocities(problem);
@@ -432,17 +327,7 @@ DelassusSolver::Found DelassusSolver::solve(Problem& problem, const Bounds& boun
         sweep_from_none(out);
         take_velocities(problem);
     }
-    for (std::size_t i = 0; i < problem.points.size(); ++i)
-        if (!out.solved) problem.points[i].impulse = guess_points_[i];
-    for (std::size_t i = 0; i < problem.lines.size(); ++i)
-        if (!out.solved)
-            problem.lines[i].impulse = guess_lines_[i];
-        else if (joints_.holds()[i] != 0)
-            problem.lines[i].impulse = joints_.impulse(i);
-    problem.apply_impulses();
-    if (!out.solved) return out;
-    joints_.correct(problem);
-    problem.apply_impulses();
+    finish(problem, bounds, out);
     return out;
 }
 

@@ -27,9 +27,10 @@ public:
     struct Bounds
     {
         double tolerance = 1e-12;  ///< m/s, aimed at
-        double enough = 0;         ///< m/s, which will do where sweeps do not lead on
-        double close = 0;          ///< m/s, likewise after some rounds
-        bool or_nothing = false;   ///< an approximation will not do
+        double enough = 0;         ///< m/s, which will do where a larger stiffness gains nothing
+        double close = 0;          ///< m/s, which will do where loads are shared anew
+        double locked = 1e-11;    ///< a point that the mechanism moves by less than this share of what its bodies alone would is not solved
+        bool or_nothing = false;  ///< an approximation will not do
     };
     struct Found
     {
@@ -51,13 +52,18 @@ private:
     /// Columns of W: with more, its factorisation costs more than that of the whole island.
     static constexpr std::size_t kMostImpulses = 192;
 
+    // delassus_set_up.cpp
     bool add_missing(const Problem& problem, double least);
     void add_place(std::uint32_t index, std::uint32_t count, bool line);
     void find_columns(const Problem& problem, std::size_t from);
     void find_free(Problem& problem);
-    bool set_up(const Problem& problem);
+    bool set_up(const Problem& problem, double locked);
+    bool take_row(const Problem& problem, const Place& place, Line& line, double locked);
+    bool take_point(const Problem& problem, const Place& place, Point& p, double locked);
     void take_velocities(Problem& problem);
 
+    // delassus.cpp
+    void finish(Problem& problem, const Bounds& bounds, Found& out);
     double W(std::size_t r, std::size_t c) const { return W_[c * kMostImpulses + r]; }
     void add_responses(std::span<const double> r, std::span<double> to) const;
     void velocities_with(std::span<const double> r, std::span<double> u) const;
@@ -69,6 +75,8 @@ private:
     bool changes_pieces();
     void add_row(std::uint32_t row, std::uint32_t of, double g);
     bool find_step(double kappa);
+    bool factorise();
+    bool is_spent() const;
     void go(double share);
     double newton(double tolerance, int most, Found& out);
     bool share_anew(double left, const Bounds& bounds, Found& out);
@@ -85,7 +93,9 @@ private:
     double slope(double t);
     bool round(double kappa, double tolerance, Found& out);
 
-    JointEquations joints_;
+    JointEquations with_forces_, without_forces_;  ///< changes of forces act in some solves of a step and not in others
+    JointEquations* joints_ = &without_forces_;
+    const Interruption* interruption_ = nullptr;
     std::vector<Place> places_;
     std::vector<std::uint8_t> point_in_, line_in_;
     std::vector<Point> points_;  ///< by place: with the mobility of the mechanism as K
@@ -96,7 +106,7 @@ private:
     std::vector<double> y_, pull_, rates_, trial_;  ///< of a round, as are these, by place
     std::vector<double> rho_, bias_;
     linear::Factors<double> factors_;
-    int last_step_ = 0;         ///< no factorisation is affordable after so many
+    double work_ = 0;           ///< of all factorisations of a solve, in cubes of the number of impulses
     bool contradicts_ = false;  ///< newton() has ended where a larger stiffness gains nothing
     std::vector<char> pieces_;
     std::vector<Column6> columns_;

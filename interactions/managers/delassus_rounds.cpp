@@ -87,15 +87,15 @@ bool DelassusSolver::round(double kappa, double tolerance, Found& out)
     constexpr double kEnough = 1e-3;
     start_round(kappa);
     y_ = r_;
-    double before = 0, size = 0;
-    for (int i = 0; i < kSteps && out.steps < last_step_; ++i, ++out.steps)
+    double before = 0, size = HUGE_VAL;
+    for (int i = 0; i < kSteps && !is_spent(); ++i, ++out.steps)
     {
         velocities_with(y_, u_);
         size = find_pull(true);
         if (i == 0) before = size;
         if (size <= std::max(tolerance, kEnough * before / kappa)) break;
         pull_ = step_;
-        if (!factors_.factorise()) return false;
+        if (!factorise()) break;
         factors_.solve(step_);
         rates_.resize(size_);
         std::ranges::fill(rates_, 0.0);
@@ -106,7 +106,11 @@ bool DelassusSolver::round(double kappa, double tolerance, Found& out)
         const double t = least_along([this](double at) { return slope(at); }, at_zero);
         for (std::size_t c = 0; c < size_; ++c) y_[c] += t * step_[c];
     }
-    if (!(size <= std::max(tolerance, 10 * kEnough * before / kappa))) return false;
+    if (!(size <= std::max(tolerance, 10 * kEnough * before / kappa)))
+    {
+        find_velocities();
+        return false;
+    }
     for (std::size_t k = 0; k < places_.size(); ++k)
     {
         const Vec3 wanted = held(k, u_, nullptr);

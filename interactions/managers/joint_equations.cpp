@@ -3,22 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "joint_solver.h"
+
 namespace plab::managers
 {
-namespace
-{
-
-bool is_held(const Line& line) { return line.count > 0 && line.least == -HUGE_VAL && line.most == HUGE_VAL; }
-
-}  // namespace
-
 void JointEquations::list_rows(const Problem& problem)
 {
-    fresh_rows_.clear(), hard_.assign(problem.lines.size(), 0);
+    fresh_rows_.clear(), hard_.assign(problem.lines.size(), 0), shafts_.clear();
+    for (const Anchor& m : problem.anchors) shafts_.push_back(m.shaft ? 1 : 0);
     for (std::uint32_t i = 0; i < problem.lines.size(); ++i)
     {
         const Line& line = problem.lines[i];
-        if (!is_held(line)) continue;
+        if (!is_joint(line)) continue;
         hard_[i] = line.compliance == 0 ? 1 : 0;
         Row& row = fresh_rows_.emplace_back();
         row.line = i;
@@ -59,9 +55,9 @@ void JointEquations::reach(std::uint32_t number, std::uint32_t from)
     for (std::uint32_t k = 0; k < joint.count; ++k)
     {
         std::uint8_t& reached = reached_[joint.movers[k]];
-        if ((reached & 1) != 0) continue;
-        ways += (reached & 2) != 0 ? 1 : 6;
-        reached |= 1, waiting_.push_back(joint.movers[k]);
+        if (reached != 0) continue;
+        ways += shafts_[joint.movers[k]] != 0 ? 1 : 6;
+        reached = 1, waiting_.push_back(joint.movers[k]);
     }
     joint.closes = joint.hard > ways;
 }
@@ -69,8 +65,7 @@ void JointEquations::reach(std::uint32_t number, std::uint32_t from)
 /// Joints of two movers first: a coupling that refers to the two bodies of a hinge adds the shaft to them.
 void JointEquations::find_tree(const Problem& problem)
 {
-    reached_.assign(problem.movers.size(), 0);  // 1: reached, 2: a shaft
-    for (std::size_t m = 0; m < problem.movers.size(); ++m) reached_[m] = problem.anchors[m].shaft ? 2 : 0;
+    reached_.assign(problem.movers.size(), 0);
     if (joints_of_.size() < problem.movers.size()) joints_of_.resize(problem.movers.size());
     for (auto& list : joints_of_) list.clear();
     std::vector<std::uint8_t> done(joints_.size(), 0);
@@ -92,7 +87,7 @@ void JointEquations::find_tree(const Problem& problem)
             {
                 const std::uint32_t j = wide[next_wide++];
                 if (done[j] != 0) continue;
-                const auto from = std::ranges::find_if(joints_[j].movers, [&](std::uint32_t m) { return (reached_[m] & 1) != 0; });
+                const auto from = std::ranges::find_if(joints_[j].movers, [&](std::uint32_t m) { return reached_[m] != 0; });
                 go_through(j, *from);
                 continue;
             }
@@ -109,8 +104,8 @@ void JointEquations::find_tree(const Problem& problem)
     follow();
     for (std::uint32_t m = 0; m < problem.movers.size(); ++m)
     {
-        if ((reached_[m] & 1) != 0 || joints_of_[m].empty()) continue;
-        reached_[m] |= 1, waiting_.push_back(m);
+        if (reached_[m] != 0 || joints_of_[m].empty()) continue;
+        reached_[m] = 1, waiting_.push_back(m);
         follow();
     }
 }
@@ -134,11 +129,9 @@ void JointEquations::analyse(std::size_t movers)
     x_.assign(matrix_.unknowns(), 0.0);
 }
 
-bool JointEquations::shape(const Problem& problem)
+/// Leaves out the rows that close loops.
+void JointEquations::find_joints(const Problem& problem)
 {
-    list_rows(problem);
-    if (fresh_rows_ == known_rows_ && hard_ == known_hard_ && problem.movers.size() == known_movers_) return !joints_.empty();
-    known_rows_ = rows_ = fresh_rows_, known_hard_ = hard_, known_movers_ = problem.movers.size();
     list_joints(problem);
     find_tree(problem);
     const auto closes = [this](const Row& row) { return joints_[joint_of_[row.line]].closes; };
@@ -151,10 +144,32 @@ bool JointEquations::shape(const Problem& problem)
     for (const Row& row : rows_) holds_[row.line] = 1;
     if (std::ranges::none_of(joints_, [](const Joint& j) { return j.hard > 0; })) joints_.clear();
     if (!joints_.empty()) analyse(problem.movers.size());
+}
+
+bool JointEquations::shape(const Problem& problem)
+{
+    list_rows(problem);
+    if (fresh_rows_ == known_rows_ && hard_ == known_hard_ && shafts_ == known_shafts_) return !joints_.empty();
+    known_rows_ = rows_ = fresh_rows_, known_hard_ = hard_, known_shafts_ = shafts_;
+    find_joints(problem);
     return !joints_.empty();
 }
 
 bool JointEquations::factor(const Problem& problem)
+{
+    constexpr int kTries = 4;
+    for (int i = 0; i < kTries && !joints_.empty(); ++i)
+    {
+        fill(problem);
+        if (!matrix_.factor(problem.interruption)) return false;
+        const auto implied = [this](const Row& row) { return matrix_.small()[unknown_[row.line]] != 0; };
+        if (std::erase_if(rows_, implied) == 0) return true;
+        find_joints(problem);
+    }
+    return false;
+}
+
+void JointEquations::fill(const Problem& problem)
 {
     constexpr std::size_t n = linear::SparseBlocks::kMostSize;
     matrix_.clear();
@@ -185,7 +200,6 @@ bool JointEquations::factor(const Problem& problem)
         matrix_.diagonal(movers + joint_of_[row.line])[place * (joint.rows + 1)] = -line.compliance;
         matrix_.set_floor(unknown_[row.line], 0, line.mobility);
     }
-    return matrix_.factor(problem.interruption) && std::ranges::none_of(matrix_.small(), [](std::uint8_t small) { return small != 0; });
 }
 
 void JointEquations::put(std::span<const Column6> x)

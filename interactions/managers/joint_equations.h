@@ -22,7 +22,8 @@ class JointEquations
 public:
     /// Finds the joints. False if there are none.
     bool shape(const Problem& problem);
-    /// Of the present attitudes. False if rows depend on one another.
+    /// Of the present attitudes. Rows that others of the same two bodies imply are left out from now on. False if nothing is left, or in an
+    /// interrupted step.
     bool factor(const Problem& problem);
     /// By line: 1 if it is one of the rows that hold here.
     std::span<const std::uint8_t> holds() const { return holds_; }
@@ -58,16 +59,18 @@ private:
     void list_joints(const Problem& problem);
     void find_tree(const Problem& problem);
     void reach(std::uint32_t joint, std::uint32_t from);
+    void find_joints(const Problem& problem);
     void analyse(std::size_t movers);
+    void fill(const Problem& problem);
     void put(std::span<const Column6> x);
     void solve(std::span<Column6> x);
 
     linear::SparseBlocks matrix_;
     std::vector<std::uint8_t> holds_;
-    std::vector<Row> rows_;                        ///< of the joints
-    std::vector<Row> fresh_rows_, known_rows_;     ///< with those that close loops: of this problem, and of the last analysis
-    std::vector<std::uint8_t> hard_, known_hard_;  ///< by line: has no compliance
-    std::size_t known_movers_ = 0;
+    std::vector<Row> rows_;                            ///< of the joints
+    std::vector<Row> fresh_rows_, known_rows_;         ///< with those that close loops: of this problem, and of the last analysis
+    std::vector<std::uint8_t> hard_, known_hard_;      ///< by line: has no compliance
+    std::vector<std::uint8_t> shafts_, known_shafts_;  ///< by mover: is one
     std::vector<Joint> joints_;
     std::vector<std::uint32_t> joint_of_, place_, unknown_;  ///< by line
     std::vector<std::uint8_t> reached_;                      ///< by mover

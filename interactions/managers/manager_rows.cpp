@@ -218,7 +218,8 @@ void DirectRows::describe(Schema& s)
             "method gets no further, what moves no body by more than 2^-30 of its size in a step counts as zero too")
         .or_else(1e-13)
         .positive();
-    s.param(max_steps, "max_steps", unit::one, "maximum number of Newton steps; after these, sweeps finish")
+    s.param(max_steps, "max_steps", unit::one,
+            "maximum number of Newton steps; after these, sweeps finish. Mechanisms of many joints have a bound of their own, on work")
         .or_else(80)
         .positive()
         .at_most(10000);

@@ -90,6 +90,9 @@ bool may_share_loads(const Problem& problem)
     return points >= kFewestPoints && points <= kMostPoints;
 }
 
+/// Whether joints prevail: of a heap with a joint in it sweeps make less work.
+bool is_mechanism(const Problem& problem) { return std::ranges::count_if(problem.lines, is_joint) >= std::ssize(problem.points); }
+
 /// Whether joints are so many that a step of Newton's method on all movers costs more than one on the contacts alone.
 bool has_many_joints(const Problem& problem)
 {
@@ -353,9 +356,10 @@ bool NewtonSolver::settles_by_sweeps(Problem& problem, double guess, const Solvi
 /// A mechanism is solved in the impulses of its contacts alone. With `or_nothing` only if that satisfies the law.
 bool NewtonSolver::solve_mechanism(Problem& problem, const Solving& how, bool or_nothing, Solved& out)
 {
-    const DelassusSolver::Found found = mechanism_.solve(problem, {how.tolerance, how.enough, how.close, or_nothing});
-    out.steps += found.steps, out.sweeps += found.sweeps;
+    const DelassusSolver::Found found =
+        mechanism_.solve(problem, {how.tolerance, how.enough, how.close, how.locked, or_nothing || how.rounds == 0});
     if (!found.solved) return false;
+    out.steps += found.steps, out.sweeps += found.sweeps;
     out.ended = true, out.fell_back = found.fell_back;
     out.residual = violation(problem);
     out.converged = out.residual <= std::max({how.tolerance, problem.rounding(terms_of(problem)), how.enough, how.close});
@@ -400,7 +404,7 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
     out.residual = violation(problem);
     out.converged = out.residual <= std::max(exact.tolerance, out.ended ? std::max(how.enough, how.close) : 0.0);
     if (out.converged) return out;
-    if (!many && how.rounds > 0 && solve_mechanism(problem, how, true, out)) return out;
+    if (!many && is_mechanism(problem) && solve_mechanism(problem, how, true, out)) return out;
     out.fell_back = true;
     if (how.rounds == 0) return out;
     finish_by_sweeps(problem, exact, out);

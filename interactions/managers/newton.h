@@ -18,6 +18,7 @@
 /// Rows that contradict one another have no solution: the proximal term then leads to the least violation in the same norm, with
 /// impulses that grow from step to step. newton() ends where a larger stiffness gains nothing.
 ///
+/// Many joints are solved in the impulses of contacts alone (delassus.h), as are fewer where (3) and (4) end without a solution. Otherwise:
 /// Newton's method converges only near a solution. solve() therefore takes the cheapest method that works: (1) nothing, if the
 /// last impulses still satisfy the law; (2) some sweeps, for a large island that has only drifted by rounding; (3) Newton's
 /// method from the last impulses, and for mechanisms also from none (README, "For mechanisms"); (4) rounds of the augmented Lagrangian
@@ -51,6 +52,7 @@ struct Solving
     double enough = 0;
     /// m/s: the violation up to which a solution that shares loads evenly is taken, where Newton's method finds none that is exact.
     double close = 0;
+    double locked = 1e-11;                 ///< DelassusSolver::Bounds
     std::size_t most_products = SIZE_MAX;  ///< of blocks, in all factorisations: about 0.1 us each
 };
 struct Solved

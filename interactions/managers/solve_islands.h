@@ -34,11 +34,13 @@ public:
     {
         Solving how = how_;
         how.tolerance = 0.1 * tolerance, how.enough = how.close = tolerance;
+        how.locked = kKept;
         return verdict(newton_.solve(problem, how));
     }
 
 private:
     static constexpr double kClose = 0x1p-24;  ///< of the size of the bodies in a step
+    static constexpr double kKept = 1e-4;      ///< overlap that joints keep, but for so much, is left (leave_kept_overlap)
     static Verdict verdict(const Solved& s) { return {s.steps + s.sweeps, s.residual, s.converged, s.fell_back}; }
 
     NewtonSolver& newton_;

@@ -1,8 +1,8 @@
 /// Eigen views of square matrices. To be included by sources only, because it includes Eigen.
 #pragma once
 
-#include "plab/eigen.h"
 #include "linear/square_matrix.h"
+#include "plab/eigen.h"
 
 namespace plab::linear
 {

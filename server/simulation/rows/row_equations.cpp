@@ -14,6 +14,8 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Refinement cannot improve a residual below this share of the largest terms of a sum.
 constexpr double kResidualFloor = 4 * kEpsilon;
 constexpr double kIdleShare = 1e-6;
+/// At rest the relative residual of rows is 1 but for rounding, however small their errors are.
+constexpr double kSameLeft = 1.01;
 /// A relative residual below this needs no further treatment (sharpen()).
 constexpr double kSettled = 1e-14;
 /// Relative tolerance for comparing x . M x of two solutions: rounding and the remaining residual.
@@ -276,9 +278,10 @@ void RowEquations::find_joint_loads()
 /// The residuals of the rows, relative to what they have to stop. Of members at rest all terms of a residual are as small as the residual.
 double RowEquations::worst_of_loads() const
 {
-    double worst = 0;
+    double largest = 0, worst = 0;
+    for (const double load : joint_load_) largest = std::fmax(largest, load);
     for (std::size_t j = 0; j < joints_.size(); ++j)
-        if (joint_load_[j] > 0) worst = std::fmax(worst, joint_error_[j] / joint_load_[j]);
+        if (largest > 0) worst = std::fmax(worst, joint_error_[j] / std::fmax(joint_load_[j], kIdleShare * largest));
     return worst;
 }
 
@@ -295,7 +298,9 @@ bool RowEquations::solve_refined()
         factors_.solve(r_);
         for (std::size_t u = 0; u < x_.size(); ++u) x_[u] += r_[u];
         left = residual(), left_of_loads = worst_of_loads();
-        if (left < 0.5 * before || (before_of_loads > kResidualFloor && left_of_loads < 0.5 * before_of_loads)) continue;
+        if (left < 0.5 * before ||
+            (left <= kSameLeft * before && before_of_loads > kResidualFloor && left_of_loads < 0.5 * before_of_loads))
+            continue;
         if (!(left <= before)) std::copy(before_.begin(), before_.end(), x_.begin());
         break;
     }
