@@ -209,7 +209,7 @@ void DelassusSolver::relax(std::size_t k)
     const double normal = std::max(0.0, p.impulse.z - (u_[n] - p.least) / p.K(2, 2));
     change(n, normal - p.impulse.z);
     p.impulse.z = normal;
-    if (places_[k].count == 1) return;
+    if (!p.frictional()) return;
     const Vec3 wanted{p.impulse.x - u_[f] / p.slip_mobility, p.impulse.y - u_[f + 1] / p.slip_mobility, normal};
     const Vec3 held = within_disc(wanted, p.friction * normal);
     change(f, held.x - p.impulse.x), change(f + 1, held.y - p.impulse.y);
@@ -231,6 +231,7 @@ bool DelassusSolver::find_impulses(const Bounds& bounds, Found& out)
     // From no impulses Newton's method may find one of several solutions or another, as rounding has it.
     const bool is_warm = std::ranges::any_of(r_, [](double r) { return r != 0; });
     double left = residual();
+    if (!is_warm && left <= bounds.tolerance) return true;
     if (is_warm) left = newton(std::max(bounds.tolerance, rounding()), kSteps, out);
     if (is_warm && (left <= std::max(bounds.tolerance, rounding()) || (contradicts_ && left <= bounds.enough))) return true;
     if (share_anew(left, bounds, out)) return true;
