@@ -114,7 +114,7 @@ ClosestPoint closest_point_on_hull(const Solid& S, const Vec3& q)
     const auto is_visible = [&](std::size_t f) { return dot(hull.normals[f], c) > hull.offsets[f]; };
     double nearest = HUGE_VAL;
     for (std::size_t f = 0; f < hull.faces.size(); ++f)
-        if (is_visible(f)) nearest = std::min(nearest, length_squared(hull.middles[f] - c));
+        if (const double d = length_squared(hull.middles[f] - c); d < nearest && is_visible(f)) nearest = d;
     nearest = std::sqrt(nearest);
     ClosestPoint best;
     double least = HUGE_VAL;

@@ -9,9 +9,6 @@
 namespace plab::managers
 {
 
-/// kappa of law_of: the stiffness rho of an active contact is kappa / K.
-inline constexpr double kSoftest = 1e2, kUsualStiffness = 1e6, kMostStiffness = 1e12;
-
 struct PointLaw
 {
     Vec3 change;  ///< N s, contact coordinates (t1, t2, n)

@@ -6,6 +6,7 @@
 
 #include "joint_solver.h"
 #include "sequential.h"
+#include "stiffness.h"
 
 namespace plab::managers
 {
@@ -151,17 +152,16 @@ void DelassusSolver::go(double share)
 /// Newton's method from r; ends at the best r that it finds. Returns its residual.
 double DelassusSolver::newton(double tolerance, int most, Found& out)
 {
-    constexpr double kTooFar = 2, kFactor = 1e2;
     constexpr int kHalvings = 4, kPatience = 5;
-    double now = residual(), best = now, kappa = kUsualStiffness;
+    double now = residual(), best = now;
+    Stiffness stiffness;
     best_ = r_, contradicts_ = false;
-    bool raised = false;
     (void)changes_pieces();
     // One step at least: a residual within the tolerance, added up over many steps of the island, may still be a drift.
     for (int i = 0, since_best = 0; i < most && !is_spent() && since_best < kPatience && (i == 0 || best > tolerance);
          ++i, ++since_best, ++out.steps)
     {
-        if (!find_step(kappa)) break;
+        if (!find_step(stiffness.kappa())) break;
         const double before = now;
         double at = 1;
         go(1);
@@ -172,9 +172,8 @@ double DelassusSolver::newton(double tolerance, int most, Found& out)
             at *= 0.5, now = residual();
         }
         const bool same = !changes_pieces();
-        contradicts_ = raised && same && now > 0.99 * before && now < kTooFar * before;
-        raised = same && now > 0.05 * before;
-        if (raised) kappa = std::min(kMostStiffness, kappa * kFactor);
+        contradicts_ = stiffness.makes_no_difference(same, before, now);
+        stiffness.adapt(same, before, now, tolerance);
         if (now < 0.5 * best) since_best = -1;
         if (now < best) best = now, best_ = r_;
         if (contradicts_) break;

@@ -7,6 +7,7 @@
 
 namespace plab::managers
 {
+
 void JointEquations::list_rows(const Problem& problem)
 {
     fresh_rows_.clear(), hard_.assign(problem.lines.size(), 0), shafts_.clear();
@@ -149,8 +150,9 @@ void JointEquations::find_joints(const Problem& problem)
 bool JointEquations::shape(const Problem& problem)
 {
     list_rows(problem);
-    if (fresh_rows_ == known_rows_ && hard_ == known_hard_ && shafts_ == known_shafts_) return !joints_.empty();
-    known_rows_ = rows_ = fresh_rows_, known_hard_ = hard_, known_shafts_ = shafts_;
+    const bool same = fresh_rows_ == known_rows_ && hard_ == known_hard_ && shafts_ == known_shafts_;
+    if (same && !narrowed_) return !joints_.empty();
+    known_rows_ = rows_ = fresh_rows_, known_hard_ = hard_, known_shafts_ = shafts_, narrowed_ = false;
     find_joints(problem);
     return !joints_.empty();
 }
@@ -164,6 +166,7 @@ bool JointEquations::factor(const Problem& problem)
         if (!matrix_.factor(problem.interruption)) return false;
         const auto implied = [this](const Row& row) { return matrix_.small()[unknown_[row.line]] != 0; };
         if (std::erase_if(rows_, implied) == 0) return true;
+        narrowed_ = true;
         find_joints(problem);
     }
     return false;

@@ -22,8 +22,8 @@ class JointEquations
 public:
     /// Finds the joints. False if there are none.
     bool shape(const Problem& problem);
-    /// Of the present attitudes. Rows that others of the same two bodies imply are left out from now on. False if nothing is left, or in an
-    /// interrupted step.
+    /// Of the present attitudes. Rows that others imply there are left out until shape() is called again: a solution must not depend on
+    /// what was solved before. False if nothing is left, or in an interrupted step.
     bool factor(const Problem& problem);
     /// By line: 1 if it is one of the rows that hold here.
     std::span<const std::uint8_t> holds() const { return holds_; }
@@ -71,6 +71,7 @@ private:
     std::vector<Row> fresh_rows_, known_rows_;         ///< with those that close loops: of this problem, and of the last analysis
     std::vector<std::uint8_t> hard_, known_hard_;      ///< by line: has no compliance
     std::vector<std::uint8_t> shafts_, known_shafts_;  ///< by mover: is one
+    bool narrowed_ = false;                            ///< rows_ lacks some that the present attitudes imply
     std::vector<Joint> joints_;
     std::vector<std::uint32_t> joint_of_, place_, unknown_;  ///< by line
     std::vector<std::uint8_t> reached_;                      ///< by mover

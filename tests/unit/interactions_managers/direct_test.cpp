@@ -11,12 +11,11 @@ using namespace plab;
 using namespace plab::managers;
 using plab::test::IslandWorld;
 using plab::test::kG;
+using plab::test::kStep;
 using plab::test::problem_of;
 
 namespace
 {
-
-constexpr double kStep = 1.0 / 60;
 
 double normal_sum(const Problem& p, std::size_t first, std::size_t count)
 {

@@ -11,6 +11,8 @@
 namespace plab::test
 {
 
+inline constexpr double kStep = 1.0 / 60;  // s
+
 struct IslandWorld
 {
     Bodies bodies;
