@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// Of all factorisations of a solve, in cubes of the number of impulses: some 0.1 s.
+/// Of all factorisations of a solve, in cubes of the number of impulses: 34 of the largest ones.
 constexpr double kMostWork = 2.4e8;
 /// Summands of Problem::rounding.
 constexpr double kTerms = 4096;

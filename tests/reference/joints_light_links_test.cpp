@@ -2,7 +2,7 @@
 // such a mechanism touches something, its contacts are solved in their impulses alone (interactions/managers/delassus.h), so the joints
 // hold to rounding.
 //
-//   a machine at rest whose rotors hang on its own joints    gravity does no work: 1e-9 J of 1 kJ/m (0.15 J before)
+//   a machine at rest whose rotors hang on its own joints    gravity does no work: 1e-9 J (it did 32 J, and the links moved)
 //   a tail of 11 links, two axes each, dropped               its energy never rises, and joints hold to 1e-6 m
 //   a stool on five legs with brakes in each of three axes   stands still to 1e-9 m, whatever way its feet share the load
 #include "support/gravity.h"
