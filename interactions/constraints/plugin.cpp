@@ -5,12 +5,14 @@
 #include "angular_velocity/couplings.h"
 #include "grab/grab.h"
 #include "joints/actuator.h"
+#include "joints/cylindrical.h"
 #include "joints/distance.h"
 #include "joints/gear.h"
 #include "joints/motor.h"
 #include "joints/rigid_joints.h"
 #include "joints/rolling.h"
 #include "joints/snap.h"
+#include "joints/universal.h"
 
 namespace
 {
@@ -121,6 +123,51 @@ void register_rigid(Registrar& registrar)
         .accuracy(kAsSolver)
         .strengths("parts that are exchanged or released while the scene runs")
         .cost("6 rows; linear in the number of joints for chains and trees")
+        .limits(kLimits)
+        .source(kSource);
+}
+
+void register_two_motions(Registrar& registrar)
+{
+    registrar
+        .component<UniversalRows>("Constraint/Universal", "a cross with one axis in a and one in b, as in the shafts of vehicles (Cardan)")
+        .family(kFamily)
+        .command<&prepare_universal>(Phase::Prepare, kPrepare, "takes points and axes from the present pose, if they are new")
+        .command<&constrain_universal>(Phase::Constrain, kRows, "four rows: the points coincide, the axes keep their angle")
+        .command<&finish_universal>(Phase::Finish, kFinish, "angles, force, torque and errors of the step")
+        .accuracy(kAsSolver)
+        .strengths("two axes without a body of next to no mass between them")
+        .cost("4 rows; linear in the number of joints for chains and trees")
+        .limits(kLimits)
+        .source("Haug, Computer aided kinematics and dynamics, volume I, 1989, 9.4");
+    registrar.component<CylindricalRows>("Constraint/Cylindrical", "b slides along an axis of a and turns about it")
+        .family(kFamily)
+        .command<&prepare_cylindrical>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&constrain_cylindrical>(Phase::Constrain, kRows, "four rows: no displacement across the axis, the axes are parallel")
+        .command<&finish_cylindrical>(Phase::Finish, kFinish, "angle, travel, force, torque and errors of the step")
+        .accuracy(kAsSolver)
+        .strengths("pistons, pins in bores")
+        .cost("4 rows; linear in the number of joints for chains and trees")
+        .limits(kLimits)
+        .source(kSource);
+    registrar.component<ScrewRows>("Constraint/Screw", "b travels along an axis of a in proportion to its turns about it")
+        .family(kFamily)
+        .command<&prepare_screw>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&constrain_screw>(Phase::Constrain, kRows, "five rows: those of Cylindrical, and travel = lead angle / (2 pi)")
+        .command<&finish_screw>(Phase::Finish, kFinish, "angle, travel, force, torque and errors of the step")
+        .accuracy(kAsSolver)
+        .strengths("lead screws, nuts and bolts: turns are counted, so the travel has no end")
+        .cost("5 rows; linear in the number of joints for chains and trees")
+        .limits(kLimits)
+        .source(kSource);
+    registrar.component<PlanarRows>("Constraint/Planar", "b moves in a plane of a and turns about its normal")
+        .family(kFamily)
+        .command<&prepare_planar>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&constrain_planar>(Phase::Constrain, kRows, "three rows: no displacement along the axis, the axes are parallel")
+        .command<&finish_planar>(Phase::Finish, kFinish, "angle, force, torque and errors of the step")
+        .accuracy(kAsSolver)
+        .strengths("mechanisms in a plane, pucks on air")
+        .cost("3 rows; linear in the number of joints for chains and trees")
         .limits(kLimits)
         .source(kSource);
 }
@@ -304,6 +351,7 @@ PLAB_PLUGIN("constraints", registrar)
 {
     register_couplings(registrar);
     register_rigid(registrar);
+    register_two_motions(registrar);
     register_lengths(registrar);
     register_coordinates(registrar);
     register_gears(registrar);

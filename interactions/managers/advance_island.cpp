@@ -20,13 +20,13 @@ void add_impacts(const StepMemory& memory, Island& island)
 void add_impacts_of_stops(const Problem& problem, Island& island, std::span<const double> impacts)
 {
     for (std::size_t i = 0; i < impacts.size(); ++i)
-        if (ConstraintRow& row = island.rows[problem.lines[i].row]; row.kind == RowKind::OneSided) row.impulse += impacts[i];
+        if (problem.row_of(problem.lines[i]).kind == RowKind::OneSided) island.rows[i].impulse += impacts[i];
 }
 
 /// Between two ends of sliding, slip falls linearly (slip_end.h): not under stiff servos, whose forces change within the step.
 bool accelerates_evenly(const Problem& problem, const Island& island)
 {
-    return std::ranges::none_of(problem.lines, [&](const Line& line) { return is_stiff(island.rows[line.row], line.mobility, island.h); });
+    return std::ranges::none_of(problem.lines, [&](const Line& line) { return is_stiff(problem.row_of(line), line.mobility, island.h); });
 }
 
 /// Whether a stop is met in this step, with more than a small part of the speeds of its bodies: these end then, and with them what the
@@ -36,7 +36,7 @@ bool meets_stop(const Problem& problem, const Island& island)
     constexpr double kPart = 0x1p-7, kRounding = 0x1p-34;
     const auto meets = [&](const Line& line)
     {
-        const ConstraintRow& row = island.rows[line.row];
+        const ConstraintRow& row = problem.row_of(line);
         if (line.count == 0 || row.kind != RowKind::OneSided) return false;
         const double closing = row.rate - problem.rate(line), still = kRounding * (turns_only(row) ? 1 : island.size) / island.h;
         double speeds = 0;
@@ -75,9 +75,9 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     for (std::size_t i = 0; i < guess.size(); ++i) problem.points[i].impulse = guess[i];
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
 
-    const Moving moving = how_to_move(problem, island, island.h);
+    const Moving moving = how_to_move(problem, island.h);
     const bool is_smooth = memory.line_impacts.empty() && !meets_stop(problem, island);
-    if (moving == Moving::ByMean && (problem.lines.empty() || (is_smooth && island.motion->put_rows_midway(island.h))))
+    if (moving == Moving::ByMean && (!problem.has_rows() || (is_smooth && island.motion->put_rows_midway(island.h))))
     {
         problem.put_pivots_midway(bodies, island.h);
         problem.put_lines_midway(island.h);

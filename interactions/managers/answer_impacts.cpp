@@ -46,7 +46,7 @@ bool any_rebound(const Problem& problem, const Island& island)
     return std::any_of(problem.lines.begin(), problem.lines.end(),
                        [&](const Line& line)
                        {
-                           const ConstraintRow& row = island.rows[line.row];
+                           const ConstraintRow& row = problem.row_of(line);
                            return row.restitution > 0 && closing(problem, line, row, island.h) > 0;
                        });
 }
@@ -68,15 +68,15 @@ void set_impact_targets(Problem& problem, const Island& island, std::span<const 
         const double restitution = share * c.restitution;
         // With joints, the closing speed is that after settle_joints().
         if (meets(c, island.h))
-            p.least = problem.lines.empty() && lands(island, i)
+            p.least = !problem.has_rows() && lands(island, i)
                           ? c.depth / island.h
-                          : restitution * (problem.lines.empty() ? c.approach : std::min(c.approach, std::max(0.0, -before[i].z)));
+                          : restitution * (!problem.has_rows() ? c.approach : std::min(c.approach, std::max(0.0, -before[i].z)));
         else
             p.least = c.depth >= -kTouching * island.size || c.impulse != Vec3{} ? -restitution * std::max(0.0, before[i].z) : kFar;
     }
     for (Line& line : problem.lines)
     {
-        const ConstraintRow& row = island.rows[line.row];
+        const ConstraintRow& row = problem.row_of(line);
         const bool one_sided = row.kind == RowKind::OneSided;
         const double speed = closing(problem, line, row, island.h);
         line.target = row.rate + share * row.restitution * speed;
@@ -88,14 +88,14 @@ void set_impact_targets(Problem& problem, const Island& island, std::span<const 
 
 /// After a move the velocities fit the joints as they were at its start. The rest, of first order in the step, is no closing speed that an
 /// impact may return: it is removed before, which costs energy and adds none.
-Verdict settle_joints(Problem& problem, const Island& island, Bodies& bodies, Shafts& shafts, Method& method)
+Verdict settle_joints(Problem& problem, Bodies& bodies, Shafts& shafts, Method& method)
 {
-    const auto is_joint = [&](const Line& line) { return island.rows[line.row].kind == RowKind::Equality; };
+    const auto is_joint = [&](const Line& line) { return problem.row_of(line).kind == RowKind::Equality; };
     if (std::none_of(problem.lines.begin(), problem.lines.end(), is_joint)) return {};
     for (Point& p : problem.points) p.least = kFar;
     for (Line& line : problem.lines)
     {
-        line.target = island.rows[line.row].rate;
+        line.target = problem.row_of(line).rate;
         line.most = is_joint(line) ? HUGE_VAL : 0.0, line.least = -line.most;
     }
     const Verdict out = method.find_impulses(problem);
@@ -138,7 +138,8 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     problem.apply_impulses();
     memory.passing.clear(), memory.impacts.clear(), memory.line_impacts.clear();
     if (!any_impact(problem, island)) return out;
-    if (any_rebound(problem, island)) out.join(settle_joints(problem, island, bodies, shafts, method));
+    problem.let_resist(false);
+    if (any_rebound(problem, island)) out.join(settle_joints(problem, bodies, shafts, method));
     auto& before = memory.separations;
     before.clear(), memory.line_rates.clear();
     for (const Point& p : problem.points) before.push_back(problem.relative_velocity(p));

@@ -27,12 +27,13 @@ constexpr int kMostCorrections = 10;
 constexpr int kCorrectionsOfOverlap = 6;
 
 /// Sets the displacements that would close the joints and stops; returns the largest of them.
-double set_displacements_of_lines(Problem& problem, const Island& island, double length)
+double set_displacements_of_lines(Problem& problem, double length)
 {
     double worst = 0;
+    problem.let_resist(false);
     for (Line& line : problem.lines)
     {
-        const ConstraintRow& row = island.rows[line.row];
+        const ConstraintRow& row = problem.row_of(line);
         line.target = -row.error;
         const bool held = row.kind == RowKind::Equality;
         line.least = held ? -HUGE_VAL : 0.0, line.most = !acts_at_once(row) || line.count == 0 ? 0.0 : HUGE_VAL;
@@ -175,7 +176,7 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
         p.least = leaves ? kFar : displacement_of(c, choices);
         worst = std::max(worst, leaves || p.K(2, 2) == 0 ? 0.0 : p.least);
     }
-    const double apart = set_displacements_of_lines(problem, island, length);
+    const double apart = set_displacements_of_lines(problem, length);
     worst = std::max(worst, apart);
     if (worst <= kPositionTolerance * length) return {};
     if (apart > kJointsApart * length) problem.turn_lines();
@@ -186,7 +187,7 @@ Verdict correct_positions(Island& island, Bodies& bodies, Shafts& shafts, Method
     for (int n = 1; n < kMostCorrections && (apart > kJointsApart * length || may_part); ++n)
     {
         island.motion->refresh_rows();
-        const double still = set_displacements_of_lines(problem, island, length);
+        const double still = set_displacements_of_lines(problem, length);
         if (!(still > kJointsApart * length)) break;
         worst = still;
         if (n < kCorrectionsOfOverlap)

@@ -66,7 +66,9 @@ private:
     /// cost of a few of them; so are stiff forces, which need hundreds.
     bool holds_rows(const Problem& problem)
     {
-        if (std::ranges::none_of(problem.lines, [](const Line& line) { return line.count > 0 && line.least < line.most; })) return false;
+        if (std::ranges::none_of(problem.lines,
+                                 [](const Line& line) { return !line.resists() && line.count > 0 && line.least < line.most; }))
+            return false;
         joints_.load(problem);
         return has_forces(problem) || joints_.is_cheap(problem);
     }

@@ -50,7 +50,7 @@ bool is_warm(const Problem& problem)
 bool may_share_loads(const Problem& problem)
 {
     constexpr std::size_t kFewestPoints = 4, kMostPoints = 64;
-    const std::size_t points = problem.lines.empty() || is_large(problem) ? 0 : problem.points.size();
+    const std::size_t points = !problem.has_rows() || is_large(problem) ? 0 : problem.points.size();
     return points >= kFewestPoints && points <= kMostPoints;
 }
 

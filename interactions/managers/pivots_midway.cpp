@@ -174,7 +174,7 @@ void Problem::put_lines_midway(double h)
     turn_lines();
     for (Line& line : lines)
     {
-        const ConstraintRow& row = rows_[line.row];
+        const ConstraintRow& row = row_of(line);
         // The rate of a servo follows the state: that of the middle is safer than one that is extrapolated to the end.
         if (row.kind == RowKind::Rate || row.kind == RowKind::ForceChange) continue;
         line.turning = -0.5 * h * row.bias;

@@ -128,6 +128,7 @@ void Problem::load_movers(const Island& island, const Bodies& bodies, const Shaf
     add_bodies(island, bodies);
     add_shafts(island, shafts);
     for (std::uint32_t i = 0; i < island.rows.size(); ++i) add_line(island.rows[i], i);
+    add_resistances(island, bodies);
 }
 
 /// Only these entries were written, so the maps are empty again for the next island at little cost.
@@ -166,21 +167,31 @@ void Problem::read_given(const Bodies& bodies, const Shafts& shafts)
         if (p.a == kNoIndex && bodies.motion[c.a.index] != Motion::Static) given -= bodies.velocity_at(c.a.index, c.point);
         p.given = to_contact(p, given);
     }
-    for (Line& line : lines)
+    for (Line& line : lines) line.given = line.resists() ? given_of_resistance(line, bodies) : given_of(line, bodies, shafts);
+}
+
+double Problem::given_of(const Line& line, const Bodies& bodies, const Shafts& shafts) const
+{
+    const ConstraintRow& row = rows_[line.row];
+    double given = 0;
+    for (std::uint32_t k = 0; k < row.count; ++k)
     {
-        const ConstraintRow& row = rows_[line.row];
-        line.given = 0;
-        for (std::uint32_t k = 0; k < row.count; ++k)
-        {
-            const RowBlock& block = row.blocks[k];
-            if (!block.participant.valid()) continue;
-            bool moves = false;
-            for (std::uint32_t i = 0; i < line.count; ++i)
-                moves = moves || (anchors[line.mover[i]].host == block.participant.index &&
-                                  anchors[line.mover[i]].shaft == (block.participant.facet == Facet::Shaft));
-            if (!moves) line.given += speed_of(block, bodies, shafts);
-        }
+        const RowBlock& block = row.blocks[k];
+        if (block.participant.valid() && !moves(line, block.participant)) given += speed_of(block, bodies, shafts);
     }
+    return given;
+}
+
+/// Whether a participant of a line is a mover.
+bool Problem::moves(const Line& line, Ref participant) const
+{
+    const std::span<const std::uint32_t> own = std::span(line.mover).first(line.count);
+    return std::ranges::any_of(own,
+                               [&](std::uint32_t mover)
+                               {
+                                   const Anchor& anchor = anchors[mover];
+                                   return anchor.host == participant.index && anchor.shaft == (participant.facet == Facet::Shaft);
+                               });
 }
 
 void Problem::rest()

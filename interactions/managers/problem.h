@@ -8,6 +8,7 @@
 /// contacts: no mass is ever divided by another one.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -27,10 +28,11 @@ namespace plab::managers
 inline constexpr std::size_t kSweptInOrder = 64;
 
 /// A row of a joint, limit or motor: sum of linear . v + angular . w + given + compliance * impulse = target, or >= target if it is
-/// one-sided. Only the change of a force is compliant (RowKind::ForceChange).
+/// one-sided. Only the change of a force is compliant (RowKind::ForceChange). Or what resists rolling or spinning between two bodies: then
+/// its bounds follow the normal impulses of some points (Problem::bound_resistances).
 struct Line
 {
-    std::uint32_t row = 0;    ///< index in Island::rows
+    std::uint32_t row = 0;    ///< index in Island::rows; kNoIndex: it resists rolling or spinning
     std::uint32_t count = 0;  ///< number of movers that take part
     std::array<std::uint32_t, ConstraintRow::kMostBlocks> mover{};
     std::array<Vec3, ConstraintRow::kMostBlocks> linear, angular;
@@ -42,7 +44,11 @@ struct Line
     double before = 0;           ///< ForceChange: J v before the last kick
     double least = 0, most = 0;  ///< bounds of the impulse, N s or N m s
     double impulse = 0;
+    double lever = 0;                              ///< m: of what resists, the bound per normal impulse
+    std::uint32_t first_point = 0, end_point = 0;  ///< whose points these are
+    bool a_moves = false;                          ///< likewise: the first mover is that of a
 
+    bool resists() const { return row == kNoIndex; }
     /// How much nearer to its target an impulse of 1 takes the row if nothing else acts, 1/kg or 1/(kg m^2).
     double admittance() const { return mobility + compliance; }
     /// The impulse per distance from the target of a row that acts with `kappa` times the stiffness that would close it alone if it had no
@@ -93,6 +99,17 @@ public:
     void forget_turning();
     /// The rows were found again after bodies had turned.
     void turn_lines();
+    /// The row of a line; of one that resists rolling, one that has no rate.
+    const ConstraintRow& row_of(const Line& line) const { return line.resists() ? kNoRate : rows_[line.row]; }
+    bool has_rows() const { return !rows_.empty(); }
+    /// Whether rolling and spinning are resisted: not in an instant, and not in displacements.
+    void let_resist(bool on) { resists_ = on; }
+    /// Points what resists rolling against the rolling that the velocities without impulses lead to. Its couples stay the same.
+    void aim_resistances();
+    /// Sets the bounds of what resists to its lever times the normal impulses, load(i) of point i, and its impulse within them; velocities
+    /// follow. Returns by how much (rad/s) this may change the solution.
+    template <class Load>
+    double bound_resistances(const Load& load);
     /// The same for the movers and rows alone, after they have turned for h (s): sets Mover::turned. The velocities of the movers become
     /// those with the present sums of impulses; `moved` becomes what they were before.
     void turn_movers_and_apply(const Bodies& bodies, double h, std::span<MoverSpeeds> moved);
@@ -149,7 +166,7 @@ public:
     std::vector<Anchor> anchors;  ///< parallel to movers
     std::vector<Momentum> sums;   ///< parallel to movers: of the impulses that have been applied
     std::vector<Point> points;    ///< parallel to Island::contacts
-    std::vector<Line> lines;      ///< parallel to Island::rows; rows without movers have count 0
+    std::vector<Line> lines;      ///< parallel to Island::rows, where rows without movers have count 0; then those that resist rolling
     const Interruption* interruption = nullptr;
     Workers* workers = nullptr;             ///< threads that the host lends; null: none
     mutable std::vector<double> part_sums;  ///< working memory of sum_parts()
@@ -202,12 +219,34 @@ private:
     void set_mobility(Point& p) const;
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);
+    void add_resistances(const Island& island, const Bodies& bodies);
+    bool add_resistance(const RollingResistance& pair, const Vec3& axis, double lever);
+    /// A pair whose rolling is resisted, by two lines.
+    struct Roller
+    {
+        Point at;                 ///< in the middle of its points
+        Vec3 given_spin;          ///< rad/s, of b relative to a: of those that are no movers
+        Vec3 rolled;              ///< rad/s, of b relative to a, along the surface, at the start of the step
+        double pressed = 0;       ///< N s: the normal impulses of the last step
+        double lever = 0;         ///< m
+        std::uint32_t first = 0;  ///< of its lines
+    };
+    void add_roller(const RollingResistance& pair, const Contact& middle, const Bodies& bodies);
+    Vec3 rolling_without(const Roller& roller, double& load) const;
+    void turn_resistance(Line& line, const Vec3& axis);
+    bool moves(const Line& line, Ref participant) const;
+    /// m/s or rad/s: the rate that those have who are no movers.
+    double given_of(const Line& line, const Bodies& bodies, const Shafts& shafts) const;
+    double given_of_resistance(const Line& line, const Bodies& bodies) const;
     bool is_isotropic_at(std::uint32_t mover) const { return mover == kNoIndex || movers[mover].isotropic; }
 
     std::vector<std::uint32_t> mover_of_body_, mover_of_shaft_;  ///< by row in Bodies or Shafts
     std::vector<std::uint32_t> carried_;  ///< points that touch a body which is not a mover and may move all the same (kinematic)
     std::span<const Contact> contacts_;
     std::span<const ConstraintRow> rows_;
+    std::vector<Roller> rollers_;
+    bool resists_ = false;
+    static const ConstraintRow kNoRate;
 };
 
 /// How far the impulse of a point is from the contact law, as a speed in m/s: the residual of the fixed-point equations
@@ -236,6 +275,26 @@ inline Vec3 within_disc(Vec3 j, double radius)
     if (squared <= radius * radius) return j;
     const double share = radius / std::sqrt(squared);
     return {j.x * share, j.y * share, j.z};
+}
+
+template <class Load>
+double Problem::bound_resistances(const Load& load)
+{
+    constexpr double kSame = 0x1p-40;
+    double largest = 0;
+    for (std::size_t i = rows_.size(); i < lines.size(); ++i)
+    {
+        Line& line = lines[i];
+        double sum = 0;
+        for (std::uint32_t k = line.first_point; resists_ && k < line.end_point; ++k) sum += load(k);
+        const double bound = line.lever * sum, before = line.impulse, change = std::fabs(bound - line.most);
+        line.impulse = std::clamp(before, -bound, bound);
+        if (line.impulse != before) push(line, line.impulse - before);
+        const bool is_reached = std::fabs(before) >= std::min(line.most, bound);
+        if (is_reached && change > kSame * bound) largest = std::max(largest, change * line.mobility);
+        line.least = -bound, line.most = bound;
+    }
+    return largest;
 }
 
 inline Vec3 to_contact(const Point& p, const Vec3& v) { return {dot(p.t1, v), dot(p.t2, v), dot(p.n, v)}; }

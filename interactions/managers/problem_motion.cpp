@@ -78,7 +78,7 @@ void Problem::turn_lines()
         {
             const Anchor& anchor = anchors[line.mover[i]];
             const Facet facet = anchor.shaft ? Facet::Shaft : Facet::Body;
-            const ConstraintRow& row = rows_[line.row];
+            const ConstraintRow& row = row_of(line);
             for (std::uint32_t k = 0; k < row.count; ++k)
                 if (row.blocks[k].participant.facet == facet && row.blocks[k].participant.index == anchor.host)
                     line.linear[i] = row.blocks[k].linear, line.angular[i] = row.blocks[k].angular;

@@ -54,7 +54,7 @@ bool makes_energy(const Problem& problem)
 bool gains_by_turning(const Problem& problem)
 {
     constexpr double kMost = 0x1p-6;
-    if (problem.lines.empty() || problem.points.empty() || is_driven(problem)) return false;
+    if (!problem.has_rows() || problem.points.empty() || is_driven(problem)) return false;
     return kinetic_energy(problem) > kinetic_energy_without(problem) * (1 + kMost);
 }
 
@@ -67,7 +67,7 @@ Swept sweep(Problem& problem, PacketList<W>& list, const Sweeping& how)
         // Alternates the direction of the sweeps: rocking modes that one direction hardly damps decay in the other.
         const bool backwards = out.sweeps % 2 == 1;
         const std::size_t lines = problem.lines.size();
-        out.change = 0;
+        out.change = problem.bound_resistances([&](std::uint32_t k) { return list.impulse(k).z; });
         for (std::size_t i = 0; i < lines; ++i)
             out.change = std::max(out.change, relax(problem, problem.lines[backwards ? lines - 1 - i : i], how.relaxation));
         out.change = std::max(out.change, sweep_hard(list, std::span<Mover>(problem.movers),

@@ -21,7 +21,7 @@ Verdict SlipEnds::try_part(double h)
     Problem& problem = memory_.problem;
     kick(problem, island_, bodies_, shafts_, h);
     problem.read_speeds(bodies_, shafts_);
-    set_targets(problem, island_, h, slop_, how_to_move(problem, island_, h), memory_.passing);
+    set_targets(problem, island_, h, slop_, how_to_move(problem, h), memory_.passing);
     problem.apply_impulses();
     return method_.find_impulses(problem);
 }
@@ -97,7 +97,7 @@ void SlipEnds::move(const Verdict& found, double h)
 {
     Problem& problem = memory_.problem;
     problem.write_speeds(bodies_, shafts_);
-    managers::move(problem, island_, found, h, how_to_move(problem, island_, h));
+    managers::move(problem, island_, found, h, how_to_move(problem, h));
     add_impulses(problem, island_);
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
@@ -145,7 +145,7 @@ Verdict SlipEnds::advance()
         const Vec3& j = memory_.impulses[i];
         island_.contacts[i].impulse = p.t1 * j.x + p.t2 * j.y + p.n * j.z;
     }
-    for (std::size_t i = 0; i < problem.lines.size(); ++i) island_.rows[problem.lines[i].row].impulse = memory_.line_impulses[i];
+    for (std::size_t i = 0; i < island_.rows.size(); ++i) island_.rows[i].impulse = memory_.line_impulses[i];
     return out;
 }
 

@@ -14,7 +14,7 @@ void SoftIsland<W>::note_limits()
 {
     memory_.line_closing.assign(problem_.lines.size(), 0.0), memory_.line_greatest.assign(problem_.lines.size(), 0.0);
     const auto may_bounce = [&](const Line& line)
-    { return line.count > 0 && island_.rows[line.row].kind == RowKind::OneSided && island_.rows[line.row].restitution > 0; };
+    { return line.count > 0 && problem_.row_of(line).kind == RowKind::OneSided && problem_.row_of(line).restitution > 0; };
     if (std::none_of(problem_.lines.begin(), problem_.lines.end(), may_bounce)) return;
     problem_.read_speeds(bodies_, shafts_);
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
@@ -24,7 +24,7 @@ void SoftIsland<W>::note_limits()
         double rate = line.given;  // without impulses: those stored in the problem are an estimate for the sub-step
         for (std::uint32_t k = 0; k < line.count; ++k)
             rate += dot(line.linear[k], problem_.anchors[line.mover[k]].v) + dot(line.angular[k], problem_.anchors[line.mover[k]].w);
-        memory_.line_closing[i] = std::max(0.0, island_.rows[line.row].rate - rate);
+        memory_.line_closing[i] = std::max(0.0, problem_.row_of(line).rate - rate);
         limits_bounce_ = limits_bounce_ || memory_.line_closing[i] > 0;
     }
 }
@@ -85,7 +85,7 @@ void SoftIsland<W>::bounce_with_limits(double share)
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
         Line& line = problem_.lines[i];
-        const ConstraintRow& row = island_.rows[line.row];
+        const ConstraintRow& row = problem_.row_of(line);
         const bool one_sided = row.kind == RowKind::OneSided, pressed = memory_.line_greatest[i] > 0;
         line.target = row.rate + (one_sided ? share * row.restitution * memory_.line_closing[i] : 0.0);
         line.least = one_sided ? 0.0 : -HUGE_VAL, line.most = HUGE_VAL;
@@ -103,6 +103,7 @@ void SoftIsland<W>::give_back()
     // Relative. An elastic impact ends with the energy that it began with, but the sums differ by rounding, and a share would be missing.
     constexpr double kSameEnergy = 0x1p-46;
     if (!bounces_) return;
+    problem_.let_resist(false);
     gather_and_clear(contacts_, std::span<SoftPoint<W>>(soft_));
     for (Line& line : problem_.lines) line.impulse = 0;
     problem_.clear_sums();

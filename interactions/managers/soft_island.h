@@ -80,6 +80,7 @@ private:
     int step_hard();
     bool scale_down();
     void sweep_lines(bool soft);
+    void bound_resistances();
     bool holds_rows();
     void hold_rows(bool corrects, bool anew);
     int remove_gained_energy();

@@ -197,6 +197,8 @@ void SoftIsland<W>::kick()
     if (!applied_ || !problem_.lines.empty()) sum();  // targets limit the impulses of lines
     applied_ = true;
     most_ = problem_.read_speeds_and_apply(bodies_, shafts_);
+    problem_.aim_resistances();
+    bound_resistances();
     if (bounces_) note_kicks(false);
     hold_rows(true, true);
 }
@@ -377,6 +379,7 @@ void SoftIsland<W>::finish(Verdict& out)
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
         const Line& line = problem_.lines[i];
+        if (line.resists()) break;
         island_.rows[line.row].impulse = memory_.line_sum[i];
         if (line.count > 0 && (island_.rows[line.row].kind == RowKind::Equality || island_.rows[line.row].kind == RowKind::Rate))
             out.residual = std::max(out.residual, std::fabs(problem_.rate(line) - island_.rows[line.row].rate));

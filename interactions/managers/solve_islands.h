@@ -21,13 +21,19 @@ public:
         const double fast = (island.bodies.empty() ? 1 : island.size) / island.h;
         how_.enough = kPositionTolerance * fast, how_.close = kClose * fast;
     }
+    /// What resists rolling is solved with the normal impulses that the contacts had before, until these are what comes of it (Haslinger,
+    /// Math. Methods Appl. Sci. 5 (1983), for friction).
     Verdict find_impulses(Problem& problem) override
     {
-        Verdict out = verdict(newton_.solve(problem, how_));
-        if (!gains_by_turning(problem)) return out;
-        problem.forget_turning();
-        const int before = out.iterations;
-        out = verdict(newton_.solve(problem, how_)), out.iterations += before;
+        constexpr int kMostRounds = 3;
+        const auto bound = [&] { return problem.bound_resistances([&](std::uint32_t i) { return problem.points[i].impulse.z; }); };
+        (void)bound();
+        Verdict out = find_bounded(problem);
+        for (int round = 0; round < kMostRounds && out.converged && bound() > how_.enough && !problem.interrupted(); ++round)
+        {
+            const int before = out.iterations;
+            out = find_bounded(problem), out.iterations += before;
+        }
         return out;
     }
     Verdict find_displacements(Problem& problem, double tolerance) override
@@ -39,6 +45,16 @@ public:
     }
 
 private:
+    Verdict find_bounded(Problem& problem)
+    {
+        Verdict out = verdict(newton_.solve(problem, how_));
+        if (!gains_by_turning(problem)) return out;
+        problem.forget_turning();
+        const int before = out.iterations;
+        out = verdict(newton_.solve(problem, how_)), out.iterations += before;
+        return out;
+    }
+
     static constexpr double kClose = 0x1p-24;  ///< of the size of the bodies in a step
     static constexpr double kKept = 1e-4;      ///< overlap that joints keep, but for so much, is left (leave_kept_overlap)
     static Verdict verdict(const Solved& s) { return {s.steps + s.sweeps, s.residual, s.converged, s.fell_back}; }

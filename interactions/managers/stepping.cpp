@@ -52,14 +52,15 @@ void set_targets(Problem& problem, const Island& island, double h, double slop, 
     }
     for (std::size_t i = 0; i < passing.size(); ++i) problem.points[i].least = std::min(problem.points[i].least, passing[i]);
     set_line_targets(problem, island, h, moving);
+    problem.aim_resistances();
 }
 
-Moving how_to_move(const Problem& problem, const Island& island, double h)
+Moving how_to_move(const Problem& problem, double h)
 {
     constexpr double kStops = 4;  // h c / m: slower by exp(-4) at the end
     const auto stops = [&](const Line& line)
     {
-        const ConstraintRow& row = island.rows[line.row];
+        const ConstraintRow& row = problem.row_of(line);
         return row.kind == RowKind::ForceChange && h * row.damping * line.mobility > kStops;
     };
     return std::ranges::any_of(problem.lines, stops) ? Moving::ByEnd : Moving::ByMean;
@@ -68,7 +69,7 @@ Moving how_to_move(const Problem& problem, const Island& island, double h)
 void kick(Problem& problem, const Island& island, const Bodies& bodies, const Shafts& shafts, double h)
 {
     for (Line& line : problem.lines)
-        if (const ConstraintRow& row = island.rows[line.row]; row.kind == RowKind::ForceChange) line.before = speed_of(row, bodies, shafts);
+        if (const ConstraintRow& row = problem.row_of(line); row.kind == RowKind::ForceChange) line.before = speed_of(row, bodies, shafts);
     island.motion->kick(h);
 }
 
@@ -107,17 +108,18 @@ void note_move(const Problem& problem, const Island& island, double h, Moving mo
 {
     for (const Line& line : problem.lines)
     {
-        ConstraintRow& row = island.rows[line.row];
-        if (row.kind != RowKind::ForceChange || line.count == 0) continue;
+        if (problem.row_of(line).kind != RowKind::ForceChange || line.count == 0) continue;
         const double end = problem.rate(line);
-        row.error += h * (moving == Moving::ByMean ? 0.5 * (line.before + end) : end);
+        island.rows[line.row].error += h * (moving == Moving::ByMean ? 0.5 * (line.before + end) : end);
     }
 }
 
 void set_line_targets(Problem& problem, const Island& island, double h, Moving moving)
 {
+    problem.let_resist(true);
     for (Line& line : problem.lines)
     {
+        if (line.resists()) continue;  // bound_resistances()
         const ConstraintRow& row = island.rows[line.row];
         const bool one_sided = row.kind == RowKind::OneSided;
         line.target = row.rate - (one_sided && row.error > 0 ? row.error / h : 0.0);
@@ -137,7 +139,7 @@ void store_impulses(const Problem& problem, Island& island)
         const Vec3 u = problem.relative_velocity(p);
         c.slip = std::hypot(u.x, u.y);
     }
-    for (const Line& line : problem.lines) island.rows[line.row].impulse = line.impulse;
+    for (std::size_t i = 0; i < island.rows.size(); ++i) island.rows[i].impulse = problem.lines[i].impulse;
 }
 
 void add_impulses(const Problem& problem, Island& island)

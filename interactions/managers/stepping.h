@@ -94,7 +94,7 @@ enum class Moving : std::uint8_t
 };
 /// By the mean, unless a damper would stop its bodies within a fraction of h: a speed that an impact leaves lasts no longer, and half of it
 /// would take them far during h.
-Moving how_to_move(const Problem& problem, const Island& island, double h);
+Moving how_to_move(const Problem& problem, double h);
 /// Applies the forces during h (s).
 void kick(Problem& problem, const Island& island, const Bodies& bodies, const Shafts& shafts, double h);
 /// Sets what the contact velocities and row rates must be at the end of h; `passing` as in StepMemory, or empty.

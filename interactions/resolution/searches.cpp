@@ -80,8 +80,9 @@ void advance_to_contact(const StepContext& context, Row row, const AdvancementRo
         return;
     }
     trial.decision = EventBracket::Decision::Try;
+    trial.next = trial.begin + trial.gap_begin / trial.closing;
     // If the bodies overlap at a trial time, the forces differed from those in the bound; halving is always correct.
-    trial.next = bracketed || !(trial.closing > 0) ? 0.5 * (trial.begin + trial.end) : trial.begin + trial.gap_begin / trial.closing;
+    if (bracketed || !(trial.closing > 0) || (trial.gap_end < 0 && trial.next >= trial.end)) trial.next = 0.5 * (trial.begin + trial.end);
 }
 
 void RootRows::describe_search(Schema& s)

@@ -102,6 +102,7 @@ void AutomaticRows::describe(Schema& s)
         .default_type("Manager/Automatic");
     // Where impacts cascade through a crowd, what remains after these sweeps is answered at once; few bodies need fewer.
     impulse.describe(s, 300);
+    describe_rolling_resistance(s, rolling_friction, spinning_friction);
 }
 
 void respond_automatically(const StepContext& context, Row row, AutomaticRows& rows, Bodies& bodies, Impact& impact)

@@ -57,6 +57,7 @@ void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodie
 struct AutomaticRows
 {
     ImpulseRows impulse;
+    Column<double> rolling_friction, spinning_friction;  // m
     Column<Ref> manager;
 
     void describe(Schema& schema);

@@ -47,6 +47,7 @@ void RowsRows::describe(Schema& s)
         .family("Manager/")
         .default_type("Manager/Direct");
     describe_impact_law(s, friction, restitution);
+    describe_rolling_resistance(s, rolling_friction, spinning_friction);
     s.param(rest_height, "rest_height", unit::metre, "where impacts are located: a bounce that would rise less than this is suppressed")
         .or_else(1e-14)
         .not_negative();

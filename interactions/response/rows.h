@@ -17,7 +17,8 @@ namespace plab::response
 
 struct RowsRows
 {
-    Column<double> friction, restitution;  // 1
+    Column<double> friction, restitution;                // 1
+    Column<double> rolling_friction, spinning_friction;  // m
     Column<Ref> manager;
     Column<double> rest_height;  // m
     Column<double> rest_speed;   // m/s

@@ -23,6 +23,16 @@ void describe_impact_law(Schema& s, Column<double>& friction, Column<double>& re
         .at_most(1);
 }
 
+void describe_rolling_resistance(Schema& s, Column<double>& rolling, Column<double>& spinning)
+{
+    s.param(rolling, "rolling_friction", unit::metre,
+            "a couple of at most so much times the normal force resists that bodies roll on one another while they stay in touch, unless "
+            "a Material/Pair overrides it")
+        .or_else(0)
+        .not_negative();
+    s.param(spinning, "spinning_friction", unit::metre, "likewise that they spin about the normal").or_else(0).not_negative();
+}
+
 void Workspace::gather(const Impact& impact, Bodies& bodies)
 {
     velocities.begin(impact.contacts, bodies, impact.mobility);

@@ -26,6 +26,8 @@ bool rests(const Contact& contact, double speed, const BounceLimit& limit);
 
 /// Declares the parameters of an impact law that these responses share: `friction` and `restitution`, both dimensionless.
 void describe_impact_law(Schema& schema, Column<double>& friction, Column<double>& restitution);
+/// The parameters by which managers resist rolling and spinning (plab::RollingResistance).
+void describe_rolling_resistance(Schema& schema, Column<double>& rolling, Column<double>& spinning);
 
 /// The contacts between two bodies, which are answered together.
 struct PairManifold

@@ -53,7 +53,8 @@ JointText joint_text(const PlacedJoint& placed, const std::string& a, const std:
     const bool slides = j.kind == JointKind::Slide;
     const std::string on_axis = anchor + attribute("axis", placed.axis_W);
     out.place = on_axis + attribute("along", slides ? "slide" : "turn");
-    out.lines.push_back(component(out.id, slides ? "Constraint/Slider" : "Constraint/Hinge", on_axis));
+    out.lines.push_back(j.lead != 0 ? component(out.id, "Constraint/Screw", on_axis + attribute("lead", j.lead))
+                                    : component(out.id, slides ? "Constraint/Slider" : "Constraint/Hinge", on_axis));
     write_stops(j, out, ids);
     if (j.stiffness > 0 || j.damping > 0)
         out.lines.push_back(component(

@@ -81,16 +81,16 @@ void read_contact(const XmlElement& e, RobotShape& shape, MjcfSettings& settings
         return document.error(e, std::string(name) + " must be a whole number of 32 bits"), std::uint32_t{0};
     };
     shape.contact_type = word("contype"), shape.contact_affinity = word("conaffinity");
-    double friction[3] = {1, 0.005, 0.0001};
-    if (document.numbers(e, "friction", friction, 1) > 1)
-        document.lost(e, "friction: only sliding friction is carried over, not that of twisting and rolling");
-    shape.surface.friction = friction[0];
-    if (shape.surface.friction < 0) document.error(e, "friction must not be negative");
+    Surface& surface = shape.surface;
+    double friction[3] = {surface.friction, surface.twisting, surface.rolling};
+    (void)document.numbers(e, "friction", friction, 1);
+    surface.friction = friction[0], surface.twisting = friction[1], surface.rolling = friction[2];
+    if (surface.friction < 0 || surface.twisting < 0 || surface.rolling < 0) document.error(e, "friction must not be negative");
     const double condim = document.number(e, "condim", 3);
     if (condim != 1 && condim != 3 && condim != 4 && condim != 6) document.error(e, "condim must be one of 1, 3, 4, 6");
-    shape.surface.frictionless = condim == 1;
-    shape.surface.priority = static_cast<int>(std::clamp(document.number(e, "priority", 0), -1e6, 1e6));
-    shape.surface.solref = read_solref(e, settings, document);
+    surface.dimensions = static_cast<int>(condim);
+    surface.priority = static_cast<int>(std::clamp(document.number(e, "priority", 0), -1e6, 1e6));
+    surface.solref = read_solref(e, settings, document);
 }
 
 MassProperties mass_of(const XmlElement& e, const RobotShape& shape, Document& document)

@@ -36,6 +36,7 @@ struct Joint
 {
     std::string name;
     JointKind kind = JointKind::Hinge;
+    double lead = 0;     ///< m: if not 0, a hinge is a screw that travels so far along its axis in a turn
     Vec3 anchor;         ///< in B, m
     Vec3 axis{0, 0, 1};  ///< in B, unit length
     double zero = 0;     ///< q in the pose that the file gives
@@ -80,10 +81,13 @@ struct Solref
 /// How a shape touches others. The order is that of roughness.
 struct Surface
 {
-    double friction = 1;        ///< Coulomb coefficient
-    double restitution = 0;     ///< Newton's coefficient; in MJCF it follows from solref
-    int priority = 0;           ///< of MJCF: of two surfaces the one with the greater number counts alone
-    bool frictionless = false;  ///< unless the other surface says otherwise (condim="1" of MJCF)
+    double friction = 1;     ///< Coulomb coefficient
+    double restitution = 0;  ///< Newton's coefficient; in MJCF it follows from solref
+    int priority = 0;        ///< of MJCF: of two surfaces the one with the greater number counts alone
+    /// condim of MJCF: 1 without friction, 3 with sliding friction, from 4 on also that of twisting, with 6 of rolling. The larger one of
+    /// two surfaces counts.
+    int dimensions = 3;
+    double twisting = 0.005, rolling = 0.0001;  ///< m, as usual in MJCF
     Solref solref;
     std::string own;  ///< not empty: that of this body alone, for laws of its own
     auto operator<=>(const Surface&) const = default;

@@ -61,10 +61,12 @@ private:
         if (!known && type != "screw" && type != "gearbox")
             return document_.error(e, "type must be one of revolute, continuous, prismatic, ball, universal, fixed, not '" + type + "'"),
                    false;
-        if (type == "screw") document_.lost(e, "turns, but does not move along its axis: pLab has no screw joint");
+        if (type == "screw") joint.lead = read_lead(e);
         if (type == "gearbox") document_.lost(e, "turns freely: the ratio of a gearbox is not carried over");
-        document_.list_children(e, two ? std::initializer_list<std::string_view>{"pose", "parent", "child", "axis", "axis2"}
-                                       : std::initializer_list<std::string_view>{"pose", "parent", "child", "axis"});
+        using Names = std::initializer_list<std::string_view>;
+        document_.list_children(e, two               ? Names{"pose", "parent", "child", "axis", "axis2"}
+                                   : type == "screw" ? Names{"pose", "parent", "child", "axis", "screw_thread_pitch", "thread_pitch"}
+                                                     : Names{"pose", "parent", "child", "axis"});
         joint.kind = type == "prismatic" ? JointKind::Slide : JointKind::Hinge;
         for (const char* const name : {"axis", "axis2"})
         {
@@ -78,6 +80,15 @@ private:
             out.joints.push_back(std::move(one));
         }
         return true;
+    }
+
+    /// m for a turn. Before SDF 1.10 the thread was given in rad/m, positive for one that is left-handed.
+    double read_lead(const XmlElement& e)
+    {
+        constexpr double kTurn = 6.283185307179586;
+        const double lead = sdf_number(e, "screw_thread_pitch", 0, document_), per_metre = sdf_number(e, "thread_pitch", 1, document_);
+        if (find_child(e, "screw_thread_pitch") ? lead == 0 : per_metre == 0) document_.error(e, "the pitch of a screw must not be 0");
+        return find_child(e, "screw_thread_pitch") ? lead : -kTurn / per_metre;
     }
 
     void read_axis(const XmlElement& e, bool bounded, Joint& joint)

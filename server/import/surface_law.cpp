@@ -17,15 +17,23 @@ Solref mixed(const Solref& a, const Solref& b)
     return {(a.first + b.first) / 2, (a.second + b.second) / 2};
 }
 
+SurfaceLaw law_of_mujoco(int dimensions, const Surface& a, const Surface& b, double restitution)
+{
+    SurfaceLaw law{.restitution = restitution};
+    if (dimensions >= 3) law.friction = std::max(a.friction, b.friction);
+    if (dimensions >= 4) law.spinning_friction = std::max(a.twisting, b.twisting);
+    if (dimensions >= 6) law.rolling_friction = std::max(a.rolling, b.rolling);
+    return law;
+}
+
 SurfaceLaw law_of_mujoco(const Surface& a, const Surface& b)
 {
     if (a.priority != b.priority)
     {
         const Surface& one = a.priority > b.priority ? a : b;
-        return {one.frictionless ? 0 : one.friction, rebound_of(spring_of(one.solref))};
+        return law_of_mujoco(one.dimensions, one, one, rebound_of(spring_of(one.solref)));
     }
-    const double friction = a.frictionless && b.frictionless ? 0 : std::max(a.friction, b.friction);
-    return {friction, rebound_of(spring_of(mixed(a.solref, b.solref)))};
+    return law_of_mujoco(std::max(a.dimensions, b.dimensions), a, b, rebound_of(spring_of(mixed(a.solref, b.solref))));
 }
 
 }  // namespace

@@ -152,12 +152,15 @@ private:
 
     static std::string material_of(const Surface& s)
     {
-        const Solref usual;
+        const Surface usual;
         return "friction " + model::format_real(s.friction) +
                (s.restitution > 0 ? " restitution " + model::format_real(s.restitution) : "") +
-               (s.solref == usual ? "" : " solref " + model::format_real(s.solref.first) + " " + model::format_real(s.solref.second)) +
-               (s.priority != 0 ? " priority " + std::to_string(s.priority) : "") + (s.frictionless ? " without friction" : "") +
-               (s.own.empty() ? "" : " of " + s.own);
+               (s.solref == usual.solref ? ""
+                                         : " solref " + model::format_real(s.solref.first) + " " + model::format_real(s.solref.second)) +
+               (s.priority != 0 ? " priority " + std::to_string(s.priority) : "") + (s.dimensions < 3 ? " without friction" : "") +
+               (s.dimensions > 3 ? " condim " + std::to_string(s.dimensions) : "") +
+               (s.twisting == usual.twisting ? "" : " twisting " + model::format_real(s.twisting)) +
+               (s.rolling == usual.rolling ? "" : " rolling " + model::format_real(s.rolling)) + (s.own.empty() ? "" : " of " + s.own);
     }
 
     SurfaceLaw law_of(const Surface& a, const Surface& b) const
@@ -349,9 +352,15 @@ private:
         const Surface& roughest = *surfaces_.rbegin();
         const SurfaceLaw law = law_of(roughest, roughest);
         line("<component id=\"contact.response\" type=\"Response/Automatic\" manager=\"manager\"" + attribute("friction", law.friction) +
-             (law.restitution > 0 ? attribute("restitution", law.restitution) : "") + "/>");
+             (law.restitution > 0 ? attribute("restitution", law.restitution) : "") + turning_attributes(law) + "/>");
         manager_ = true;
         write_surface_laws();
+    }
+
+    static std::string turning_attributes(const SurfaceLaw& law)
+    {
+        return (law.rolling_friction > 0 ? attribute("rolling_friction", law.rolling_friction) : "") +
+               (law.spinning_friction > 0 ? attribute("spinning_friction", law.spinning_friction) : "");
     }
 
     void write_surface_laws()
@@ -364,7 +373,7 @@ private:
                 const SurfaceLaw law = law_of(*a, *b);
                 line("<component" + attribute("id", ids_.make("materials." + std::to_string(n++))) + " type=\"Material/Pair\"" +
                      attribute("a", material_of(*b)) + attribute("b", material_of(*a)) + attribute("friction", law.friction) +
-                     attribute("restitution", law.restitution) + "/>");
+                     attribute("restitution", law.restitution) + turning_attributes(law) + "/>");
             }
     }
 

@@ -2,24 +2,6 @@
 
 namespace plab::constraints
 {
-namespace
-{
-
-/// The axes of a joint's frame at the present state.
-struct Axes
-{
-    Quat q;  ///< q_WF
-    Vec3 t1, t2, n;
-};
-
-Axes axes_of(const Quat& q_WF)
-{
-    const Mat3 R = rotation_matrix(q_WF);
-    return {q_WF, {R(0, 0), R(1, 0), R(2, 0)}, {R(0, 1), R(1, 1), R(2, 1)}, {R(0, 2), R(1, 2), R(2, 2)}};
-}
-
-}  // namespace
-
 void BallRows::describe(Schema& s)
 {
     describe_pair(s);

@@ -82,6 +82,21 @@ void add_axis_rows(const Sides& s, const Vec3& n_a, const Vec3& n_b, const Vec3&
     sink.add(turn_row(s, t2, dot(t2, turned), true, feature + 1));
 }
 
+ConstraintRow angle_row(const Sides& s, const Vec3& e_a, const Vec3& e_b, double cosine, std::uint32_t feature)
+{
+    const Vec3 k = cross(e_b, e_a), k_rate = cross(cross(s.b.w, e_b), e_a) + cross(e_b, cross(s.a.w, e_a));
+    ConstraintRow row = row_over(s, {}, -k, k, feature);
+    row.error = dot(e_a, e_b) - cosine;
+    row.bias = -dot(k_rate, s.w_ba);
+    return row;
+}
+
+Axes axes_of(const Quat& q_WF)
+{
+    const Mat3 R = rotation_matrix(q_WF);
+    return {q_WF, {R(0, 0), R(1, 0), R(2, 0)}, {R(0, 1), R(1, 1), R(2, 1)}, {R(0, 2), R(1, 2), R(2, 2)}};
+}
+
 Quat frame_of_axis(const Vec3& n)
 {
     // The direction half way between z and n.

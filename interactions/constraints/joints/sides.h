@@ -5,7 +5,8 @@
 ///
 ///   point     phi = e . d          J = [ -e, -(r_a x e) | e, r_b x e ]          bias = -e . (w_b x (w_b x r_b) - w_a x (w_a x r_a))
 ///   travel    phi = t . d - x      t turns with a: the lever of a reaches p_b, and bias gains -(w_a x (w_a x t)) . d - 2 (w_a x t) . d'
-///   turn      phi = e . s          J = [ -e | e ] on spins, s the rotation vector from a to b; bias = -(e' . w_ba), e' = w_a x e
+///   angle     phi = e_a . e_b - c   J = [ -k | k ], k = e_b x e_a               bias = -(k' . w_ba), k' = (w_b x e_b) x e_a + e_b x (w_a x
+///   e_a) turn      phi = e . s          J = [ -e | e ] on spins, s the rotation vector from a to b; bias = -(e' . w_ba), e' = w_a x e
 ///
 /// How a row is used: phi is what must be zero, and J, with one block for each body, its derivative: phi' = J v. Differentiated once more,
 /// phi'' = J v' + J' v, so the accelerations v' that keep phi at zero satisfy J v' = bias with bias = -J' v: what the points' accelerations
@@ -63,6 +64,17 @@ ConstraintRow turn_row(const Sides& s, const Vec3& e, double turned, bool e_turn
 void add_attitude_rows(const Sides& s, const Quat& frame_a, const Quat& frame_b, std::uint32_t feature, RowSink& sink);
 /// Two rows: axis n_b (fixed in b) lies along n_a, in the same direction. t1, t2: unit, perpendicular to n_a, fixed in a.
 void add_axis_rows(const Sides& s, const Vec3& n_a, const Vec3& n_b, const Vec3& t1, const Vec3& t2, std::uint32_t feature, RowSink& sink);
+
+/// One row: e_b (fixed in b) keeps its angle to e_a (fixed in a), e_a . e_b = cosine.
+ConstraintRow angle_row(const Sides& s, const Vec3& e_a, const Vec3& e_b, double cosine, std::uint32_t feature);
+
+/// The axes of a joint's frame.
+struct Axes
+{
+    Quat q;  ///< q_WF
+    Vec3 t1, t2, n;
+};
+Axes axes_of(const Quat& q_WF);
 
 /// A frame whose z axis is the unit vector n.
 Quat frame_of_axis(const Vec3& n);

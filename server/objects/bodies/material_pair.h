@@ -11,8 +11,9 @@ namespace plab::bodies
 struct MaterialPairRows
 {
     Column<std::string> a, b;
-    Column<double> friction;     ///< Coulomb's coefficient
-    Column<double> restitution;  ///< Newton's coefficient, 0 to 1
+    Column<double> friction;                             ///< Coulomb's coefficient
+    Column<double> restitution;                          ///< Newton's coefficient, 0 to 1
+    Column<double> rolling_friction, spinning_friction;  ///< m, SurfaceLaw
 
     void describe(Schema& schema);
 };

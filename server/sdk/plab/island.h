@@ -25,12 +25,20 @@ public:
     /// Recomputes the rows at the present state (Jacobians, errors, rates); impulses are kept.
     virtual void refresh_rows() = 0;
     /// Takes the rows halfway through a step of h (s) at the present speeds: Jacobians, rates and biases become those there, but for
-    /// RowKind::ForceChange; errors and impulses are kept. Returns false and changes nothing where levers turn far by then, or joints close a
-    /// loop: its rows depend on one another, and they would contradict one another where it is not quite closed.
+    /// RowKind::ForceChange; errors and impulses are kept. Returns false and changes nothing where levers turn far by then, or joints close
+    /// a loop: its rows depend on one another, and they would contradict one another where it is not quite closed.
     virtual bool put_rows_midway(double h) = 0;
     /// Recomputes the contact depths at the present state: where the pivot is known, from where the contact point is and how the face has
     /// turned, else from the motion of the two surface points. Normals are kept.
     virtual void refresh_depths() = 0;
+};
+
+/// What resists that the bodies of a pair roll on one another, or spin about their normal: couples of at most the given lever times the sum
+/// of the normal impulses of its contacts (rolling resistance; Johnson, Contact Mechanics (1985), chapter 8).
+struct RollingResistance
+{
+    std::uint32_t first = 0, end = 0;  ///< the contacts of the pair
+    double rolling = 0, spinning = 0;  ///< m
 };
 
 /// Phase::Solve: one step of length h. It contains everything that moves during the step; bodies that are not members have mobility 0.
@@ -47,6 +55,7 @@ struct Island
     std::span<const double> shaft_mobility;  ///< by host row: 1/(kg m^2) of the train that the shaft carries
     std::span<ConstraintRow> rows;           ///< joints, limits, motors: in id order; shafts are represented by their roots
     std::span<Contact> contacts;             ///< sorted by pair and feature; depth < 0: a gap that may close
+    std::span<const RollingResistance> resistances;  ///< of those pairs that have any, in the order of their contacts
     IslandMotion* motion = nullptr;
     const Interruption* interruption = nullptr;  ///< to be checked in each sweep, factorisation and part of the step
     // out

@@ -192,6 +192,10 @@ struct SurfaceLaw
 {
     double friction = 0;     ///< Coulomb coefficient, 1
     double restitution = 0;  ///< Newton's coefficient, 0..1
+    /// m: a couple of at most so much times the normal force resists rolling, and spinning about the normal.
+    double rolling_friction = 0, spinning_friction = 0;
+
+    bool resists_turning() const { return rolling_friction > 0 || spinning_friction > 0; }
 };
 
 /// Named materials and the laws between pairs of them (Material/Pair).
@@ -205,6 +209,10 @@ public:
     bool add_pair(std::uint32_t a, std::uint32_t b, const SurfaceLaw& law);
     /// The law of a pair, or null: then the response uses its own parameters.
     const SurfaceLaw* find_pair(std::uint32_t a, std::uint32_t b) const;
+    bool any_resists_turning() const
+    {
+        return std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.law.resists_turning(); });
+    }
 
 private:
     struct Pair

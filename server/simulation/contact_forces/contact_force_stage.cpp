@@ -104,7 +104,7 @@ void ContactForces::fill_surface(FoundContact& f) const
 {
     const world::HostTables& host = step_.world.host();
     const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
-    const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
+    const SurfaceLaw* own = host.materials.find_pair(ma, mb);
     const SurfaceLaw& law = own ? *own : surfaces_[f.detector];
     f.contact.friction = law.friction, f.contact.restitution = law.restitution;
 }

@@ -11,7 +11,7 @@ void ContactBook::fill_material(FoundContact& f) const
 {
     const world::HostTables& host = step_.world.host();
     const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
-    if (const SurfaceLaw* law = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr)
+    if (const SurfaceLaw* law = host.materials.find_pair(ma, mb))
     {
         f.contact.friction = law->friction, f.contact.restitution = law->restitution;
         return;
@@ -24,7 +24,7 @@ void ContactBook::fill_material(FoundContact& f) const
 SurfaceLaw ContactBook::response_law(std::uint32_t detector) const
 {
     const Detector& d = detectors_[detector];
-    return {d.friction.value_or(0), d.restitution.value_or(0)};
+    return {d.friction.value_or(0), d.restitution.value_or(0), d.rolling_friction.value_or(0), d.spinning_friction.value_or(0)};
 }
 
 double ContactBook::kinetic_energy(const std::vector<FoundContact>& contacts) const

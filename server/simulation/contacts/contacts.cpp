@@ -181,6 +181,7 @@ void describe(Detector& d, const world::World& world)
         if (d.by_rows) d.manager = manager_of(world, d.response);
     }
     d.friction = {world, d.response, "friction"}, d.restitution = {world, d.response, "restitution"};
+    d.rolling_friction = {world, d.response, "rolling_friction"}, d.spinning_friction = {world, d.response, "spinning_friction"};
     d.steps_per_contact = {world, d.response, "steps_per_contact"}, d.max_substeps = {world, d.response, "max_substeps"};
     if (!find_command(world, d.resolution, Phase::Locate)) return;
     d.speculation_acceleration = {world, d.resolution, "acceleration"}, d.max_work = {world, d.resolution, "max_work"};

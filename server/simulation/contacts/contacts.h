@@ -52,15 +52,16 @@ struct Detector
     const CommandInfo* gap = nullptr;     ///< command that measures the gap of two bodies; null: it has none
     bool adapts = false;                  ///< the resolution chooses the next four for each step (ContactBook::choose_search)
     bool locates = false, local = false;
-    bool certifies = false;                          ///< the resolution uses motion bounds: no impact inside the step is missed
-    bool speculates = false;                         ///< gaps that may close within the step count as contacts, with depth < 0
-    bool responds = false;                           ///< the response has a command for impacts and takes part
-    bool by_rows = false;                            ///< the response leaves contacts to a manager
-    bool by_force = false;                           ///< the response is a force
-    DeclaredNumber friction, restitution;            ///< of the response; materials may have their own
-    DeclaredNumber steps_per_contact, max_substeps;  ///< of a response that is a force
-    DeclaredNumber speculation_acceleration;         ///< m/s^2, of a resolution that speculates
-    DeclaredNumber max_work, base_work;              ///< of a resolution that locates
+    bool certifies = false;                              ///< the resolution uses motion bounds: no impact inside the step is missed
+    bool speculates = false;                             ///< gaps that may close within the step count as contacts, with depth < 0
+    bool responds = false;                               ///< the response has a command for impacts and takes part
+    bool by_rows = false;                                ///< the response leaves contacts to a manager
+    bool by_force = false;                               ///< the response is a force
+    DeclaredNumber friction, restitution;                ///< of the response; materials may have their own
+    DeclaredNumber rolling_friction, spinning_friction;  ///< likewise
+    DeclaredNumber steps_per_contact, max_substeps;      ///< of a response that is a force
+    DeclaredNumber speculation_acceleration;             ///< m/s^2, of a resolution that speculates
+    DeclaredNumber max_work, base_work;                  ///< of a resolution that locates
     /// Contacts are not events: a touching pair is persistent at once, and a manager or a force handles it.
     bool persists() const { return by_force || (by_rows && !locates); }
 };

@@ -249,6 +249,7 @@ void HardContacts::finish_step()
         return ends(pair, any ? std::span(found).subspan(run->first, run->end - run->first) : std::span<FoundContact>(), time);
     };
     contacts_.cache().drop_if(ended);
+    if (held_.any() && (held_.has_passed() || !passed_.empty())) held_.adopt_again(found, time);
     for (const FoundContact& f : found) step_.report.deepest = std::max(step_.report.deepest, f.contact.depth);
     for (const auto& island : contacts_.cache().rest().islands)
         step_.report.resting_pairs +=

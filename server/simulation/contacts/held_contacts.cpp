@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 
 #include "plab/pivot.h"
 #include "simulation/contacts/held_islands.h"
@@ -73,7 +74,7 @@ void HeldIslands::begin_step()
 
 void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
 {
-    fresh_.clear(), first_found_.clear();
+    fresh_.clear(), first_found_.clear(), passed_.clear();
     const std::span<const PairKey> keys = contacts_.cache().keys();
     std::size_t at = 0;
     for (const FoundRun& run : contacts_.runs())
@@ -102,6 +103,15 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
         if (!fresh_[k].ahead) report_begin(fresh_[k], found[first_found_[k]].contact, time);
 }
 
+/// Whether a pair passes over a seam depends on the normals of others, which finish_step() has changed since. A run that is continued from
+/// here would find it with those.
+void HeldIslands::adopt_again(std::vector<FoundContact>& found, double time)
+{
+    std::swap(fresh_, adopted_);
+    adopt(found, time);
+    fresh_.insert(fresh_.end(), std::make_move_iterator(adopted_.begin()), std::make_move_iterator(adopted_.end()));
+}
+
 /// Drops those of the pairs that were added last whose bodies pass one another over a seam.
 void HeldIslands::drop_passed(std::span<const FoundContact> found)
 {
@@ -111,7 +121,6 @@ void HeldIslands::drop_passed(std::span<const FoundContact> found)
         while (end < found.size() && same_pair(found[end], found[first])) ++end;
         return contacts_.passes_over(found.subspan(first, end - first));
     };
-    passed_.clear();
     for (std::size_t k = 0; k < fresh_.size(); ++k)
         if (passes(first_found_[k])) passed_.push_back(k);
     if (passed_.empty()) return;
@@ -248,6 +257,12 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
                             }
                         });
           });
+    const bool any_resists = step_.world.host().materials.any_resists_turning() || std::ranges::any_of(laws_, &SurfaceLaw::resists_turning);
+    for (HeldIsland* island : islands)
+    {
+        island->resistances.clear();
+        if (any_resists) find_resistances(*island);
+    }
     // A contact that its pair does not know yet gets an id, and ids are given in the order of the pairs.
     incomplete_.clear();
     for (HeldIsland* island : islands)
@@ -293,12 +308,25 @@ void HeldIslands::prefetch(const HeldIsland& island, const Run& run)
     for (std::size_t i = 0; i < count * sizeof(Contact); i += kLine) __builtin_prefetch(to + i, 1);
 }
 
-void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
+/// That of the materials of the pair, or that of the response.
+const SurfaceLaw& HeldIslands::law_of(const Run& run) const
 {
     const world::HostTables& host = step_.world.host();
     const std::uint32_t ma = host.bodies.material[run.pair->a.index], mb = host.bodies.material[run.pair->b.index];
-    const SurfaceLaw* own = run.known && ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
-    const SurfaceLaw& law = own ? *own : laws_[run.found->detector];
+    const SurfaceLaw* own = host.materials.find_pair(ma, mb);
+    return own ? *own : laws_[run.found->detector];
+}
+
+void HeldIslands::find_resistances(HeldIsland& island) const
+{
+    for (const Run& run : island.runs)
+        if (const SurfaceLaw& law = law_of(run); law.resists_turning())
+            island.resistances.push_back({run.first, run.end, law.rolling_friction, law.spinning_friction});
+}
+
+void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
+{
+    const SurfaceLaw& law = run.known ? law_of(run) : laws_[run.found->detector];
     for (std::uint32_t i = run.first; i < run.end; ++i)
     {
         const FoundContact& f = run.found[i - run.first];

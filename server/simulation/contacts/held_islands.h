@@ -142,6 +142,10 @@ public:
     /// Adds pairs that are not known yet, of detectors whose contacts are persistent at once (Detector::persists); reports each as
     /// contact.begin.
     void adopt(std::vector<FoundContact>& found, double time);
+    /// The same once more, after the pairs have been brought up to date, if has_passed().
+    void adopt_again(std::vector<FoundContact>& found, double time);
+    /// Whether the last adopt() left out pairs that pass over a seam.
+    bool has_passed() const { return !passed_.empty(); }
     /// At the end of a step, with the pair's contacts: whether it does not touch but may do so within the next step (speculative contact).
     /// A pair that touches for the first time is reported.
     bool keeps_ahead(PairState& pair, bool touches, std::span<const FoundContact> found, double time) const;
@@ -199,6 +203,7 @@ private:
         std::span<std::uint32_t> slots;  ///< of each contact: FoundContact::slot
         std::span<std::uint8_t> jams;    ///< of each contact: whether it has Painleve's paradox
         std::span<Vec3> further;         ///< Island::further_impulses
+        std::vector<RollingResistance> resistances;
         HeldMotion motion;
         double size = 0;    ///< m, smallest radius of gyration
         double energy = 0;  ///< J, kinetic, when the manager begins
@@ -223,6 +228,8 @@ private:
     void add_run(std::span<const FoundContact> found, PairState* pair, bool known);
     void fill(std::span<HeldIsland*> islands, double h, bool trial);
     void fill_run(HeldIsland& island, Run& run, double h, bool trial);
+    const SurfaceLaw& law_of(const Run& run) const;
+    void find_resistances(HeldIsland& island) const;
     void make_room(std::span<HeldIsland*> islands);
     static void prefetch(const HeldIsland& island, const Run& run);
     bool has_pivot(const HeldIsland& island, const Contact& contact, double h) const;
@@ -305,9 +312,9 @@ private:
     std::uint32_t run_count_ = 0;                ///< pairs in all islands
     std::vector<std::uint32_t> member_of_body_;  ///< by host row, for HeldMotion::begin
     std::vector<double> wedging_;                ///< by host row, of the members of one island; else 0 (paradox.h)
-    std::vector<PairState> fresh_;
-    std::vector<std::size_t> first_found_;  ///< parallel to fresh_
-    std::vector<std::size_t> passed_;       ///< places in fresh_
+    std::vector<PairState> fresh_, adopted_;     ///< adopted_: working memory of adopt_again()
+    std::vector<std::size_t> first_found_;       ///< parallel to fresh_
+    std::vector<std::size_t> passed_;            ///< places in fresh_
     std::vector<double> shaft_mobility_;
     std::vector<double> given_speed_;  ///< m/s, by body: speed that forces give it in the step
     std::vector<RestSample> starts_;   ///< by body; empty: nobody wants them

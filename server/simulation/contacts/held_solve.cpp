@@ -88,7 +88,7 @@ Island HeldIslands::describe(HeldIsland& held, double from, double to)
     island.size = held.size;
     island.shaft_mobility = shaft_mobility_;
     island.rows = held.rows, island.contacts = held.contacts, island.motion = &held.motion;
-    island.further_impulses = held.further;
+    island.further_impulses = held.further, island.resistances = held.resistances;
     return island;
 }
 

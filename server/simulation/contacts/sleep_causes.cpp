@@ -15,7 +15,12 @@ std::uint64_t hash_of_text(const std::string& text)
     return world::hash_bytes(text.size(), {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-std::uint64_t hash_of_law(const SurfaceLaw* law) { return law ? mix(mix(1, law->friction), law->restitution) : 0; }
+std::uint64_t hash_of_law(const SurfaceLaw* law)
+{
+    if (!law) return 0;
+    const std::uint64_t h = mix(mix(1, law->friction), law->restitution);
+    return law->resists_turning() ? mix(mix(h, law->rolling_friction), law->spinning_friction) : h;
+}
 
 }  // namespace
 

@@ -56,6 +56,17 @@ bool EventLocator::overlaps_at(Candidate& candidate, double time)
     return true;
 }
 
+namespace
+{
+
+/// A resolution may choose a time beyond the bracket, where a bound on the speed of approach was too small: no body is to be moved there.
+void keep_within(EventBracket& trial)
+{
+    if (!(trial.next > trial.begin && trial.next < trial.end)) trial.next = trial.begin + 0.5 * (trial.end - trial.begin);
+}
+
+}  // namespace
+
 void EventLocator::ask(const Candidate& candidate, EventBracket& trial)
 {
     const std::uint32_t resolution = contacts_.detectors()[candidate.detector].resolution;
@@ -71,6 +82,7 @@ void EventLocator::bracket(Candidate& candidate, EventBracket& trial)
     {
         ask(candidate, trial);
         if (trial.decision != EventBracket::Decision::Try || budget_.is_spent() || step_.frame.give_up()) return;
+        keep_within(trial);
         (overlaps_at(candidate, trial.next) ? trial.end : trial.begin) = trial.next;
     }
 }
@@ -183,6 +195,7 @@ bool EventLocator::settle_in_bracket(Candidate& candidate, const DistanceSample&
     {
         ask(candidate, trial);
         if (trial.decision != EventBracket::Decision::Try || budget_.is_spent() || step_.frame.give_up()) break;
+        keep_within(trial);
         const DistanceSample sample = sample_at(candidate, trial.next);
         trial.last = sample.time, trial.last_gap = sample.query.gap, trial.last_rate = sample.rate;
         if (sample.query.gap > 0)

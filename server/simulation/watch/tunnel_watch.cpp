@@ -7,6 +7,7 @@
 
 #include "simulation/contacts/shape_width.h"
 #include "simulation/watch/joined_overlaps.h"
+#include "simulation/watch/unresisted_rolling.h"
 
 namespace plab::simulation
 {
@@ -207,7 +208,7 @@ void TunnelWatch::after_step(const RunView& s, std::vector<Event>& events)
         report_tunnelled_pairs(s, colliding, events);
     }
     if (!colliding_.empty() && s.stepper.report().deepest > shallow_) find_overlaps(s, events);
-    if (s.tick == 0) report_joined_overlaps(s, least_width_, events);
+    if (s.tick == 0) report_joined_overlaps(s, least_width_, events), report_unresisted_rolling(s, events);
 }
 
 namespace

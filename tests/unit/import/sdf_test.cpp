@@ -111,6 +111,20 @@ TEST_CASE("up to version 1.4 axes are meant in the model's frame")
     CHECK(distance(axis_of("1.6"), {0, 1, 0}) < 1e-12);
 }
 
+TEST_CASE("a screw travels along its axis: m in a turn, or rad/m of a left-handed thread as before SDF 1.10")
+{
+    const auto screw = [](const std::string& pitch)
+    {
+        const auto imported = imported_text(
+            model_of(link_of("a") + link_of("b", "<pose>0 0 1 0 0 0</pose>") +
+                     "<joint name='s' type='screw'><parent>a</parent><child>b</child>" + pitch + "<axis><xyz>0 0 1</xyz></axis></joint>"),
+            SceneFormat::Sdf);
+        return imported_scene(imported).real("s", "lead");
+    };
+    CHECK(screw("<screw_thread_pitch>0.002</screw_thread_pitch>") == 0.002);
+    CHECK(screw("<thread_pitch>-3141.592653589793</thread_pitch>") == doctest::Approx(0.002));
+}
+
 TEST_CASE("a universal joint has two axes, and limits of each")
 {
     const auto imported = imported_text(

@@ -15,8 +15,8 @@ SurfaceLaw law(const Scene& scene, const std::string& a, const std::string& b)
     const world::World& world = scene.simulation().world();
     const auto material = [&](const std::string& id) { return world.host().bodies.material[world.component(world.find(id)).host_index]; };
     if (const SurfaceLaw* const own = world.host().materials.find_pair(material(a), material(b))) return *own;
-    const double restitution = scene.real("contact.response", "restitution");
-    return {scene.real("contact.response", "friction"), restitution};
+    const auto of_response = [&](const char* name) { return scene.real("contact.response", name); };
+    return {of_response("friction"), of_response("restitution"), of_response("rolling_friction"), of_response("spinning_friction")};
 }
 
 Scene mjcf_of(const std::string& of_a, const std::string& of_b, const std::string& of_floor = "", const std::string& contact = "")
@@ -41,6 +41,28 @@ TEST_CASE("MJCF: the larger friction counts, that of the higher priority alone, 
     CHECK(law(smooth, "a", "b").friction == 0);
     CHECK(law(smooth, "a", "world").friction == 0.4);
     CHECK(law(mjcf_of("condim='1'", "condim='1'", "condim='1'"), "a", "world").friction == 0);
+}
+
+TEST_CASE(
+    "MJCF: friction of twisting counts from condim 4 on, that of rolling with condim 6; the larger condim and the larger friction count")
+{
+    const Scene none = mjcf_of("friction='1 0.1 0.01'", "friction='1 0.2 0.02'");
+    CHECK(!law(none, "a", "b").resists_turning());
+    CHECK(!law(none, "a", "world").resists_turning());
+    const Scene twisting = mjcf_of("friction='1 0.1 0.01' condim='4'", "friction='1 0.2 0.02'");
+    CHECK(law(twisting, "a", "b").spinning_friction == 0.2);
+    CHECK(law(twisting, "a", "b").rolling_friction == 0);
+    CHECK(law(twisting, "a", "world").spinning_friction == 0.1);
+    CHECK(law(twisting, "b", "world").spinning_friction == 0);
+    const Scene rolling = mjcf_of("condim='6'", "friction='1 0.2 0.02'", "friction='1 0.001 0.003' priority='1' condim='6'");
+    CHECK(law(rolling, "a", "b").rolling_friction == 0.02);
+    CHECK(law(rolling, "a", "b").spinning_friction == 0.2);
+    CHECK(law(rolling, "b", "world").rolling_friction == 0.003);
+    CHECK(law(rolling, "b", "world").spinning_friction == 0.001);
+    // What all shapes have is a parameter of the response.
+    const Scene alike = mjcf_of("condim='6'", "condim='6'", "condim='6'");
+    CHECK(alike.real("contact.response", "rolling_friction") == 0.0001);
+    CHECK(alike.real("contact.response", "spinning_friction") == 0.005);
 }
 
 TEST_CASE("MJCF: a <pair> has a friction of its own")

@@ -102,6 +102,16 @@ TEST_CASE("conservative advancement steps by gap over closing speed, and accepts
     CHECK(t.decision == EventBracket::Decision::Accept);
 }
 
+TEST_CASE("conservative advancement stays within a bracket whose end overlaps, although the bound says that this takes longer")
+{
+    OneRow<resolution::AdvancementRows> row;
+    EventBracket t;
+    t.step = t.end = 0.1, t.begin = t.last = 0.02, t.gap_begin = 0.3, t.gap_end = -0.01, t.closing = 0.5;
+    resolution::advance_to_contact({}, 0, row.rows, t);
+    CHECK(t.decision == EventBracket::Decision::Try);
+    CHECK(t.next == doctest::Approx(0.06));
+}
+
 TEST_CASE("bodies that graze for too long are reported")
 {
     Events events;
