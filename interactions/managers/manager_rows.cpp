@@ -42,7 +42,7 @@ public:
     }
     Verdict find_impulses(Problem& problem) override
     {
-        const Sweeping how{static_cast<int>(iterations_ * (1 + 9 * unknown_share(problem))), 0.1 * tolerance_, relaxation_};
+        const Sweeping how{static_cast<int>(iterations_ * (1 + 9 * unknown_share(problem))), 0.1 * tolerance_, relaxation_, 1, true};
         Swept done = sweep_rows(problem, how);
         if (gains_by_turning(problem))
         {

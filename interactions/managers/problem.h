@@ -104,6 +104,7 @@ public:
     bool has_rows() const { return !rows_.empty(); }
     /// Whether rolling and spinning are resisted: not in an instant, and not in displacements.
     void let_resist(bool on) { resists_ = on; }
+    bool any_resists() const { return resists_ && lines.size() > rows_.size(); }
     /// Points what resists rolling against the rolling that the velocities without impulses lead to. Its couples stay the same.
     void aim_resistances();
     /// Sets the bounds of what resists to its lever times the normal impulses, load(i) of point i, and its impulse within them; velocities

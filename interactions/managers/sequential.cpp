@@ -67,7 +67,7 @@ Swept sweep(Problem& problem, PacketList<W>& list, const Sweeping& how)
         // Alternates the direction of the sweeps: rocking modes that one direction hardly damps decay in the other.
         const bool backwards = out.sweeps % 2 == 1;
         const std::size_t lines = problem.lines.size();
-        out.change = problem.bound_resistances([&](std::uint32_t k) { return list.impulse(k).z; });
+        out.change = how.loads_resist ? problem.bound_resistances([&](std::uint32_t k) { return list.impulse(k).z; }) : 0.0;
         for (std::size_t i = 0; i < lines; ++i)
             out.change = std::max(out.change, relax(problem, problem.lines[backwards ? lines - 1 - i : i], how.relaxation));
         out.change = std::max(out.change, sweep_hard(list, std::span<Mover>(problem.movers),

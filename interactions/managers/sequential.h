@@ -22,6 +22,7 @@ struct Sweeping
     double tolerance = 0;       ///< m/s: stops when no impulse changes the velocity of its own point or row by more; 0: never
     double relaxation = 1;      ///< omega, 0..2
     double friction_scale = 1;  ///< 0: without friction
+    bool loads_resist = false;  ///< the bounds of what resists rolling follow the normal impulses
 };
 struct Swept
 {

@@ -22,7 +22,7 @@ public:
         how_.enough = kPositionTolerance * fast, how_.close = kClose * fast;
     }
     /// What resists rolling is solved with the normal impulses that the contacts had before, until these are what comes of it (Haslinger,
-    /// Math. Methods Appl. Sci. 5 (1983), for friction).
+    /// Math. Methods Appl. Sci. 5 (1983), for friction). Where no solution is found so, the step does without.
     Verdict find_impulses(Problem& problem) override
     {
         constexpr int kMostRounds = 3;
@@ -30,10 +30,12 @@ public:
         (void)bound();
         Verdict out = find_bounded(problem);
         for (int round = 0; round < kMostRounds && out.converged && bound() > how_.enough && !problem.interrupted(); ++round)
-        {
-            const int before = out.iterations;
-            out = find_bounded(problem), out.iterations += before;
-        }
+            again(problem, out);
+        if (out.converged || !problem.any_resists()) return out;
+        problem.let_resist(false);
+        (void)bound();
+        again(problem, out);
+        out.fell_back = true;
         return out;
     }
     Verdict find_displacements(Problem& problem, double tolerance) override
@@ -45,6 +47,11 @@ public:
     }
 
 private:
+    void again(Problem& problem, Verdict& out)
+    {
+        const int before = out.iterations;
+        out = find_bounded(problem), out.iterations += before;
+    }
     Verdict find_bounded(Problem& problem)
     {
         Verdict out = verdict(newton_.solve(problem, how_));
