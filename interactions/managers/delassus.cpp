@@ -267,6 +267,37 @@ bool DelassusSolver::share_anew(double left, const Bounds& bounds, Found& out)
     return false;
 }
 
+/// What resists rolling follows the normal impulses that come of it (Exactly::find_impulses), with the same W.
+bool DelassusSolver::find_with_resistances(Problem& problem, const Bounds& bounds, Found& out)
+{
+    constexpr int kMostRounds = 3;
+    bool found = find_impulses(bounds, out);
+    for (int round = 0; round < kMostRounds && found && bound_resistances(problem) > bounds.enough && !is_spent(); ++round)
+        found = find_impulses(bounds, out);
+    return found;
+}
+
+/// Like Problem::bound_resistances(), of which it sets the bounds as well.
+double DelassusSolver::bound_resistances(Problem& problem)
+{
+    double largest = 0;
+    for (std::size_t k = 0; k < places_.size(); ++k)
+    {
+        Line& line = lines_[k];
+        if (!places_[k].line || !line.resists() || line.count == 0) continue;
+        double load = 0;
+        for (std::size_t i = 0; i < places_.size(); ++i)
+            if (!places_[i].line && places_[i].index >= line.first_point && places_[i].index < line.end_point) load += points_[i].impulse.z;
+        const double change = line.set_bound(line.lever * load, r_[places_[k].first]);
+        largest = std::max(largest, change * line.mobility);
+        Line& own = problem.lines[places_[k].index];
+        own.least = line.least, own.most = line.most;
+        r_[places_[k].first] = std::clamp(r_[places_[k].first], line.least, line.most);
+    }
+    find_velocities();
+    return largest;
+}
+
 /// From no impulses, each sweep takes energy.
 void DelassusSolver::sweep_from_none(Found& out)
 {
@@ -320,7 +351,7 @@ DelassusSolver::Found DelassusSolver::solve(Problem& problem, const Bounds& boun
         find_columns(problem, known);
         find_free(problem);
         if (!set_up(problem, bounds.locked)) break;
-        out.fell_back = !find_impulses(bounds, out);
+        out.fell_back = !find_with_resistances(problem, bounds, out);
         if (out.fell_back && bounds.or_nothing) break;
         take_velocities(problem);
         if (!out.fell_back || !makes_energy(problem)) continue;

@@ -85,6 +85,8 @@ private:
     void relax(std::size_t place);
     void change(std::size_t at, double by);
     bool find_impulses(const Bounds& bounds, Found& out);
+    bool find_with_resistances(Problem& problem, const Bounds& bounds, Found& out);
+    double bound_resistances(Problem& problem);
 
     // delassus_rounds.cpp
     void start_round(double kappa);

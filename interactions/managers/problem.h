@@ -49,6 +49,15 @@ struct Line
     bool a_moves = false;                          ///< likewise: the first mover is that of a
 
     bool resists() const { return row == kNoIndex; }
+    /// Sets the bounds. Returns the change of a bound that an impulse reaches, unless it is rounding.
+    double set_bound(double bound, double reached)
+    {
+        constexpr double kSame = 0x1p-40;
+        const double change = std::fabs(bound - most);
+        const bool matters = std::fabs(reached) >= std::min(most, bound) && change > kSame * bound;
+        least = -bound, most = bound;
+        return matters ? change : 0.0;
+    }
     /// How much nearer to its target an impulse of 1 takes the row if nothing else acts, 1/kg or 1/(kg m^2).
     double admittance() const { return mobility + compliance; }
     /// The impulse per distance from the target of a row that acts with `kappa` times the stiffness that would close it alone if it had no
@@ -281,19 +290,16 @@ inline Vec3 within_disc(Vec3 j, double radius)
 template <class Load>
 double Problem::bound_resistances(const Load& load)
 {
-    constexpr double kSame = 0x1p-40;
     double largest = 0;
     for (std::size_t i = rows_.size(); i < lines.size(); ++i)
     {
         Line& line = lines[i];
         double sum = 0;
         for (std::uint32_t k = line.first_point; resists_ && k < line.end_point; ++k) sum += load(k);
-        const double bound = line.lever * sum, before = line.impulse, change = std::fabs(bound - line.most);
-        line.impulse = std::clamp(before, -bound, bound);
+        const double before = line.impulse;
+        largest = std::max(largest, line.set_bound(line.lever * sum, before) * line.mobility);
+        line.impulse = std::clamp(before, line.least, line.most);
         if (line.impulse != before) push(line, line.impulse - before);
-        const bool is_reached = std::fabs(before) >= std::min(line.most, bound);
-        if (is_reached && change > kSame * bound) largest = std::max(largest, change * line.mobility);
-        line.least = -bound, line.most = bound;
     }
     return largest;
 }

@@ -156,6 +156,35 @@ TEST_CASE("rolling resistance: a ball that rolls across a slope is slowed agains
     CHECK(observed_order(coarse, fine) > 1.9);
 }
 
+// C26: a thin disc of radius a rolls round on its rim with its centre at rest, leaning by b from level: its angular velocity is along its
+// lower radius, w = sqrt(4 g sin b / a), and rolling takes rho m g w cos b.
+TEST_CASE("C26: Euler's disc loses what rolling resistance takes, and nothing but that")
+{
+    constexpr double kThin = 0.004, kLean = 0.3, rho = 1e-4, until = 0.5;
+    const double w = std::sqrt(4 * kG * std::sin(kLean) / kRadius);
+    const Vec3 spin{-w * std::cos(kLean), 0, w * std::sin(kLean)};
+    const auto loss = [&](double rolling)
+    {
+        Scene s(on({.rolling = rolling},
+                   "<component id='disc' type='Shape/Cylinder' radius='0.1' height='" + text(kThin) +
+                       "'/><component id='a' type='State/RigidBody' mass='1' inertia='0.0025 0.0025 0.005' shape='disc' position='" +
+                       text(Vec3{0, 0, kRadius * std::sin(kLean) + 0.5 * kThin * std::cos(kLean)}) + "' orientation='axis 0 1 0 " +
+                       text(kLean) + "' angular_velocity='" + text(spin) + "'/>",
+                   "a"),
+                step_of(1.0 / 2000));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        const double before = energy(s);
+        double most = before, last = before;
+        for (int i = 0; i < 1000; ++i) s.step(), last = energy(s), most = std::max(most, last);
+        CHECK(most < before + 1e-12);
+        return before - last;
+    };
+    const double none = loss(0), some = loss(rho), due = rho * kG * w * std::cos(kLean) * until;
+    MESSAGE("without " << none << " J, with " << some << ", due " << due);
+    CHECK(none < 1e-2 * due);
+    CHECK(std::fabs((some - none) / due - 1) < 0.05);
+}
+
 TEST_CASE("spinning resistance: a ball that spins on the spot stops in time, and one on a turntable is taken along")
 {
     const double inertia = kBall * kRadius * kRadius, sigma = 2e-3, slows = sigma * kG / inertia;
