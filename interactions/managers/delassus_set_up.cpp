@@ -90,13 +90,14 @@ void DelassusSolver::find_columns(const Problem& problem, std::size_t from)
         }
 }
 
-/// A row of a loop that others imply has nothing to do. False where a bounded row cannot move anything.
+/// A row of a loop that others imply, or one that resists what joints hold, has nothing to do. False where a bounded row cannot move
+/// anything.
 bool DelassusSolver::take_row(const Problem& problem, const Place& place, Line& line, double locked)
 {
     const std::uint32_t f = place.first;
     line = problem.lines[place.index];
     const bool moves = W(f, f) > locked * line.mobility;
-    if (!moves && !(is_joint(line) && line.compliance == 0)) return false;
+    if (!moves && !line.resists() && !(is_joint(line) && line.compliance == 0)) return false;
     if (!moves) line.count = 0;
     line.mobility = W(f, f);
     q_[f] = problem.rate(line), r_[f] = moves ? line.impulse : 0.0;

@@ -48,7 +48,7 @@ void IslandMatrix::shape(const Problem& problem)
 {
     edges_.clear();
     for (const Point& p : problem.points) join(p.a, p.b);
-    analyse(problem);
+    analyse(problem, problem.lines.size());
     pair_of_point_.clear();
     for (const Point& p : problem.points) pair_of_point_.push_back(p.a != kNoIndex && p.b != kNoIndex ? matrix_.find(p.a, p.b) : kNoIndex);
 }
@@ -56,13 +56,13 @@ void IslandMatrix::shape(const Problem& problem)
 void IslandMatrix::shape_of_rows(const Problem& problem)
 {
     edges_.clear();
-    analyse(problem);
+    analyse(problem, problem.row_count());
 }
 
-/// Joins the movers of the rows, too.
-void IslandMatrix::analyse(const Problem& problem)
+/// Joins the movers of the first `count` lines, too.
+void IslandMatrix::analyse(const Problem& problem, std::size_t count)
 {
-    for (const Line& line : problem.lines)
+    for (const Line& line : std::span(problem.lines).first(count))
         for (const auto& [i, j] : kPairsOfThree)
             if (j < line.count) join(line.mover[i], line.mover[j]);
     std::sort(edges_.begin(), edges_.end());
@@ -80,7 +80,9 @@ void IslandMatrix::analyse(const Problem& problem)
         for (std::size_t k = 0; k < 3; ++k)
         {
             const auto [i, j] = kPairsOfThree[k];
-            pairs[k] = j < line.count && line.mover[i] != line.mover[j] ? matrix_.find(line.mover[i], line.mover[j]) : kNoIndex;
+            pairs[k] = pairs_of_line_.size() <= count && j < line.count && line.mover[i] != line.mover[j]
+                           ? matrix_.find(line.mover[i], line.mover[j])
+                           : kNoIndex;
         }
     }
 }

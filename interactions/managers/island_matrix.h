@@ -43,7 +43,7 @@ public:
 
 private:
     void join(std::uint32_t i, std::uint32_t j);
-    void analyse(const Problem& problem);
+    void analyse(const Problem& problem, std::size_t count);
 
     linear::SparseBlocks matrix_{linear::SparseBlocks::Kind::General};
     const Interruption* interruption_ = nullptr;

@@ -22,7 +22,7 @@ double wanted_impulse(const Problem& problem, const Line& line) { return line.im
 /// Whether that is within its bounds; for joints it always is.
 bool acts_freely(const Problem& problem, const Line& line)
 {
-    if (line.count == 0 || !(line.least < line.most)) return false;
+    if (line.count == 0 || line.resists() || !(line.least < line.most)) return false;
     const double wanted = wanted_impulse(problem, line);
     return wanted >= line.least && wanted <= line.most;
 }

@@ -28,7 +28,7 @@ bool settled(const Problem& problem, double total, double tolerance)
     return total <= tolerance * std::sqrt(n) && violation(problem) <= tolerance;
 }
 
-bool is_large(const Problem& problem) { return problem.points.size() + problem.lines.size() > 256; }
+bool is_large(const Problem& problem) { return problem.points.size() + problem.row_count() > 256; }
 
 /// Number of summands for Problem::rounding: loads add up over the contacts of the island. In large islands some contacts carry
 /// no load and change their state with every rounding error.

@@ -110,12 +110,21 @@ public:
     void turn_lines();
     /// The row of a line; of one that resists rolling, one that has no rate.
     const ConstraintRow& row_of(const Line& line) const { return line.resists() ? kNoRate : rows_[line.row]; }
-    bool has_rows() const { return !rows_.empty(); }
+    bool has_rows() const { return !lines.empty() && !lines.front().resists(); }
     /// Whether rolling and spinning are resisted: not in an instant, and not in displacements.
     void let_resist(bool on) { resists_ = on; }
-    bool any_resists() const { return resists_ && lines.size() > rows_.size(); }
+    bool has_resistances() const { return !lines.empty() && lines.back().resists(); }
+    /// Lines that are rows; those that resist rolling come after them.
+    std::size_t row_count() const
+    {
+        return static_cast<std::size_t>(std::ranges::partition_point(lines, [](const Line& line) { return !line.resists(); }) -
+                                        lines.begin());
+    }
     /// Points what resists rolling against the rolling that the velocities without impulses lead to. Its couples stay the same.
-    void aim_resistances();
+    /// `share`: what is to be made of the step to which the impulses of contacts refer.
+    void aim_resistances(double share);
+    /// Notes how the pairs roll before forces act. To be called before a kick.
+    void note_rolling(const Bodies& bodies);
     /// Sets the bounds of what resists to its lever times the normal impulses, load(i) of point i, and its impulse within them; velocities
     /// follow. Returns by how much (rad/s) this may change the solution.
     template <class Load>
@@ -234,15 +243,16 @@ private:
     /// A pair whose rolling is resisted, by two lines.
     struct Roller
     {
-        Point at;                 ///< in the middle of its points
-        Vec3 given_spin;          ///< rad/s, of b relative to a: of those that are no movers
-        Vec3 rolled;              ///< rad/s, of b relative to a, along the surface, at the start of the step
+        Point at;         ///< in the middle of its points
+        Vec3 given_spin;  ///< rad/s, of b relative to a: of those that are no movers
+        Ref a, b;
+        Vec3 rolled;              ///< rad/s, of b relative to a, along the surface, before forces act
         double pressed = 0;       ///< N s: the normal impulses of the last step
         double lever = 0;         ///< m
         std::uint32_t first = 0;  ///< of its lines
     };
     void add_roller(const RollingResistance& pair, const Contact& middle, const Bodies& bodies);
-    Vec3 rolling_without(const Roller& roller, double& load) const;
+    Vec3 rolling_without(const Roller& roller, double share, double& load) const;
     void turn_resistance(Line& line, const Vec3& axis);
     bool moves(const Line& line, Ref participant) const;
     /// m/s or rad/s: the rate that those have who are no movers.
@@ -291,9 +301,8 @@ template <class Load>
 double Problem::bound_resistances(const Load& load)
 {
     double largest = 0;
-    for (std::size_t i = rows_.size(); i < lines.size(); ++i)
+    for (Line& line : std::span(lines).subspan(row_count()))
     {
-        Line& line = lines[i];
         double sum = 0;
         for (std::uint32_t k = line.first_point; resists_ && k < line.end_point; ++k) sum += load(k);
         const double before = line.impulse;

@@ -1,4 +1,6 @@
 // What resists that bodies roll on one another and spin about their normal (plab::RollingResistance).
+#include <algorithm>
+
 #include "plab/rotation.h"
 #include "problem.h"
 
@@ -7,17 +9,29 @@ namespace plab::managers
 namespace
 {
 
-/// The middle of the points of a pair, with the mean normal.
-Contact middle_of(std::span<const Contact> pair)
+/// The middle of the points of a pair that press, or of all of them if none does.
+struct Middle
 {
-    Contact out = pair.front();
-    out.point = out.normal = out.impulse = {};
-    for (const Contact& c : pair) out.point += c.point, out.normal += c.normal, out.impulse += c.impulse;
-    out.point *= 1.0 / static_cast<double>(pair.size());
-    const double size = length(out.normal);
-    out.normal = size > 0 ? out.normal * (1 / size) : pair.front().normal;
-    return out;
-}
+    /// `gap`: m, of points that count as touching.
+    Middle(std::span<const Contact> pair, double gap) : contact(pair.front())
+    {
+        const auto presses = [gap](const Contact& c) { return c.depth >= -gap || c.impulse != Vec3{}; };
+        const bool all = std::ranges::none_of(pair, presses);
+        Vec3 point, normal, impulse, first;
+        for (const Contact& c : pair)
+        {
+            if (!all && !presses(c)) continue;
+            if (points++ == 0) first = c.point;
+            point += c.point, normal += c.normal, impulse += c.impulse, extent = c.point - first;
+        }
+        contact.point = point * (1.0 / points), contact.impulse = impulse;
+        if (const double size = length(normal); size > 0) contact.normal = normal * (1 / size);
+    }
+
+    Contact contact;  ///< with the mean normal and the sum of impulses
+    int points = 0;
+    Vec3 extent;  ///< m, from the first to the last of them
+};
 
 Vec3 spin_of(const Bodies& bodies, Ref body)
 {
@@ -34,25 +48,23 @@ const ConstraintRow Problem::kNoRate{.kind = RowKind::Rate};
 
 /// One point can spin and roll in all directions. Two points of a line or an edge roll about it alone, and more of a face not at all: what
 /// else they could do is held by the friction and the normal impulses of the points, and how these and a couple shared the load would be
-/// undetermined.
+/// undetermined. Points that are apart do not count, unless all are.
 void Problem::add_resistances(const Island& island, const Bodies& bodies)
 {
+    const double near = 0x1p-20 * island.size;
+    make_room(lines, lines.size() + 3 * island.resistances.size()), make_room(rollers_, island.resistances.size());
     rollers_.clear();
     for (const RollingResistance& pair : island.resistances)
     {
         const std::span<const Contact> contacts = contacts_.subspan(pair.first, pair.end - pair.first);
-        const Contact middle = middle_of(contacts);
-        const Vec3& n = middle.normal;
-        if (contacts.size() == 1 || middle.friction == 0) add_resistance(pair, n, pair.spinning);
-        if (contacts.size() == 2)
-        {
-            const Vec3 along = contacts[1].point - contacts[0].point, edge = along - n * dot(n, along);
-            add_resistance(pair, edge == Vec3{} ? any_perpendicular(n) : normalized(edge), pair.rolling);
-        }
+        const Middle middle(contacts, near);
+        const Vec3 &n = middle.contact.normal, edge = middle.extent - n * dot(n, middle.extent);
+        const bool is_point = middle.points == 1 || (middle.points == 2 && length(edge) <= near);
+        if (is_point || middle.contact.friction == 0) add_resistance(pair, n, pair.spinning);
+        if (!is_point && middle.points == 2) add_resistance(pair, normalized(edge), pair.rolling);
         const Vec3 axis = any_perpendicular(n);
-        if (contacts.size() > 1 || !add_resistance(pair, axis, pair.rolling)) continue;
-        add_resistance(pair, cross(n, axis), pair.rolling);
-        add_roller(pair, middle, bodies);
+        if (is_point && add_resistance(pair, axis, pair.rolling) && add_resistance(pair, cross(n, axis), pair.rolling))
+            add_roller(pair, middle.contact, bodies);
     }
 }
 
@@ -86,22 +98,30 @@ void Problem::add_roller(const RollingResistance& pair, const Contact& middle, c
     roller.first = static_cast<std::uint32_t>(lines.size() - 2);
     Vec3 given;
     if (roller.at.b == kNoIndex) given += velocity_of(bodies, middle.b, middle.point), roller.given_spin += spin_of(bodies, middle.b);
-    const Vec3 spin = spin_of(bodies, middle.b) - spin_of(bodies, middle.a);
-    roller.rolled = spin - middle.normal * dot(middle.normal, spin);
+    roller.a = middle.a, roller.b = middle.b;
     if (roller.at.a == kNoIndex) given -= velocity_of(bodies, middle.a, middle.point), roller.given_spin -= spin_of(bodies, middle.a);
     roller.at.given = to_contact(roller.at, given);
 }
 
-/// rad/s: how b would spin relative to a, along the surface, if the point stuck as far as friction holds it and nothing resisted. `load`
-/// becomes the normal impulse that goes with it, N s, or that of the last step, if it was larger.
-Vec3 Problem::rolling_without(const Roller& roller, double& load) const
+void Problem::note_rolling(const Bodies& bodies)
+{
+    for (Roller& roller : rollers_)
+    {
+        const Vec3 spin = spin_of(bodies, roller.b) - spin_of(bodies, roller.a);
+        roller.rolled = spin - roller.at.n * dot(roller.at.n, spin);
+    }
+}
+
+/// rad/s: how b would spin relative to a, along the surface, if the point stuck as far as friction holds it and nothing resisted. `share`:
+/// of the step, that is to be made; `load` becomes the normal impulse that goes with it, N s, or that of the last step, if it was larger.
+Vec3 Problem::rolling_without(const Roller& roller, double share, double& load) const
 {
     const Point& p = roller.at;
     Vec3 u, w = roller.given_spin;
     if (p.b != kNoIndex) u += anchors[p.b].v + cross(anchors[p.b].w, p.r_b), w += anchors[p.b].w;
     if (p.a != kNoIndex) u -= anchors[p.a].v + cross(anchors[p.a].w, p.r_a), w -= anchors[p.a].w;
     Vec3 j = inverse(p.K) * (to_contact(p, u) + p.given) * -1.0;
-    load = std::max(roller.pressed, j.z);
+    load = std::max(share * roller.pressed, j.z);
     j.z = std::max(0.0, j.z);
     const Vec3 j_W = to_world(p, within_disc(j, p.friction * load));
     if (p.b != kNoIndex) w += movers[p.b].inverse_inertia * cross(p.r_b, j_W);
@@ -111,7 +131,7 @@ Vec3 Problem::rolling_without(const Roller& roller, double& load) const
 
 /// The couple opposes the rolling that there will be, whichever way forces turn it within the step, so that is one of its two axes. What
 /// surely rolls on is not held about the other one: where other contacts turn its path otherwise, it may follow.
-void Problem::aim_resistances()
+void Problem::aim_resistances(double share)
 {
     constexpr double kSurely = 2;  // the load may be another one
     for (Roller& roller : rollers_)
@@ -119,7 +139,7 @@ void Problem::aim_resistances()
         Point& p = roller.at;
         set_mobility(p);
         double load = 0;
-        const Vec3 rolls = rolling_without(roller, load);
+        const Vec3 rolls = rolling_without(roller, share, load);
         const double speed = length(rolls);
         if (!(speed > 0)) continue;
         // Over the step the couple turns with the rolling: that of the middle makes it right to second order.
@@ -131,6 +151,7 @@ void Problem::aim_resistances()
                    other = cross(p.n, axis);
         const bool a_alone = along.a_moves && along.count == 1;
         turn_resistance(along, axis), turn_resistance(across, other);
+        along.given = dot(axis, roller.given_spin), across.given = dot(other, roller.given_spin);
         along.impulse = dot(before, axis) * (a_alone ? -1 : 1), across.impulse = dot(before, other) * (a_alone ? -1 : 1);
         across.lever = speed > kSurely * roller.lever * load * along.mobility ? 0.0 : roller.lever;
     }

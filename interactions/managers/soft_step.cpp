@@ -197,7 +197,7 @@ void SoftIsland<W>::kick()
     if (!applied_ || !problem_.lines.empty()) sum();  // targets limit the impulses of lines
     applied_ = true;
     most_ = problem_.read_speeds_and_apply(bodies_, shafts_);
-    problem_.aim_resistances();
+    problem_.aim_resistances(1.0 / choices_.substeps);
     bound_resistances();
     if (bounces_) note_kicks(false);
     hold_rows(true, true);

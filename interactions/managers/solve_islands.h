@@ -26,12 +26,19 @@ public:
     Verdict find_impulses(Problem& problem) override
     {
         constexpr int kMostRounds = 3;
-        const auto bound = [&] { return problem.bound_resistances([&](std::uint32_t i) { return problem.points[i].impulse.z; }); };
+        const auto bound = [&]
+        {
+            if (!problem.has_resistances()) return 0.0;
+            const double change = problem.bound_resistances([&](std::uint32_t i) { return problem.points[i].impulse.z; });
+            problem.apply_impulses();
+            return change;
+        };
         (void)bound();
         Verdict out = find_bounded(problem);
         for (int round = 0; round < kMostRounds && out.converged && bound() > how_.enough && !problem.interrupted(); ++round)
             again(problem, out);
-        if (out.converged || !problem.any_resists()) return out;
+        const bool or_nothing = how_.rounds == 0;
+        if (out.converged || or_nothing || !problem.has_resistances()) return out;
         problem.let_resist(false);
         (void)bound();
         again(problem, out);

@@ -52,7 +52,7 @@ void set_targets(Problem& problem, const Island& island, double h, double slop, 
     }
     for (std::size_t i = 0; i < passing.size(); ++i) problem.points[i].least = std::min(problem.points[i].least, passing[i]);
     set_line_targets(problem, island, h, moving);
-    problem.aim_resistances();
+    problem.aim_resistances(h / island.h);
 }
 
 Moving how_to_move(const Problem& problem, double h)
@@ -68,6 +68,7 @@ Moving how_to_move(const Problem& problem, double h)
 
 void kick(Problem& problem, const Island& island, const Bodies& bodies, const Shafts& shafts, double h)
 {
+    problem.note_rolling(bodies);
     for (Line& line : problem.lines)
         if (const ConstraintRow& row = problem.row_of(line); row.kind == RowKind::ForceChange) line.before = speed_of(row, bodies, shafts);
     island.motion->kick(h);

@@ -82,13 +82,14 @@ private:
         return true;
     }
 
-    /// m for a turn. Before SDF 1.10 the thread was given in rad/m, positive for one that is left-handed.
+    /// m for a turn, 1 if nothing is said. Before SDF 1.10 the thread was given in rad/m, positive for one that is left-handed.
     double read_lead(const XmlElement& e)
     {
         constexpr double kTurn = 6.283185307179586;
-        const double lead = sdf_number(e, "screw_thread_pitch", 0, document_), per_metre = sdf_number(e, "thread_pitch", 1, document_);
-        if (find_child(e, "screw_thread_pitch") ? lead == 0 : per_metre == 0) document_.error(e, "the pitch of a screw must not be 0");
-        return find_child(e, "screw_thread_pitch") ? lead : -kTurn / per_metre;
+        const double lead = sdf_number(e, "screw_thread_pitch", 1, document_), per_metre = sdf_number(e, "thread_pitch", 0, document_);
+        const bool is_old = find_child(e, "thread_pitch") && !find_child(e, "screw_thread_pitch");
+        if ((is_old ? per_metre : lead) == 0) document_.error(e, "the pitch of a screw must not be 0");
+        return is_old ? -kTurn / per_metre : lead;
     }
 
     void read_axis(const XmlElement& e, bool bounded, Joint& joint)

@@ -109,15 +109,26 @@ private:
 
     // ---- bodies
 
+    /// Without friction of twisting and rolling if no surface has any: they would differ in what does not count.
+    static Surface used(Surface surface, bool turns)
+    {
+        const Surface usual;
+        if (!turns) surface.twisting = usual.twisting, surface.rolling = usual.rolling;
+        return surface;
+    }
+
     /// Each body's surface is that of its roughest shape.
     void read_materials()
     {
+        const auto resists = [](const RobotShape& s) { return s.collides && s.surface.dimensions > 3; };
+        const bool turns =
+            std::ranges::any_of(assembly_.bodies, [&](const PlacedBody& b) { return std::ranges::any_of(b.shapes, resists); });
         for (const PlacedBody& b : assembly_.bodies)
         {
             Surface least, most;
             least.friction = kInfinity, most.friction = -kInfinity;
             for (const RobotShape& s : b.shapes)
-                if (s.collides) least = std::min(least, s.surface), most = std::max(most, s.surface);
+                if (s.collides) least = std::min(least, used(s.surface, turns)), most = std::max(most, used(s.surface, turns));
             if (collides(b) && most != least)
                 document_.lost(b.where, quoted(b.name),
                                "its shapes have different surfaces: pLab has one material for a body, and takes that of the roughest, with "
@@ -166,7 +177,8 @@ private:
     SurfaceLaw law_of(const Surface& a, const Surface& b) const
     {
         SurfaceLaw law = surface_law(a, b, robot_.surface_rule);
-        if (const auto own = pair_laws_.find(std::minmax(a.own, b.own)); own != pair_laws_.end()) law.friction = own->second;
+        if (const auto own = pair_laws_.find(std::minmax(a.own, b.own)); own != pair_laws_.end())
+            law.friction = own->second, law.rolling_friction = law.spinning_friction = 0;
         return law;
     }
 

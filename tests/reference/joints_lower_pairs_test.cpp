@@ -124,6 +124,29 @@ TEST_CASE("the two angles of a universal joint are those of its cross")
     CHECK(s.real("j", "position_error") < 1e-13);
 }
 
+TEST_CASE("a hinge that has turned becomes a screw, a sleeve, a slider and a hinge again: the body goes on from where it is")
+{
+    Falls s(joint("j", "Hinge", "", "b", "anchor='0.3 0.2 1' axis='0 0 1'"), "angular_velocity='0 0 5'");
+    s.run(1);
+    const auto exchange = [&](const std::string& type, const std::string& parameter, const std::string& value)
+    {
+        const Vec3 before = s.vec("b", "position");
+        simulation::SwapOperation swap{"j", "Constraint/" + type, {}};
+        if (!parameter.empty()) swap.values.push_back({parameter, value});
+        REQUIRE(s.ask(swap).done);
+        const double down = std::fabs(s.vec("b", "linear_velocity").z);
+        s.step();
+        CHECK(distance(s.vec("b", "position"), before) < (down + 0.2) / 200);
+        s.run(s.simulation().time() + 0.2);
+        CHECK(s.real("j", "position_error") < 1e-11);
+    };
+    exchange("Screw", "lead", "0.1");
+    exchange("Cylindrical", "", "");
+    exchange("Slider", "", "");
+    exchange("Planar", "", "");
+    exchange("Hinge", "", "");
+}
+
 TEST_CASE("a universal joint with parallel axes is refused")
 {
     const Scene s(body("b", 1, {0.02, 0.03, 0.04}, {}) + joint("j", "Universal", "", "b", "axis='0 1 0'"));

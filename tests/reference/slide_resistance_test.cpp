@@ -211,6 +211,23 @@ TEST_CASE("spinning resistance: a ball that spins on the spot stops in time, and
     CHECK(near(s.vec("a", "angular_velocity").z, 3, 1e-6));
 }
 
+TEST_CASE("rolling resistance: a plate that begins to turn under a ball takes it along about its own axis alone")
+{
+    const double rho = 1e-4, until = 0.05;
+    const Vec3 turn{0.2, 0.1, 0};
+    Ground ground{"Direct", rho};
+    ground.friction = 0;
+    const std::string plate =
+        "<component id='board' type='Shape/Box' half_extents='1 1 0.1'/><component id='plate' type='State/Kinematic' shape='board' "
+        "position='0 0 0.5' angular_velocity='" +
+        text(turn) + "'/>" + sphere("a", kRadius, at({0, 0, 0.7}));
+    Scene s(on(ground, plate, "a plate"), step_of(1.0 / 240));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(until);
+    const Vec3 due = normalized(turn) * (rho * kG * until / (kBall * kRadius * kRadius));
+    CHECK(distance(s.vec("a", "angular_velocity"), due) < 0.02 * length(due));
+}
+
 TEST_CASE("rolling resistance between two bodies that move keeps their momentum and angular momentum, and takes energy")
 {
     for (const std::string manager : {"Direct", "SequentialImpulse", "SoftStep"})

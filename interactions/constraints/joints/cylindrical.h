@@ -1,9 +1,10 @@
 /// Joints that leave two motions along one axis, or in one plane: Cylindrical, Screw, Planar. They belong to the family of rigid_joints.h.
 ///
 ///   Cylindrical  t1 . d = t2 . d = 0, n_b along n_a        4 rows, free: travel n . d, and the angle about n
-///   Screw        the same, n . d = lead angle / (2 pi)     5 rows, free: both together
+///   Screw        the same, x = lead angle / (2 pi) + s     5 rows, free: both together; x: the travel, s: from where it was placed
 ///   Planar       n . d = 0, n_b along n_a                  3 rows, free: travel along t1 and t2, and the angle about n
 ///
+/// The point of a moves along with b, so that another joint that replaces one of these holds b where it is.
 /// A screw gives work back (efficiency 1): friction in its thread is a Constraint/Motor of speed 0 with a max_effort.
 #pragma once
 
@@ -12,14 +13,14 @@
 namespace plab::constraints
 {
 
-struct CylindricalRows : AxisJointRows, MeterColumns
+struct CylindricalRows : AxisJointRows, MeterColumns, TravelColumns
 {
-    Column<double> travel, travel_rate;  // m, m/s
     void describe(Schema& s);
 };
 struct ScrewRows : CylindricalRows
 {
-    Column<double> lead;  // m: travel of b along the axis for a turn about it; negative: a left-hand thread
+    Column<double> lead;                // m: travel of b along the axis for a turn about it; negative: a left-hand thread
+    Column<double> start, placed_lead;  // m: what the travel is ahead of the turns, where the joint was placed; the lead then
     void describe(Schema& s);
 };
 struct PlanarRows : AxisJointRows, MeterColumns

@@ -77,6 +77,13 @@ void MeterColumns::keep(Row row, double twist_now, double speed, double now, dou
     start(row, speed, now);
 }
 
+void TravelColumns::describe_travel(Schema& s)
+{
+    s.output(travel, "travel", unit::metre, "displacement of b's point along the axis since the joint was placed");
+    s.output(travel_rate, "travel_rate", unit::metre_per_second, "its rate");
+    s.state(travelled, "travelled", unit::metre, "displacement of point_a along the axis, with b").initially(0);
+}
+
 void ReactionColumns::describe_reaction(Schema& s, const std::string& on)
 {
     s.output(force, "force", unit::newton, "on " + on + ", in the world, at the last solver stage of the step");

@@ -96,6 +96,37 @@ struct AxisJointRows : JointRows, AxisColumns
     static Quat attitude(const Bodies& bodies, Ref body) { return body.valid() ? bodies.orientation[body.index] : Quat{}; }
 };
 
+/// Travel along the axis of an AxisJointRows. Its point of a moves along, so that a joint that replaces this one holds b where it is.
+struct TravelColumns
+{
+    Column<double> travel, travel_rate;  // m, m/s
+    Column<double> travelled;            // m
+
+    void describe_travel(Schema& s);
+};
+/// Places points and axis. A new anchor begins at no travel; a point of a that is given anew has moved along the axis.
+template <class Table>
+bool place_travelling(Row row, Table& rows, const Bodies& bodies)
+{
+    const bool fresh = !rows.placed[row] || rows.placed_anchor[row] != rows.anchor[row];
+    const Vec3 before = rows.point_a[row];
+    rows.place_points(row, bodies);
+    const bool turned = rows.place_axis(row, rows.attitude(bodies, rows.a[row]), rows.attitude(bodies, rows.b[row]));
+    const Vec3 n_a = rotate(rows.frame_a[row], Vec3{0, 0, 1});
+    rows.travelled[row] = fresh ? 0.0 : rows.travelled[row] + dot(n_a, rows.point_a[row] - before);
+    return fresh || turned;
+}
+/// Phase::Finish: lets the point of a follow along the axis.
+template <class Table>
+void keep_travel(Row row, Table& rows, const Sides& s)
+{
+    const Vec3 n = rotate(s.a.q * rows.frame_a[row], Vec3{0, 0, 1});
+    const double rolled = dot(n, s.d);
+    rows.travel[row] = rows.travelled[row] += rolled;
+    rows.point_a[row] += rolled * rotate(rows.frame_a[row], Vec3{0, 0, 1});
+    rows.travel_rate[row] = dot(n, s.rate) + dot(cross(s.a.w, n), s.d);
+}
+
 /// Phase::Finish of joints that have no further outputs.
 template <class Table>
 void finish_reaction(const StepContext& step, Rows which, Table& rows, const RowReports& reports)

@@ -21,9 +21,7 @@ void SliderRows::describe(Schema& s)
     describe_pair(s);
     describe_axis(s);
     describe_reaction(s, "b");
-    s.output(travel, "travel", unit::metre, "displacement of b's point along the axis since the joint was placed");
-    s.output(travel_rate, "travel_rate", unit::metre_per_second, "its rate");
-    s.state(travelled, "travelled", unit::metre, "displacement of point_a along the axis, with b").initially(0);
+    describe_travel(s);
 }
 
 void FixedRows::describe(Schema& s)
@@ -42,14 +40,7 @@ void prepare_hinge(Row row, HingeRows& rows, const Bodies& bodies)
     if (rows.place_axis(row, rows.attitude(bodies, rows.a[row]), rows.attitude(bodies, rows.b[row]))) rows.reset(row);
 }
 
-void prepare_slider(Row row, SliderRows& rows, const Bodies& bodies)
-{
-    const bool fresh = !rows.placed[row] || rows.placed_anchor[row] != rows.anchor[row];
-    const Vec3 before = rows.point_a[row];
-    rows.place(row, bodies);
-    const Vec3 n_a = rotate(rows.frame_a[row], Vec3{0, 0, 1});
-    rows.travelled[row] = fresh ? 0.0 : rows.travelled[row] + dot(n_a, rows.point_a[row] - before);
-}
+void prepare_slider(Row row, SliderRows& rows, const Bodies& bodies) { place_travelling(row, rows, bodies); }
 
 void prepare_fixed(Row row, FixedRows& rows, const Bodies& bodies)
 {
@@ -121,12 +112,7 @@ void finish_slider(const StepContext& step, Rows which, SliderRows& rows, const 
 {
     for (const Row row : which)
     {
-        const Sides s = rows.sides(row, bodies);
-        const Vec3 n = rotate(s.a.q * rows.frame_a[row], Vec3{0, 0, 1});
-        const double rolled = dot(n, s.d);
-        rows.travel[row] = rows.travelled[row] += rolled;
-        rows.point_a[row] += rolled * rotate(rows.frame_a[row], Vec3{0, 0, 1});
-        rows.travel_rate[row] = dot(n, s.rate) + dot(cross(s.a.w, n), s.d);
+        keep_travel(row, rows, rows.sides(row, bodies));
         rows.take_report(row, reports, step.component_of_row[row]);
     }
 }

@@ -21,10 +21,8 @@ struct HingeRows : AxisJointRows, MeterColumns
 {
     void describe(Schema& s);
 };
-struct SliderRows : AxisJointRows
+struct SliderRows : AxisJointRows, TravelColumns
 {
-    Column<double> travel, travel_rate;  // m, m/s
-    Column<double> travelled;            // m: a's point moves along, so that a joint that replaces this one holds b where it is
     void describe(Schema& s);
 };
 struct FixedRows : JointRows

@@ -5,8 +5,8 @@
 ///
 ///   point     phi = e . d          J = [ -e, -(r_a x e) | e, r_b x e ]          bias = -e . (w_b x (w_b x r_b) - w_a x (w_a x r_a))
 ///   travel    phi = t . d - x      t turns with a: the lever of a reaches p_b, and bias gains -(w_a x (w_a x t)) . d - 2 (w_a x t) . d'
-///   angle     phi = e_a . e_b - c   J = [ -k | k ], k = e_b x e_a               bias = -(k' . w_ba), k' = (w_b x e_b) x e_a + e_b x (w_a x
-///   e_a) turn      phi = e . s          J = [ -e | e ] on spins, s the rotation vector from a to b; bias = -(e' . w_ba), e' = w_a x e
+///   angle     phi = e_a . e_b - c  J = [ -k | k ], k = e_b x e_a               bias = -(k' . w_ba)
+///   turn      phi = e . s          J = [ -e | e ] on spins, s the rotation vector from a to b; bias = -(e' . w_ba), e' = w_a x e
 ///
 /// How a row is used: phi is what must be zero, and J, with one block for each body, its derivative: phi' = J v. Differentiated once more,
 /// phi'' = J v' + J' v, so the accelerations v' that keep phi at zero satisfy J v' = bias with bias = -J' v: what the points' accelerations

@@ -313,8 +313,8 @@ private:
     std::vector<std::uint32_t> member_of_body_;  ///< by host row, for HeldMotion::begin
     std::vector<double> wedging_;                ///< by host row, of the members of one island; else 0 (paradox.h)
     std::vector<PairState> fresh_, adopted_;     ///< adopted_: working memory of adopt_again()
-    std::vector<std::size_t> first_found_;       ///< parallel to fresh_
-    std::vector<std::size_t> passed_;            ///< places in fresh_
+    std::vector<std::size_t> first_found_;       ///< parallel to fresh_ within adopt()
+    std::vector<std::size_t> passed_;            ///< places in fresh_, likewise
     std::vector<double> shaft_mobility_;
     std::vector<double> given_speed_;  ///< m/s, by body: speed that forces give it in the step
     std::vector<RestSample> starts_;   ///< by body; empty: nobody wants them
