@@ -53,7 +53,7 @@ double JointSolver::find_changes(const Problem& problem)
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
     {
         const Line& line = problem.lines[i];
-        if (line.count == 0) continue;
+        if (line.count == 0 || line.resists()) continue;
         const double gap = problem.gap(line);
         worst = std::max(worst, violation(line, gap));
         changes_[i] =

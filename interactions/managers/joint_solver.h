@@ -3,7 +3,8 @@
 /// time in proportion to their joints; which ones do so is found in rounds (an active-set method).
 ///
 /// Sweeps pass a load on from joint to joint, so a chain of light links under a heavy load stretches, and a servo that is stiff against the
-/// inertia of its links needs hundreds of them. Methods that sweep use this before and between their sweeps.
+/// inertia of its links needs hundreds of them. Methods that sweep use this before and between their sweeps. What resists rolling
+/// (Line::resists) is left to the sweeps, as contacts are: it joins all that touches.
 #pragma once
 
 #include <vector>

@@ -79,7 +79,7 @@ private:
     bool gains() const;
     int step_hard();
     bool scale_down();
-    void sweep_lines(bool soft);
+    void sweep_lines(bool soft, std::size_t first = 0);
     void bound_resistances();
     bool holds_rows();
     void hold_rows(bool corrects, bool anew);

@@ -15,10 +15,10 @@ bool is_pulled(const ConstraintRow& row) { return row.kind == RowKind::Equality 
 }  // namespace
 
 template <int W>
-void SoftIsland<W>::sweep_lines(bool soft)
+void SoftIsland<W>::sweep_lines(bool soft, std::size_t first)
 {
     bound_resistances();
-    for (std::size_t i = 0; i < problem_.lines.size(); ++i)
+    for (std::size_t i = first; i < problem_.lines.size(); ++i)
     {
         Line& line = problem_.lines[i];
         if (line.count == 0) continue;
@@ -54,7 +54,6 @@ template <int W>
 void SoftIsland<W>::hold_rows(bool corrects, bool anew)
 {
     if (!holds_) return;
-    bound_resistances();
     const auto close_at = [&](double speed_per_error)
     {
         for (Line& line : problem_.lines)
@@ -69,6 +68,7 @@ void SoftIsland<W>::hold_rows(bool corrects, bool anew)
     if (corrects) close_at(-sweep_.between.bias_rate);
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
         memory_.line_greatest[i] = std::max(memory_.line_greatest[i], problem_.lines[i].impulse);
+    if (problem_.has_resistances()) sweep_lines(false, problem_.row_count());
 }
 
 template void SoftIsland<1>::bound_resistances();
@@ -77,7 +77,7 @@ template bool SoftIsland<1>::holds_rows();
 template bool SoftIsland<4>::holds_rows();
 template void SoftIsland<1>::hold_rows(bool, bool);
 template void SoftIsland<4>::hold_rows(bool, bool);
-template void SoftIsland<1>::sweep_lines(bool);
-template void SoftIsland<4>::sweep_lines(bool);
+template void SoftIsland<1>::sweep_lines(bool, std::size_t);
+template void SoftIsland<4>::sweep_lines(bool, std::size_t);
 
 }  // namespace plab::managers

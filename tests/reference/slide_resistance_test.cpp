@@ -90,6 +90,32 @@ TEST_CASE("rolling resistance: a ball rolls to a stop, and from its first step o
     }
 }
 
+TEST_CASE("rolling resistance: balls that joints hold in a row roll as each of them does, and the joints hold")
+{
+    const double a = deceleration(0.005, kBall);
+    for (const std::string manager : {"Direct", "SequentialImpulse", "SoftStep"})
+    {
+        CAPTURE(manager);
+        std::string bodies, between;
+        for (int i = 0; i < 8; ++i)
+        {
+            const std::string id = "b" + std::to_string(i), before = "b" + std::to_string(i - 1);
+            bodies += sphere(id, kRadius, at({0.2 * i, 0, kRadius}, {0, 1, 0}) + " angular_velocity='-10 0 0'");
+            between += id + " ";
+            if (i > 0)
+                bodies += "<component id='j" + id + "' type='Constraint/Ball' a='" + before + "' b='" + id + "' anchor='" +
+                          text(Vec3{0.2 * i - 0.1, 0, kRadius}) + "'/><component id='x" + id + "' type='Collision/Exclude' a='" + before +
+                          "' b='" + id + "'/>";
+        }
+        Scene s(on({manager}, bodies, between), step_of(1.0 / 240));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(1);
+        const double bound = manager == "SoftStep" ? 1e-3 : 1e-12;
+        for (int i = 0; i < 8; ++i) CHECK(near(s.vec("b" + std::to_string(i), "position").y, 1 - 0.5 * a, bound));
+        CHECK(s.real("jb4", "position_error") < bound);
+    }
+}
+
 TEST_CASE("rolling resistance: a can rolls on two points as a ball does on one")
 {
     const double a = deceleration(0.005, kCan);
