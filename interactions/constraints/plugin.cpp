@@ -5,10 +5,12 @@
 #include "angular_velocity/couplings.h"
 #include "grab/grab.h"
 #include "joints/actuator.h"
+#include "joints/coupler.h"
 #include "joints/cylindrical.h"
 #include "joints/distance.h"
 #include "joints/gear.h"
 #include "joints/motor.h"
+#include "joints/pulley.h"
 #include "joints/rigid_joints.h"
 #include "joints/rolling.h"
 #include "joints/snap.h"
@@ -201,6 +203,22 @@ void register_lengths(Registrar& registrar)
         .source("Hooke's law, Kelvin-Voigt body");
 }
 
+void register_pulley(Registrar& registrar)
+{
+    registrar.component<PulleyRows>("Constraint/Pulley", "a rope over two wheels: what one end gains, the other loses")
+        .family("Constraint/Pulley")
+        .command<&prepare_pulley>(Phase::Prepare, kPrepare, "places of the wheels, and the length if none is given, where they are new")
+        .command<&constrain_pulley>(Phase::Constrain, kRows, "one row: the sum of two distances")
+        .command<&finish_pulley>(Phase::Finish, kFinish, "lengths, tension and errors of the step")
+        .accuracy(kAsSolver)
+        .strengths("hoists, tackles and counterweights, without the bodies of the wheels and of the rope")
+        .cost("1 row")
+        .limits(
+            "the rope pushes as well as it pulls: check that tension is above 0; where an end reaches its wheel it has no direction; the "
+            "rope has no mass, and the wheels have neither inertia nor friction nor radius")
+        .source(kSource);
+}
+
 void register_coordinates(Registrar& registrar)
 {
     constexpr const char* kStart = "Constraint/Start";
@@ -284,6 +302,31 @@ void register_gears(Registrar& registrar)
         .cost("1 row; the inertia of the planets is neglected")
         .limits("bodies need bearings of their own, on one axis")
         .source("R. Willis, Principles of mechanism, 1841");
+    registrar.component<CouplerRows>("Constraint/Coupler", "keeps two coordinates at a ratio: turns of bodies or shafts, slides of bodies")
+        .family("Constraint/Coupler")
+        .command<&prepare_coupled<CouplerRows>>(Phase::Prepare, kPrepare, "axes, where they are new")
+        .command<&begin_coupled<CouplerRows>>(Phase::Drive, kStart, kStartDoc)
+        .command<&constrain_coupled<CouplerRows>>(Phase::Constrain, kRows, "one row: driven = factor driver")
+        .command<&finish_coupled<CouplerRows>>(Phase::Finish, kFinish, "positions, efforts and errors of the step")
+        .accuracy(kAsSolver)
+        .strengths("grippers whose fingers close together, joints that mimic another one")
+        .cost("1 row")
+        .limits("each coordinate needs a hinge or a slider of its own; both are relative to one body, or in a chain")
+        .source(kSource);
+    registrar.component<RackRows>("Constraint/Rack", "a rack travels in proportion to the turns of its pinion, a body or a shaft")
+        .family("Constraint/Rack")
+        .command<&prepare_coupled<RackRows>>(Phase::Prepare, kPrepare, "axes, where they are new")
+        .command<&begin_coupled<RackRows>>(Phase::Drive, kStart, kStartDoc)
+        .command<&constrain_coupled<RackRows>>(Phase::Constrain, kRows, "one row: travel = radius angle")
+        .command<&finish_coupled<RackRows>>(Phase::Finish, kFinish, "positions, efforts and errors of the step")
+        .accuracy(kAsSolver)
+        .strengths("turns into travel: steering, gates, linear drives; turns are counted, so the travel has no end")
+        .cost("1 row")
+        .limits(
+            "the rack needs a slider, and a pinion that is a body a hinge, on the same carrier; the pinion gets a pure couple and the rack "
+            "a "
+            "force through its origin, so their bearings do not feel where the teeth mesh")
+        .source(kSource);
 }
 
 void register_rolling(Registrar& registrar)
@@ -353,6 +396,7 @@ PLAB_PLUGIN("constraints", registrar)
     register_rigid(registrar);
     register_two_motions(registrar);
     register_lengths(registrar);
+    register_pulley(registrar);
     register_coordinates(registrar);
     register_gears(registrar);
     register_rolling(registrar);

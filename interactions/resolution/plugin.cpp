@@ -122,7 +122,7 @@ void add_automatic(Registrar& registrar)
 {
     registrar
         .component<AutomaticRows>("Resolution/Automatic",
-                                  "locates impacts while islands of touching bodies are small; otherwise the manager answers them")
+                                  "locates the impacts of bodies whose island is small; those of others the manager answers")
         .command<choose_search>(Phase::Choose, "Resolution/Choose", "chooses how the impacts of the step are found")
         .command<find_root_automatically>(Phase::Locate, kLocate, "as Resolution/LocalRoot, where impacts are located")
         .locates()
@@ -133,8 +133,8 @@ void add_automatic(Registrar& registrar)
         .strengths("no choice has to be made: few bodies are exact, and many run in time")
         .cost("that of the algorithm in use, and one pass over the known pairs")
         .limits(
-            "one island that is large ends the location of impacts for all bodies of the detection; a heap whose "
-            "size is near the bounds changes between algorithms")
+            "a heap whose size is near the bounds changes between algorithms; of several detections, the smallest bounds hold for all; "
+            "with a response that has no manager, one large island ends the location of impacts for all")
         .source("server/docs/pace.md, for the bounds");
 }
 

@@ -280,7 +280,7 @@ private:
 
     void write_coupling(const Coupling& c)
     {
-        if (c.kind == CouplingKind::Gear) return write_gear(c);
+        if (c.kind == CouplingKind::Gear) return write_ratio(c);
         const auto first = assembly_.frames.find(c.first), second = assembly_.frames.find(c.second);
         const auto none = assembly_.frames.end();
         if (first == none || (second == none && !c.second.empty()))
@@ -302,23 +302,32 @@ private:
              attribute("b", body_ids_[b]) + attribute("anchor", anchor) + "/>");
     }
 
-    void write_gear(const Coupling& c)
+    void write_ratio(const Coupling& c)
     {
         const auto first = assembly_.moved.find(c.first), second = assembly_.moved.find(c.second);
         if (first == assembly_.moved.end() || second == assembly_.moved.end())
             return document_.error(c.where, quoted(c.name),
                                    "there is no joint " + quoted(first == assembly_.moved.end() ? c.first : c.second));
         const PlacedBody &driver = body(first->second), &driven = body(second->second);
-        const auto turns = [](const PlacedBody& b) { return b.joints.size() == 1 && b.joints.front().joint.kind == JointKind::Hinge; };
+        const auto is = [](const PlacedBody& b, JointKind kind) { return b.joints.size() == 1 && b.joints.front().joint.kind == kind; };
+        const auto moves = [&](const PlacedBody& b) { return is(b, JointKind::Hinge) || is(b, JointKind::Slide); };
         const auto base = [&](const PlacedBody& b) { return b.parent == kWorld || body(b.parent).fixed ? kWorld : b.parent; };
-        if (c.factor == 0 || !turns(driver) || !turns(driven) || base(driver) != base(driven))
+        const bool beside = base(driver) == base(driven), in_chain = base(driven) == first->second;
+        if (c.factor == 0 || !moves(driver) || !moves(driven) || (!beside && !in_chain))
             return document_.lost(c.where, quoted(c.name),
-                                  "is not carried over: a Constraint/Gear couples hinges on the same body, with a "
-                                  "factor that is not zero");
-        line("<component" + attribute("id", ids_.make(c.name)) + " type=\"Constraint/Gear\"" +
-             attribute("driver", body_ids_[first->second]) + attribute("driven", body_ids_[second->second]) +
-             (base(driver) == kWorld ? "" : attribute("carrier", body_ids_[base(driver)])) + attribute("velocity_factor", c.factor) +
-             attribute("driver_axis", driver.joints.front().axis_W) + attribute("driven_axis", driven.joints.front().axis_W) + "/>");
+                                  "is not carried over: a Constraint/Coupler couples hinges and sliders that are the only joint of their "
+                                  "bodies, on the same body or one after the other, with a factor that is not zero");
+        const std::string carrier = base(driver) == kWorld ? "" : attribute("carrier", body_ids_[base(driver)]);
+        const std::string axes =
+            attribute("driver_axis", driver.joints.front().axis_W) + attribute("driven_axis", driven.joints.front().axis_W) + "/>";
+        const std::string sides = attribute("driver", body_ids_[first->second]) + attribute("driven", body_ids_[second->second]);
+        const std::string start = "<component" + attribute("id", ids_.make(c.name));
+        if (is(driver, JointKind::Hinge) && is(driven, JointKind::Hinge) && beside)
+            return line(start + " type=\"Constraint/Gear\"" + sides + carrier + attribute("velocity_factor", c.factor) + axes);
+        const auto along = [&](const std::string& name, const PlacedBody& b)
+        { return is(b, JointKind::Slide) ? attribute(name, "slide") : std::string(); };
+        line(start + " type=\"Constraint/Coupler\"" + sides + carrier + (in_chain ? " in_chain=\"true\"" : "") +
+             along("driver_along", driver) + along("driven_along", driven) + attribute("factor", c.factor) + axes);
     }
 
     // ---- contacts

@@ -138,6 +138,23 @@ TEST_CASE("a warm step of a sliding stack allocates nothing, with any manager")
     }
 }
 
+TEST_CASE("a warm step of a stack that slides beside boxes whose impacts are located allocates nothing")
+{
+    std::string body =
+        R"(<component id="floor" type="Shape/Plane"/><component id="ground" type="State/Static" shape="floor"/>
+        <component id="cube" type="Shape/Box" half_extents="0.5 0.5 0.02"/>
+        <component id="g" type="Field/Gravity" between="*" acceleration="3 0 -9.81"/>
+        <component id="contact" type="CDetection/ODE" between="*" response.friction="0.25"/>)";
+    for (int k = 0; k < 16; ++k)
+        body += "<component id=\"b" + std::to_string(k) + "\" type=\"State/RigidBody\" mass=\"1\" shape=\"cube\" position=\"0 " +
+                (k < 10 ? "0 " + std::to_string(0.02 + 0.04 * k) : std::to_string(2 * k) + " 0.02") + "\"/>";
+    Scene s(body);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(500);
+    CHECK(quiet_steps(s, 500) > 400);
+    CHECK(std::get<std::string>(s.get("contact.resolution", "resolved")).starts_with("LocalRoot and "));
+}
+
 TEST_CASE("a warm step of many islands allocates nothing, with 1, 2 and 4 threads")
 {
     std::string body =

@@ -27,6 +27,29 @@ ConstraintRow row_over(const Sides& s, const Vec3& linear, const Vec3& angular_a
     return row;
 }
 
+void add_block(const RowBlock& block, ConstraintRow& row)
+{
+    if (!block.participant.valid()) return;
+    for (std::uint32_t k = 0; k < row.count; ++k)
+    {
+        RowBlock& own = row.blocks[k];
+        if (own.participant != block.participant) continue;
+        own.linear += block.linear, own.angular += block.angular;
+        return;
+    }
+    row.blocks[row.count++] = block;
+}
+
+void add_row(const ConstraintRow& other, double factor, ConstraintRow& row)
+{
+    for (std::uint32_t k = 0; k < other.count; ++k)
+    {
+        const RowBlock& block = other.blocks[k];
+        add_block({block.participant, block.linear * factor, block.angular * factor}, row);
+    }
+    row.error += factor * other.error, row.bias += factor * other.bias;
+}
+
 void add_point_rows(const Sides& s, std::uint32_t feature, RowSink& sink)
 {
     const Vec3 pull = s.centripetal();

@@ -54,6 +54,11 @@ Sides sides_of(const Side& a, const Side& b);
 /// A row over both sides; error and bias are 0. The world has no block.
 ConstraintRow row_over(const Sides& s, const Vec3& linear, const Vec3& angular_a, const Vec3& angular_b, std::uint32_t feature);
 
+/// Adds a block to a row; blocks of the same participant are merged. The world has no block.
+void add_block(const RowBlock& block, ConstraintRow& row);
+/// Adds `factor` times another row: its blocks, error and bias.
+void add_row(const ConstraintRow& other, double factor, ConstraintRow& row);
+
 /// Three rows, one for each axis of W: p_b = p_a.
 void add_point_rows(const Sides& s, std::uint32_t feature, RowSink& sink);
 /// t . d = travel, with t fixed in a.

@@ -2,31 +2,15 @@
 
 namespace plab::constraints
 {
-namespace
-{
-
-void add_block(Ref participant, const Vec3& angular, ConstraintRow& row)
-{
-    if (!participant.valid()) return;
-    for (std::uint32_t k = 0; k < row.count; ++k)
-        if (row.blocks[k].participant == participant)
-        {
-            row.blocks[k].angular += angular;
-            return;
-        }
-    row.blocks[row.count++] = {participant, {}, angular};
-}
-
-}  // namespace
 
 void add_spin(const Spin& spin, double factor, ConstraintRow& row)
 {
-    add_block(spin.base, -factor * spin.n, row);
-    add_block(spin.participant, factor * spin.n, row);
+    add_block({spin.base, {}, -factor * spin.n}, row);
+    add_block({spin.participant, {}, factor * spin.n}, row);
     row.bias += factor * spin.extra;
 }
 
-void SpinColumns::describe_spin(Schema& s, const std::string& prefix, const std::string& whose)
+void SpinColumns::describe_axle(Schema& s, const std::string& prefix, const std::string& whose)
 {
     s.param(axis, prefix + "axis", unit::one, "of a body: axle of " + whose + ", in the world at the present poses")
         .or_else({0, 0, 1})
@@ -34,6 +18,11 @@ void SpinColumns::describe_spin(Schema& s, const std::string& prefix, const std:
     s.state(frame_a, prefix + "frame_base", unit::one, "the axle's frame (z along it) in the base");
     s.state(frame_b, prefix + "frame", unit::one, "the axle's frame in the body");
     s.state(placed_axis, prefix + "placed_axis", unit::one, "the axis parameter from which the frames were taken").initially({});
+}
+
+void SpinColumns::describe_spin(Schema& s, const std::string& prefix, const std::string& whose)
+{
+    describe_axle(s, prefix, whose);
     describe_meter(s, prefix, "rotation angle of " + whose);
 }
 

@@ -28,6 +28,8 @@ void add_spin(const Spin& spin, double factor, ConstraintRow& row);
 struct SpinColumns : AxisColumns, MeterColumns
 {
     /// `prefix` of the field names, such as "driver_".
+    void describe_axle(Schema& s, const std::string& prefix, const std::string& whose);
+    /// The same, and the angle about it.
     void describe_spin(Schema& s, const std::string& prefix, const std::string& whose);
     /// Phase::Prepare: sets the axle from its parameter, if that is new.
     Result<void> place(Row row, Ref participant, Ref base, const Bodies& bodies);

@@ -126,13 +126,17 @@ enum class ImpactSearch : std::uint8_t
 struct ContactLoad
 {
     // in
-    std::uint32_t bodies = 0;         ///< dynamic bodies of the scene
+    std::uint32_t bodies = 0;  ///< dynamic bodies of the scene
+    /// Of these, the ones in islands beyond the limits that the resolution has as parameters `max_bodies` and `max_points`, or that have
+    /// been in one within its `dwell` (s). All bodies of an island are crowded, or none is.
+    std::uint32_t crowded = 0;
     std::uint32_t island_bodies = 0;  ///< dynamic bodies of the largest island that persistent contacts hold together
     std::uint32_t island_points = 0;  ///< contact points of the island that has most of them
     double travel = 0;                ///< largest distance that a body moves in the step, in radii (a thin one: in halves of its thickness)
     bool has_manager = false;         ///< the response leaves contacts to a manager; without one, speculation is not possible
     // out
-    ImpactSearch search = ImpactSearch::AtEnd;
+    ImpactSearch search = ImpactSearch::AtEnd;          ///< of pairs without a crowded body
+    ImpactSearch crowded_search = ImpactSearch::AtEnd;  ///< of the others
 };
 
 /// Phase::Locate: a step [0, h] is known to contain an event; the resolution chooses the next time to try.

@@ -93,9 +93,10 @@ Errors ContactBook::rebuild(bool sizes, bool only_solvers)
     if (!same || !last || last->order != now.order) cache_.refresh(step_.world, detectors_);
     const bool no_news = last && now.keeps_contacts_since(*last);
     keeps_found_ = same && no_news && !awake_ && !adapts();
-    if (imposed_.size() != detectors_.size()) imposed_.clear();
+    if (imposed_ && imposed_->of.size() != detectors_.size()) imposed_.reset();
+    crowded_.clear();
     resting_.forget();
-    if (!keeps_found_) found_.clear(), runs_.clear();
+    if (!keeps_found_) found_.clear(), runs_.clear(), ++found_revision_;
     has_sizes_ = has_sizes_ && last && now.keeps_bodies_since(*last);
     if ((sizes || !detectors_.empty()) && !std::exchange(has_sizes_, true)) measure_bodies();
     if (!only_solvers || !same) list_participants();
@@ -195,11 +196,11 @@ void ContactBook::detect_all()
         detect_all();
         awake_ = awake;
     }
-    found_.clear(), runs_.clear();
+    found_.clear(), runs_.clear(), ++found_revision_;
     bool in_order = true;
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
-        if (detectors_[d].by_rows && detectors_[d].persists())
+        if (detectors_[d].by_rows && detectors_[d].may_persist())
         {
             in_order = detect_with_gaps(d) && in_order;
             continue;
@@ -241,7 +242,7 @@ void ContactBook::list_runs(std::size_t from)
 
 void ContactBook::detect_known_pairs()
 {
-    found_.clear(), runs_.clear();
+    found_.clear(), runs_.clear(), ++found_revision_;
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         persistent_.clear();
@@ -254,8 +255,9 @@ void ContactBook::detect_known_pairs()
     list_runs(0);
 }
 
-/// Contacts of a detector whose pairs are persistent as soon as they touch. Includes gaps up to the persistence margin, gaps that may close
-/// within the step (speculative contacts), and, for pairs that pressed, gaps that curvature opens. Returns whether they are sorted.
+/// Contacts of a detector of which some pairs at least are persistent as soon as they touch. Includes gaps up to the persistence margin,
+/// gaps that may close within the step (speculative contacts), and, for pairs that pressed, gaps that curvature opens. Returns whether they
+/// are sorted.
 bool ContactBook::detect_with_gaps(std::uint32_t index)
 {
     const Detector& detector = detectors_[index];
@@ -341,7 +343,7 @@ void ContactBook::drop_far(std::vector<FoundContact>& out, double h) const
     out.erase(std::remove_if(out.begin(), out.end(), far), out.end());
 }
 
-void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h)
+void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h, bool only_located)
 {
     resting_.find(groups, places_);
     bool in_order = out.empty();
@@ -352,7 +354,7 @@ void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::
         for (const std::uint32_t place : places_)
         {
             const PairState& p = std::as_const(cache_).pairs()[place];
-            if (p.detector != detectors_[d].component) continue;
+            if (p.detector != detectors_[d].component || (only_located && persists(detectors_[d], p.a, p.b))) continue;
             persistent_.push_back({p.a, p.b, {}});
             margin = std::max({margin, persistence_margin(p), gap_margin(p, h)});
         }

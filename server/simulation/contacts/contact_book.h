@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "simulation/contacts/contact_log.h"
+#include "simulation/contacts/crowds.h"
 #include "simulation/contacts/resting_pairs.h"
 #include "simulation/motion/step_state.h"
 
@@ -37,9 +38,16 @@ public:
     void look_among(const IndexSet* bodies) { part_ = bodies; }
     bool looks_among_some() const { return part_ != nullptr; }
     void begin_step() { releases_.clear(), resting_.forget(), log_.begin_step(); }
-    /// Lets the resolutions that adapt choose how the impacts of this step are found. True if one of them chose otherwise than before: then
-    /// what was detected with the former margins does not serve this step.
-    bool choose_search();
+    enum class SearchChange : std::uint8_t
+    {
+        None,
+        Crowds,  ///< other bodies are crowded: what was detected serves this step, but other pairs of it are persistent
+        Margins  ///< what was detected with the former margins does not serve this step
+    };
+    /// Lets the resolutions that adapt choose how the impacts of this step are found. Returns what differs from the last step.
+    SearchChange choose_search();
+    /// In a step that spares crowds: locating the impacts of the other bodies costs too much. These are crowded until a dwell has passed.
+    void crowd_all();
     /// Whether there are such resolutions.
     bool adapts() const;
     /// For a stepper that steps a part of a scene: from now on they choose as they would at present in a step of the whole scene, whose
@@ -47,6 +55,14 @@ public:
     void search_as(const ContactBook& whole);
 
     const std::vector<Detector>& detectors() const { return detectors_; }
+    /// Whether impacts of two bodies are located inside the step.
+    bool locates(const Detector& d, Ref a, Ref b) const { return d.locates && !(d.spares_crowds && is_crowded(a, b)); }
+    /// Whether two bodies are a persistent pair as soon as they touch (Detector::persists).
+    bool persists(const Detector& d, Ref a, Ref b) const { return d.by_force || (d.by_rows && !locates(d, a, b)); }
+    /// Whether a gap between them that may close within the step is a contact.
+    bool speculates(const Detector& d, Ref a, Ref b) const { return d.speculates && !locates(d, a, b); }
+    /// By body, 1: crowded. Empty where no detector spares crowds in this step.
+    std::span<const std::uint8_t> crowded() const { return crowded_; }
     ContactCache& cache() { return cache_; }
     const ContactCache& cache() const { return cache_; }
     /// What contacts do in this step, for whoever reads it afterwards.
@@ -57,6 +73,8 @@ public:
     /// Contacts at the end of the last step, or at the start of the present one until its end is known.
     std::vector<FoundContact>& found() { return found_; }
     const std::vector<FoundContact>& found() const { return found_; }
+    /// Changes whenever found() does.
+    std::uint64_t found_revision() const { return found_revision_; }
     /// The pairs in found(), in order.
     std::span<const FoundRun> runs() const { return runs_; }
 
@@ -96,7 +114,8 @@ public:
     /// Sets found() to the contacts of known pairs, where all others are certain to be apart.
     void detect_known_pairs();
     /// The contacts of persistent pairs with a member in `groups` (ascending), including gaps that may close within `h` (s).
-    void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h = 0);
+    /// `only_located`: of those whose impacts are located.
+    void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h = 0, bool only_located = false);
     /// Gives contacts of known pairs the impulses that an advance starts from (KnownContact::warm_start).
     void warm_start(std::span<FoundContact> contacts, bool trial);
     PairState* find_pair(const FoundContact& found);
@@ -174,17 +193,23 @@ private:
     void list_participants();
     std::span<const Shortlist> shortlists_of(std::size_t detector, const IndexSet& active);
     double curves_of(Ref a, Ref b) const { return std::fabs(curve_radius_of_body_[a.index] + curve_radius_of_body_[b.index]); }
-    /// Two bodies that touch where a run begins.
-    struct FirstTouch
+    /// How the impacts of a step are found.
+    struct SearchChoice
     {
-        Ref a, b;
-        std::uint32_t count = 0;  ///< points
-        static constexpr bool resting = true;
+        struct Of
+        {
+            ImpactSearch apart, crowded;  ///< pairs without a crowded body, and the others
+        };
+        std::vector<Of> of;                 ///< by detector
+        std::vector<std::uint8_t> crowded;  ///< by body
     };
     std::vector<FirstTouch> first_touches();
-    template <class Pair>
-    void measure_islands(std::span<const Pair> pairs, ContactLoad& load);
-    void ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out);
+    Crowds::Limits limits_of_crowds() const;
+    void find_crowds(const ContactCache& cache, std::vector<double>& until);
+    void ask_search(const ContactCache& cache, std::vector<double>& until, SearchChoice& out);
+    void ask_search(std::size_t detector, ContactLoad load, SearchChoice::Of& out);
+    SearchChange apply(const SearchChoice& choice);
+    bool is_crowded(Ref a, Ref b) const { return crowded_[a.index] != 0 || crowded_[b.index] != 0; }
     bool passes_along(Ref body, Ref other, const Vec3& towards, Ref below, const Vec3& down) const;
     bool has_edges(Ref body) const;
     std::optional<Vec3> seam_below(Ref body, Ref other, const Vec3& towards, std::span<const FoundContact> beside);
@@ -206,7 +231,8 @@ private:
     ContactLog log_;
     RestingPairs resting_{step_.world, step_.groups, cache_, step_.report.visited};
     std::vector<FoundContact> found_;
-    std::vector<FoundRun> runs_;                ///< of found_
+    std::vector<FoundRun> runs_;  ///< of found_
+    std::uint64_t found_revision_ = 0;
     std::vector<Vec3> extents_of_body_;         ///< m, about C along the axes of B: no point is further; infinite where they are not known
     std::vector<double> radius_of_body_;        ///< m, about C; infinite for planes
     std::vector<double> thickness_of_body_;     ///< m, half of the smallest width of its shapes; infinite for planes
@@ -229,14 +255,10 @@ private:
     std::vector<Shortlist> shortlists_;  ///< lists keep their memory
     std::vector<std::uint32_t> short_places_;
     IndexSet asked_;  ///< bodies
-    struct IslandCount
-    {
-        std::uint32_t bodies = 0, points = 0;
-    };
-    DisjointSets load_islands_;             ///< of bodies
-    std::vector<IslandCount> load_counts_;  ///< by representative body
-    std::vector<ImpactSearch> searches_;    ///< by detector, in this step
-    std::vector<ImpactSearch> imposed_;     ///< by detector; empty: they choose
+    Crowds crowds_{step_};
+    std::vector<std::uint8_t> crowded_;    ///< see crowded()
+    SearchChoice choice_;                  ///< of this step
+    std::optional<SearchChoice> imposed_;  ///< empty: they choose
     std::vector<PersistentPair> persistent_;
     std::vector<std::uint32_t> places_, seam_places_;
     std::vector<std::uint8_t> passed_;

@@ -144,6 +144,7 @@ void ContactCache::copy(const ContactCache& from)
     copy_forces(from.force_pairs_, force_pairs_), copy_forces(from.parked_force_pairs_, parked_force_pairs_);
     next_id_ = from.next_id_, may_have_rest_depth_ = from.may_have_rest_depth_;
     rest_.copy(from.rest_);
+    crowded_until_ = from.crowded_until_;
 }
 
 namespace
@@ -186,6 +187,8 @@ void describe(Detector& d, const world::World& world)
     if (!find_command(world, d.resolution, Phase::Locate)) return;
     d.speculation_acceleration = {world, d.resolution, "acceleration"}, d.max_work = {world, d.resolution, "max_work"};
     d.base_work = {world, d.resolution, "base_work"};
+    d.max_bodies = {world, d.resolution, "max_bodies"}, d.max_points = {world, d.resolution, "max_points"};
+    d.dwell = {world, d.resolution, "dwell"};
     const TypeInfo& resolution = world.type_of(d.resolution)->info;
     d.adapts = resolution.adapts && !d.by_force;
     d.speculates = resolution.speculates;

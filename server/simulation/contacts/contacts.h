@@ -50,7 +50,8 @@ struct Detector
     std::uint32_t response = kNoIndex;    ///< component
     std::uint32_t manager = kNoIndex;     ///< component; for a response by rows
     const CommandInfo* gap = nullptr;     ///< command that measures the gap of two bodies; null: it has none
-    bool adapts = false;                  ///< the resolution chooses the next four for each step (ContactBook::choose_search)
+    bool adapts = false;                  ///< the resolution chooses the next five for each step (ContactBook::choose_search)
+    bool spares_crowds = false;           ///< what it locates does not hold for pairs with a crowded body (ContactBook::locates)
     bool locates = false, local = false;
     bool certifies = false;                              ///< the resolution uses motion bounds: no impact inside the step is missed
     bool speculates = false;                             ///< gaps that may close within the step count as contacts, with depth < 0
@@ -62,8 +63,11 @@ struct Detector
     DeclaredNumber steps_per_contact, max_substeps;      ///< of a response that is a force
     DeclaredNumber speculation_acceleration;             ///< m/s^2, of a resolution that speculates
     DeclaredNumber max_work, base_work;                  ///< of a resolution that locates
-    /// Contacts are not events: a touching pair is persistent at once, and a manager or a force handles it.
+    DeclaredNumber max_bodies, max_points, dwell;        ///< of one that adapts: limits of crowds
+    /// Contacts are not events: each touching pair is persistent at once, and a manager or a force handles it.
     bool persists() const { return by_force || (by_rows && !locates); }
+    /// The same, of some pairs.
+    bool may_persist() const { return persists() || (by_rows && spares_crowds); }
 };
 
 /// A contact as found now, with the index of its detector.
@@ -240,6 +244,9 @@ public:
     /// Which bodies rest, and the pairs of islands that sleep: missing in pairs() until bring_back(), and last in each_pair().
     RestState& rest() { return rest_; }
     const RestState& rest() const { return rest_; }
+    /// s, by host row: Crowds::find().
+    std::vector<double>& crowded_until() { return crowded_until_; }
+    const std::vector<double>& crowded_until() const { return crowded_until_; }
     void bring_back(const world::World& world);
     void each_pair(const auto& job) const;  // sleeping_pairs.h
     /// Hash of everything that later steps depend on, mixed into `start`.
@@ -259,6 +266,7 @@ private:
     std::uint64_t next_id_ = 1;
     bool may_have_rest_depth_ = true;
     RestState rest_;
+    std::vector<double> crowded_until_;
 };
 
 template <class Ends>
@@ -291,7 +299,7 @@ void ContactCache::copy_if(const ContactCache& from, Keep keep, KeepForces keep_
         if (keep_forces(p.a, p.b)) force_pairs_.push_back(p);
     parked_pairs_ = from.parked_pairs_, parked_force_pairs_ = from.parked_force_pairs_;
     next_id_ = from.next_id_, may_have_rest_depth_ = from.may_have_rest_depth_;
-    rest_ = from.rest_;
+    rest_ = from.rest_, crowded_until_ = from.crowded_until_;
 }
 
 /// Detectors of a scene, in id order.

@@ -8,12 +8,14 @@ namespace plab::simulation
 
 void HardContacts::begin_step()
 {
-    if (contacts_.choose_search()) held_.forget_state();
+    const ContactBook::SearchChange change = contacts_.choose_search();
+    if (change == ContactBook::SearchChange::Margins) held_.forget_state();
     if (sleeping_.begin_step()) held_.forget_state();
     held_.note_starts(sleeping_.may_sleep());
     parts_.begin_step();
     if (held_.any())
-        for (held_.begin_step(); sleeping_.wake_touched(held_.fresh()); held_.begin_step()) held_.forget_state();
+        for (held_.begin_step(change == ContactBook::SearchChange::Crowds); sleeping_.wake_touched(held_.fresh()); held_.begin_step(false))
+            held_.forget_state();
     // A step that starts from a snapshot has to detect contacts that are otherwise known from the step before. This must not count in the
     // work budget, or the step would not be reproducible.
     step_.report.further_pairs = 0;

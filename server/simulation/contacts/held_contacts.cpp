@@ -31,7 +31,7 @@ void HeldIslands::note_state()
     const Bodies& bodies = step_.world.host().bodies;
     const RestState& rest = contacts_.cache().rest();
     const std::vector<std::uint32_t>* const some = known_ ? rest.changing_since(known_mark_) : nullptr;
-    known_ = true, known_mark_ = rest.mark;
+    known_ = true, known_mark_ = rest.mark, known_found_ = contacts_.found_revision();
     if (some)
         for (const std::uint32_t b : *some)
         {
@@ -48,7 +48,8 @@ void HeldIslands::note_state()
 bool HeldIslands::is_current() const
 {
     const Bodies& bodies = step_.world.host().bodies;
-    if (!known_) return false;
+    // Events may have been looked for at the end of the step since.
+    if (!known_ || known_found_ != contacts_.found_revision()) return false;
     // The margin up to which gaps are detected depends on velocities.
     if (const std::vector<std::uint32_t>* const some = contacts_.cache().rest().changing_since(known_mark_))
         return std::all_of(some->begin(), some->end(),
@@ -61,13 +62,14 @@ bool HeldIslands::is_current() const
     return known_velocities_ == bodies.velocity && known_spins_ == bodies.angular_velocity;
 }
 
-void HeldIslands::begin_step()
+void HeldIslands::begin_step(bool other_crowds)
 {
     find_yielding_rows();
     const bool any_persists = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(),
-                                          [](const Detector& d) { return d.by_rows && d.persists(); });
-    if (!any_persists || is_current()) return;
-    contacts_.detect_all();
+                                          [](const Detector& d) { return d.by_rows && d.may_persist(); });
+    const bool current = is_current();
+    if (!any_persists || (current && !other_crowds)) return;
+    if (!current) contacts_.detect_all();
     adopt(contacts_.found(), step_.frame.start_time);
     note_state();
 }
@@ -83,7 +85,7 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
         if (at < keys.size() && keys[at] == run.key) continue;
         const FoundContact& first = found[run.first];
         const Detector& d = contacts_.detectors()[first.detector];
-        if (!d.by_rows || !d.persists()) continue;
+        if (!d.by_rows || !contacts_.persists(d, first.contact.a, first.contact.b)) continue;
         double deepest = first.contact.depth;
         for (std::uint32_t i = run.first; i < run.end; ++i) deepest = std::max(deepest, found[i].contact.depth);
         PairState& pair = fresh_.emplace_back();
@@ -150,7 +152,9 @@ void HeldIslands::report_begin(const PairState& pair, const Contact& c, double t
 bool HeldIslands::keeps_ahead(PairState& pair, bool touches, std::span<const FoundContact> found, double time) const
 {
     if (touches && pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, found.front().contact, time);
-    return !touches && !found.empty() && contacts_.detectors()[found.front().detector].speculates;
+    if (touches || found.empty()) return false;
+    const FoundContact& f = found.front();
+    return contacts_.speculates(contacts_.detectors()[f.detector], f.contact.a, f.contact.b);
 }
 
 void HeldIslands::pass_on(PairState& pair, std::uint32_t known, std::span<const FoundContact> found) const
@@ -176,14 +180,13 @@ void HeldIslands::collect_contacts(double from, double h, bool trial)
     run_count_ = 0;
     const auto& detectors = contacts_.detectors();
     const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return !d.persists(); }),
-               persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return d.persists(); });
+               persists = std::any_of(detectors.begin(), detectors.end(), [](const Detector&d) { return d.may_persist(); });
     const bool known = persists && from == 0 && is_current();
     if (!known || locates)
     {
-        contacts_.touching_pairs_of(held_, touching_, h);
+        contacts_.touching_pairs_of(held_, touching_, h, known);
         contacts_.warm_start(touching_, trial);
     }
-    if (known) std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
     list_touching();
     if (known) list_known();
     all_.clear();
@@ -212,7 +215,7 @@ void HeldIslands::list_known()
     {
         while (at < keys.size() && keys[at] < run.key) ++at;
         if (at == keys.size() || keys[at] != run.key || !pairs[at].resting) continue;
-        if (!contacts_.detectors()[found[run.first].detector].persists()) continue;
+        if (!contacts_.persists(contacts_.detectors()[found[run.first].detector], pairs[at].a, pairs[at].b)) continue;
         add_run(std::span(found).subspan(run.first, run.end - run.first), &pairs[at], true);
     }
 }

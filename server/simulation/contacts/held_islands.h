@@ -137,8 +137,8 @@ public:
     bool holds_joints() const { return holds_joints_; }
     bool holds_joints_of(std::uint32_t group) const { return holds_joints_ && yields_[group] != 0; }
     /// At the start of a step: detects the contacts at the present state, unless they are known from the end of the last step, and adds
-    /// the pairs that are new.
-    void begin_step();
+    /// the pairs that are new. `other_crowds`: what is known may have other persistent pairs (ContactBook::SearchChange).
+    void begin_step(bool other_crowds);
     /// Adds pairs that are not known yet, of detectors whose contacts are persistent at once (Detector::persists); reports each as
     /// contact.begin.
     void adopt(std::vector<FoundContact>& found, double time);
@@ -322,6 +322,7 @@ private:
     std::vector<Vec3> known_positions_, known_velocities_, known_spins_;
     std::vector<Quat> known_orientations_;
     std::shared_ptr<const char> known_mark_;  ///< RestState::mark
+    std::uint64_t known_found_ = 0;           ///< ContactBook::found_revision()
     bool known_ = false;
     // The state that is put back after the forces have been booked.
     std::vector<Vec3> kept_positions_, kept_velocities_, kept_spins_, kept_momenta_;

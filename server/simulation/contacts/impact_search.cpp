@@ -1,13 +1,13 @@
 // How the impacts of a step are found, where the resolution of a detection adapts to its contacts (TypeInfo::adapts).
 //
-// The choice is made at the start of each step, from the known pairs and the velocities alone: all of these are state, so a run that is
-// rewound or restored makes the same choice.
+// The choice is made at the start of each step, from the known pairs, the velocities and what was crowded before (crowds.h): all of these
+// are state, so a run that is rewound or restored makes the same choice.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "simulation/contacts/contact_book.h"
-#include "simulation/contacts/sleeping_pairs.h"
 #include "simulation/motion/component_call.h"
 
 namespace plab::simulation
@@ -34,10 +34,11 @@ double largest_travel(const Bodies& bodies, std::span<const double> radius_of_bo
     return most;
 }
 
-void apply(ImpactSearch search, Detector& d)
+void set(Detector& d, ImpactSearch apart, ImpactSearch crowded)
 {
-    d.locates = d.local = d.certifies = search == ImpactSearch::Locate;
-    d.speculates = search == ImpactSearch::Speculate;
+    d.locates = d.local = d.certifies = apart == ImpactSearch::Locate;
+    d.spares_crowds = crowded != apart;
+    d.speculates = crowded == ImpactSearch::Speculate;
 }
 
 ImpactSearch search_of(const Detector& d)
@@ -47,43 +48,8 @@ ImpactSearch search_of(const Detector& d)
 
 }  // namespace
 
-/// Fills in the largest islands of persistent contacts and of joints of bodies that touch something, over all detections: a body may rest
-/// on what another detection holds, and an impact on one link of a chain is an impact on all of them.
-template <class Pair>
-void ContactBook::measure_islands(std::span<const Pair> pairs, ContactLoad& load)
-{
-    const Bodies& bodies = step_.world.host().bodies;
-    load_islands_.reset(bodies.size());
-    load_counts_.assign(bodies.size(), {});
-    // Before contacts join anything, so that the first and the last member tell whether a group has been joined already.
-    const auto join_members = [&](Ref body)
-    {
-        const std::uint32_t g = bodies.dynamic(body.index) ? step_.groups.of(body) : kNoIndex;
-        if (g == kNoIndex || step_.groups.all[g].rows.empty()) return;
-        const std::vector<std::uint32_t>& members = step_.groups.all[g].bodies;
-        if (load_islands_.find(members.back()) == load_islands_.find(members.front())) return;
-        for (const std::uint32_t b : members) load_islands_.join(members.front(), b);
-    };
-    for (const Pair& p : pairs) join_members(p.a), join_members(p.b);
-    // Points are counted at one body of each pair first, so that the pairs are gone through once.
-    for (const Pair& p : pairs)
-    {
-        if (!p.resting) continue;
-        if (bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) load_islands_.join(p.a.index, p.b.index);
-        load_counts_[bodies.dynamic(p.a.index) ? p.a.index : p.b.index].points += p.count;
-    }
-    for (std::uint32_t b = 0; b < bodies.size(); ++b)
-    {
-        const std::uint32_t root = load_islands_.find(b);
-        IslandCount& island = load_counts_[root];
-        if (root != b) island.points += load_counts_[b].points;
-        load.island_points = std::max(load.island_points, island.points);
-        if (bodies.dynamic(b)) ++load.bodies, load.island_bodies = std::max(load.island_bodies, ++island.bodies);
-    }
-}
-
 /// What touches before the first step, when no pair is known yet: what was built on the ground stands there, and is no impact.
-std::vector<ContactBook::FirstTouch> ContactBook::first_touches()
+std::vector<FirstTouch> ContactBook::first_touches()
 {
     double margin = 0;
     for (const double radius : radius_of_body_)
@@ -103,33 +69,77 @@ std::vector<ContactBook::FirstTouch> ContactBook::first_touches()
     return out;
 }
 
-/// Asks the resolutions that adapt, for the state of all bodies and `pairs`. Others keep what they have.
-void ContactBook::ask_search(std::span<const PairState> pairs, std::vector<ImpactSearch>& out)
+/// With several resolutions that adapt, the smallest limits and the longest dwell hold for all. Sensors do not count.
+Crowds::Limits ContactBook::limits_of_crowds() const
 {
-    ContactLoad load;
-    if (pairs.empty() && step_.frame.tick == 0)
-        measure_islands(std::span<const FirstTouch>(first_touches()), load);
-    else
-        measure_islands(pairs, load);
-    for (const auto& island : std::as_const(cache_).rest().islands)
-    {
-        load.island_bodies = std::max(load.island_bodies, static_cast<std::uint32_t>(island->bodies.size()));
-        load.island_points = std::max(load.island_points, island->points);
-    }
-    load.travel = largest_travel(step_.world.host().bodies, radius_of_body_, thickness_of_body_, step_.frame.step);
-    out.clear();
+    Crowds::Limits out;
     for (const Detector& d : detectors_)
     {
-        ImpactSearch& search = out.emplace_back(search_of(d));
-        if (!d.adapts) continue;
-        load.has_manager = d.by_rows, load.search = ImpactSearch::AtEnd;
-        ComponentCall question(step_, d.resolution);
-        question.arguments.load = &load;
-        question.run(Phase::Choose);
-        search = load.search;
-        if (search == ImpactSearch::Locate && !d.gap) search = ImpactSearch::AtEnd;
-        if (search == ImpactSearch::Speculate && !d.by_rows) search = ImpactSearch::AtEnd;
+        if (!d.adapts || (!d.responds && !d.by_rows)) continue;
+        out.bodies = std::min(out.bodies, d.max_bodies.value_or(HUGE_VAL));
+        out.points = std::min(out.points, d.max_points.value_or(HUGE_VAL));
+        out.dwell = std::max(out.dwell, d.dwell.value_or(0));
     }
+    return out;
+}
+
+void ContactBook::find_crowds(const ContactCache& cache, std::vector<double>& until)
+{
+    if (cache.pairs().empty() && step_.frame.tick == 0)
+        crowds_.find(std::span<const FirstTouch>(first_touches()), cache.rest(), limits_of_crowds(), until);
+    else
+        crowds_.find(cache.pairs(), cache.rest(), limits_of_crowds(), until);
+}
+
+/// Asks the resolutions that adapt, for the state of all bodies and the pairs of `cache`. Others keep what they have.
+void ContactBook::ask_search(const ContactCache& cache, std::vector<double>& until, SearchChoice& out)
+{
+    find_crowds(cache, until);
+    ContactLoad load;
+    load.bodies = crowds_.bodies(), load.crowded = crowds_.crowded();
+    load.island_bodies = crowds_.island_bodies(), load.island_points = crowds_.island_points();
+    load.travel = largest_travel(step_.world.host().bodies, radius_of_body_, thickness_of_body_, step_.frame.step);
+    out.of.clear(), out.crowded.clear();
+    bool spares = false;
+    for (std::size_t d = 0; d < detectors_.size(); ++d)
+    {
+        const ImpactSearch present = search_of(detectors_[d]);
+        out.of.push_back({present, present});
+        SearchChoice::Of& own = out.of.back();
+        if (detectors_[d].adapts) ask_search(d, load, own);
+        spares = spares || own.apart != own.crowded;
+    }
+    if (spares) out.crowded = crowds_.by_body();
+}
+
+void ContactBook::ask_search(std::size_t detector, ContactLoad load, SearchChoice::Of& out)
+{
+    const Detector& d = detectors_[detector];
+    load.has_manager = d.by_rows;
+    ComponentCall question(step_, d.resolution);
+    question.arguments.load = &load;
+    question.run(Phase::Choose);
+    const auto possible = [&](ImpactSearch search)
+    {
+        const bool lacks = (search == ImpactSearch::Locate && !d.gap) || (search == ImpactSearch::Speculate && !d.by_rows);
+        return lacks ? ImpactSearch::AtEnd : search;
+    };
+    out = {possible(load.search), possible(load.crowded_search)};
+    // Crowds are spared where they are contacts of a manager. Otherwise all pairs would have to be looked at again after each impact.
+    const bool some = load.crowded > 0 && load.crowded < load.bodies;
+    if (load.crowded == 0)
+        out.crowded = out.apart;
+    else if (!some || out.apart != ImpactSearch::Locate || !d.by_rows)
+        out.apart = out.crowded;
+}
+
+void ContactBook::crowd_all()
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    std::vector<double>& until = cache_.crowded_until();
+    until.resize(bodies.size(), -HUGE_VAL);
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+        if (bodies.dynamic(b)) until[b] = step_.frame.start_time + step_.frame.step;
 }
 
 bool ContactBook::adapts() const
@@ -139,30 +149,39 @@ bool ContactBook::adapts() const
 
 void ContactBook::search_as(const ContactBook& whole)
 {
-    imposed_.clear();
+    imposed_.reset();
     // Before the first step the whole scene knows no pairs, and the part chooses by what touches in it.
     if (step_.frame.tick == 0 && whole.cache_.pairs().empty()) return;
-    ask_search(whole.cache_.pairs(), imposed_);
+    std::vector<double> until = whole.cache_.crowded_until();
+    ask_search(whole.cache_, until, imposed_.emplace());
 }
 
-bool ContactBook::choose_search()
+ContactBook::SearchChange ContactBook::choose_search()
 {
-    if (!adapts()) return false;
-    if (imposed_.empty())
-        ask_search(std::as_const(cache_).pairs(), searches_);
+    if (!adapts()) return SearchChange::None;
+    if (imposed_)
+        choice_ = *imposed_;
     else
-        searches_ = imposed_;
-    bool changed = false;
+        ask_search(std::as_const(cache_), cache_.crowded_until(), choice_);
+    return apply(choice_);
+}
+
+ContactBook::SearchChange ContactBook::apply(const SearchChoice& choice)
+{
+    SearchChange changed = crowded_ == choice.crowded ? SearchChange::None : SearchChange::Crowds;
+    crowded_ = choice.crowded;
     for (std::size_t k = 0; k < detectors_.size(); ++k)
     {
         Detector& d = detectors_[k];
         if (!d.adapts) continue;
-        changed = changed || searches_[k] != search_of(d);
-        apply(searches_[k], d);
-        if (!d.persists()) continue;
+        const auto [apart, crowded] = choice.of[k];
+        const std::tuple before(d.locates, d.spares_crowds, d.speculates);
+        set(d, apart, crowded);
+        if (std::tuple(d.locates, d.spares_crowds, d.speculates) != before) changed = SearchChange::Margins;
+        if (!d.may_persist()) continue;
         // A pair between two bounces is a contact like any other where impacts are not located.
         for (PairState& p : cache_.pairs())
-            if (p.detector == d.component) p.resting = true;
+            if (p.detector == d.component && persists(d, p.a, p.b)) p.resting = true;
         resting_.forget();
     }
     return changed;

@@ -37,7 +37,7 @@ struct RestSample
 struct RestState
 {
     std::vector<BodyRest> bodies;   ///< by host row; empty: nothing has been counted
-    std::uint64_t scene_cause = 0;  ///< hash of what the rest of all sleeping bodies depends on
+    std::uint64_t scene_cause = 0;  ///< hash of what the rest of all sleeping bodies depends on; 0: nothing sleeps
     /// The islands that sleep, with their pairs; the cache's list has them no more. Empty although bodies sleep: their pairs are in that
     /// list, and the next step puts them away again. Shared with copies.
     std::vector<std::shared_ptr<const SleepingIsland>> islands;

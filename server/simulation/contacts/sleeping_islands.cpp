@@ -49,7 +49,7 @@ void SleepingIslands::read_rules()
     {
         const Rule& rule = rules_[d];
         const double after = rule.after.value_or(0);
-        on_ = on_ && contacts_.detectors()[d].by_rows && contacts_.detectors()[d].persists() && after > 0;
+        on_ = on_ && contacts_.detectors()[d].by_rows && contacts_.detectors()[d].may_persist() && after > 0;
         after_ = std::max(after_, after);
         speed_ = std::min(speed_, rule.speed.value_or(0));
     }
@@ -161,6 +161,9 @@ void SleepingIslands::join_pairs()
     for (const PairState& p : std::as_const(contacts_).cache().pairs())
     {
         const bool a = bodies.dynamic(p.a.index), b = bodies.dynamic(p.b.index);
+        if (!p.resting)  // between two bounces
+            for (const Ref r : {p.a, p.b})
+                if (bodies.dynamic(r.index)) states_[r.index] = State::Blocked;
         if (a && b)
         {
             sets_.join(p.a.index, p.b.index);
@@ -317,7 +320,7 @@ std::string SleepingIslands::reason() const
         const Detector& detector = contacts_.detectors()[d];
         const std::string& id = step_.world.id_of(detector.component);
         if (!detector.by_rows) return id + " keeps everything awake: its response is not by rows";
-        if (detector.locates) return id + " keeps everything awake: it locates impacts inside the step";
+        if (!detector.may_persist()) return id + " keeps everything awake: it locates impacts inside the step";
         if (!(rules_[d].after.value_or(0) > 0)) return id + " keeps everything awake: its manager has no sleep_after";
     }
     std::size_t never = 0;

@@ -26,6 +26,7 @@ bool SleepingIslands::begin_step()
     contacts_.detect_all_once();
     const bool asleep = std::any_of(r.bodies.begin(), r.bodies.end(), [](const BodyRest& b) { return b.asleep; });
     if (asleep && r.islands.empty()) put_pairs_away();
+    if (!asleep) r.scene_cause = 0;
     list_awake();
     const std::size_t before = r.islands.size();
     if (!on_)
@@ -65,6 +66,7 @@ void SleepingIslands::wake(std::vector<std::uint32_t> places, const char* why, R
         else
             r.islands[kept++] = std::move(r.islands[i]);
     r.islands.resize(kept);
+    if (r.islands.empty()) r.scene_cause = 0;
     r.note_change();
 }
 

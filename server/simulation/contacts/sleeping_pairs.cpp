@@ -2,6 +2,7 @@
 #include "simulation/contacts/sleeping_pairs.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "world/state_hash.h"
 
@@ -44,6 +45,15 @@ std::uint64_t hash_of_contact(const ForceContact& c)
          {c.rest_depth, c.preload, c.open_depth, c.approach, c.begin, c.depth, c.peak, c.half_period, c.swing_speed, c.peak_swing_speed})
         h = mix(h, x);
     return h;
+}
+
+/// A sum of well mixed terms, so that the order of rows does not matter.
+std::uint64_t mix_crowds(std::uint64_t h, const std::vector<double>& until, const world::World& world)
+{
+    std::uint64_t sum = 0;
+    for (std::uint32_t b = 0; b < until.size(); ++b)
+        if (std::isfinite(until[b])) sum += mix(mix(0, std::uint64_t{world.rank(Ref{Facet::Body, b})}), until[b]);
+    return sum == 0 ? h : mix(h, sum);
 }
 
 }  // namespace
@@ -104,6 +114,7 @@ std::uint64_t ContactCache::state_hash(const world::World& world, std::uint64_t 
         h = mix(mix(h, hash_of_name(world.id_of(p.a))), hash_of_name(world.id_of(p.b)));
         for (const ForceContact& c : p.all()) h = mix(h, hash_of_contact(c));
     }
+    h = mix_crowds(h, crowded_until_, world);
     if (rest_.bodies.empty()) return h;
     for (const auto& island : rest_.islands)
         for (const PairState& p : island->pairs) asleep += hash_of_pair(world, p);
@@ -115,9 +126,14 @@ void ContactCache::refresh(const world::World& world, const std::vector<Detector
     for (const auto& island : rest_.islands) pairs_.insert(pairs_.end(), island->pairs.begin(), island->pairs.end());
     keys_.resize(pairs_.size());  // sorted below
     rest_.islands.clear(), rest_.note_change();
-    rest_.bodies.resize(std::min(rest_.bodies.size(), world.host().bodies.size()));
-    for (std::uint32_t b = 0; b < rest_.bodies.size(); ++b)
-        if (world.host().component_of({Facet::Body, b}) == kNoIndex) rest_.bodies[b] = {};
+    const std::size_t count = world.host().bodies.size();
+    rest_.bodies.resize(std::min(rest_.bodies.size(), count)), crowded_until_.resize(std::min(crowded_until_.size(), count));
+    for (std::uint32_t b = 0; b < count; ++b)
+    {
+        if (world.host().component_of({Facet::Body, b}) != kNoIndex) continue;
+        if (b < rest_.bodies.size()) rest_.bodies[b] = {};
+        if (b < crowded_until_.size()) crowded_until_[b] = -HUGE_VAL;
+    }
     const auto gone = [&](const PairState& p)
     {
         const bool has_detector =

@@ -22,13 +22,16 @@ void EventLocator::begin_motion_bounds()
         for (std::uint32_t b = 0; b < bodies.size(); ++b) extents_.push_back(extent_of(bodies, host.shapes, b));
         motion_margin_.assign(bodies.size(), 0.0), active_.begin(bodies.size());
     }
+    // Nothing is located of crowded bodies.
+    const std::span<const std::uint8_t> crowded = all_spare_ ? contacts_.crowded() : std::span<const std::uint8_t>();
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
     {
+        motion_margin_[b] = 0;
+        if (!crowded.empty() && crowded[b] != 0) continue;
         const BodyState last = BodyState::of(bodies, b);
         if (bodies.motion[b] == Motion::Static)
         {
             motions_[b] = prescribed_motion_bound(extents_[b], 0, last, step, last);
-            motion_margin_[b] = 0;
             continue;
         }
         motion_.start().restore_body(step_.world.host(), b);
@@ -59,22 +62,36 @@ void EventLocator::end_pieces()
         }
 }
 
-/// Makes candidates of all pairs whose expanded boxes overlap; with `only_rewound`, of those with a body whose trajectory the last answer
-/// changed. All others keep the bounds that they have.
-void EventLocator::find_near(bool only_rewound)
+/// Of those whose trajectory the last answer changed. All others keep the bounds that they have.
+void EventLocator::find_near_rewound()
+{
+    active_.clear();
+    for (const std::uint32_t g : disturbed_)
+        for (const std::uint32_t b : step_.groups.all[g].bodies) active_.add(b);
+    find_near(&active_);
+}
+
+/// Of those that are not crowded, whatever moves them. Pairs with crowded bodies, whose expanded boxes are old, are no candidates.
+void EventLocator::find_near_apart()
+{
+    active_.clear();
+    for (std::uint32_t b = 0; b < contacts_.crowded().size(); ++b)
+        if (contacts_.crowded()[b] == 0) active_.add(b);
+    find_near(&active_);
+}
+
+/// Makes candidates of all pairs whose expanded boxes overlap, with a body of `among`; null: all.
+void EventLocator::find_near(const IndexSet* among)
 {
     const Bodies& bodies = step_.world.host().bodies;
-    active_.clear();
-    if (only_rewound)
-        for (const std::uint32_t g : disturbed_)
-            for (const std::uint32_t b : step_.groups.all[g].bodies) active_.add(b);
     for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d)
     {
         const Detector& detector = contacts_.detectors()[d];
         if (!detector.certifies) continue;
         near_.clear();
         NearCollector sink(step_.world, motion_margin_, near_);
-        contacts_.query(detector, sink, only_rewound ? &active_ : nullptr);
+        contacts_.query(detector, sink, among);
+        std::erase_if(near_, [&](const NearCollector::Pair& pair) { return !contacts_.locates(detector, pair.a, pair.b); });
         budget_.spend(WorkBudget::kListedPair * static_cast<double>(near_.size()));
         for (const NearCollector::Pair& pair : near_)
             if (bodies.dynamic(pair.a.index) || bodies.dynamic(pair.b.index)) consider_near(d, pair.a, pair.b);

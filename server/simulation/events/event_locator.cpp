@@ -88,7 +88,7 @@ void EventLocator::consider(const std::vector<FoundContact>& found, std::size_t 
 {
     const FoundContact& first = found[begin];
     const Detector& detector = contacts_.detectors()[first.detector];
-    if (detector.persists() || (detector.certifies && !answers_at_end_)) return;
+    if (contacts_.persists(detector, first.contact.a, first.contact.b) || (detector.certifies && !answers_at_end_)) return;
     bool overlaps = false, approaching = false;
     for (std::size_t i = begin; i < end; ++i)
     {
@@ -199,11 +199,12 @@ void EventLocator::process()
     if (first.at_end)
     {
         // Answered where the step ends: nothing is rewound, only velocities change.
+        pushed_since_ = true;
         answer();
         for (const std::uint32_t g : scope_) motion_.save_end(g);
         return;
     }
-    rewound_ = true;
+    rewound_ = true, found_ = false;
     // The work that was booked for the pieces up to the end of the step is taken back, then booked again in two parts: up to the event
     // here, and from it in go_on().
     advance_scope(step_.frame.step, {&step_.work, -1}, true);
@@ -226,10 +227,10 @@ void EventLocator::process()
 void EventLocator::detect_again(std::vector<FoundContact>& found)
 {
     // Only pairs with a rewound member can have changed; all other candidates stay valid.
-    if (any_certifies_) find_near(true);
-    if (all_certify_) return;
+    if (any_certifies_) find_near_rewound();
+    if (!any_at_end_) return;
     const double before = sweeps_and_queries();
-    contacts_.detect_all();
+    detect_at_end();
     budget_.spend(WorkBudget::kListedPair * static_cast<double>(step_.groups.all.size() + found.size()) + sweeps_and_queries() - before);
     collect(found);
 }
@@ -284,7 +285,7 @@ void EventLocator::answer_the_rest(std::size_t left, std::vector<FoundContact>& 
     report_too_many(left);
     queue_.clear(), free_.clear(), chosen_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
-    contacts_.detect_all();
+    detect_at_end();
     answers_at_end_ = true;
     collect(found);
     answers_at_end_ = false;
@@ -317,13 +318,16 @@ void EventLocator::answer_the_rest(std::size_t left, std::vector<FoundContact>& 
     }
 }
 
-void EventLocator::run(std::vector<FoundContact>& found)
+void EventLocator::begin_run()
 {
     const auto& detectors = contacts_.detectors();
-    if (std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); }))
-        return contacts_.detect_all();  // there are no events
     any_certifies_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
-    all_certify_ = std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
+    all_certify_ = std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies && !d.spares_crowds; });
+    any_at_end_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.certifies && !d.persists(); });
+    const auto spares = [](const Detector& d) { return d.spares_crowds || !d.locates; };
+    all_spare_ = !contacts_.crowded().empty() && std::all_of(detectors.begin(), detectors.end(), spares);
+    any_persists_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_rows && d.may_persist(); });
+    found_ = pushed_since_ = false;
     meets_force_contact_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_force; });
     begin_budget();
     queue_.clear(), free_.clear(), unpressed_.clear(), met_at_begin_.clear();
@@ -331,8 +335,55 @@ void EventLocator::run(std::vector<FoundContact>& found)
     versions_.assign(step_.groups.all.size(), 0);
     met_.assign(step_.world.host().bodies.size(), {});
     if (std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); })) note_resting_groups();
-    if (any_certifies_) begin_motion_bounds(), find_near(false);
-    if (!all_certify_) contacts_.detect_all(), collect(found);
+}
+
+void EventLocator::run(std::vector<FoundContact>& found)
+{
+    const auto& detectors = contacts_.detectors();
+    if (std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); }))
+        return contacts_.detect_all();  // there are no events
+    begin_run();
+    if (any_certifies_) begin_motion_bounds();
+    const bool few = all_spare_ && few_are_apart();
+    if (few || any_at_end_) detect_at_end();
+    if (few)
+        find_near_apart();
+    else if (any_certifies_)
+        find_near(nullptr);
+    if (any_at_end_) collect(found);
+    answer_all(found);
+    find_at_end();
+    if (all_spare_ && budget_.is_too_much_beside_crowds()) contacts_.crowd_all();
+}
+
+/// Whether looking for what is near all bodies would cost more than looking for the contacts at the end once more, where there are impacts.
+bool EventLocator::few_are_apart() const
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    std::int64_t more_crowded = 0;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+        if (bodies.dynamic(b)) more_crowded += contacts_.crowded()[b] != 0 ? 1 : -1;
+    return more_crowded > 0;
+}
+
+void EventLocator::detect_at_end()
+{
+    contacts_.detect_all();
+    found_ = true, pushed_since_ = false;
+}
+
+/// Which gaps a manager holds depends on the velocities.
+void EventLocator::find_at_end()
+{
+    if (all_certify_ && !found_)
+        contacts_.detect_known_pairs();
+    else if (!found_ || (pushed_since_ && any_persists_))
+        detect_at_end();
+}
+
+/// Answers the events in the order of their times.
+void EventLocator::answer_all(std::vector<FoundContact>& found)
+{
     std::uint32_t slot = 0;
     while (!step_.frame.give_up() && pop(slot))
     {
@@ -358,7 +409,6 @@ void EventLocator::run(std::vector<FoundContact>& found)
         for (const std::uint32_t done : chosen_) free_.push_back(done);
         if (rewound_) detect_again(found);
     }
-    if (all_certify_) contacts_.detect_known_pairs();
 }
 
 }  // namespace plab::simulation

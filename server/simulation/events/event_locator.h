@@ -153,6 +153,11 @@ private:
     void detect_again(std::vector<FoundContact>& found);
     void note_resting_groups();
     void note_resting_groups_of(const PairState& pair);
+    void begin_run();
+    void answer_all(std::vector<FoundContact>& found);
+    void detect_at_end();
+    void find_at_end();
+    bool few_are_apart() const;
     void begin_budget();
     double sweeps_and_queries() const;
     double held_bodies() const;
@@ -168,7 +173,9 @@ private:
 
     // event_candidates.cpp: pairs that may meet anywhere in the piece.
     void begin_motion_bounds();
-    void find_near(bool only_rewound);
+    void find_near(const IndexSet* among);
+    void find_near_rewound();
+    void find_near_apart();
     void consider_near(std::uint32_t detector, Ref a, Ref b);
     void detect_pair(const Candidate& candidate, const Vec3& shift, std::vector<FoundContact>& found);
     Mover mover(std::uint32_t body, const BodyState& now) const { return {body, &motions_[body], &extents_[body], now}; }
@@ -295,6 +302,11 @@ private:
     std::vector<std::uint32_t> met_bodies_;  ///< the bodies that take part in the present event
     DisjointSets left_islands_;
     bool any_certifies_ = false, all_certify_ = false;
+    bool any_at_end_ = false;    ///< a detector looks for impacts where the step ends
+    bool all_spare_ = false;     ///< all that locate spare crowds, and there are some
+    bool any_persists_ = false;  ///< a detector has pairs that a manager holds as soon as they touch
+    bool found_ = false;         ///< the contacts at the end of the step are known, at the positions that bodies have there
+    bool pushed_since_ = false;  ///< but they were found before an answer at the end of the step changed velocities
 
     Jointed jointed_;
     std::vector<MotionBound> motions_;   ///< by body

@@ -26,15 +26,23 @@ public:
     /// Cost in units of each pair of shapes of two bodies beyond the first one; a triangle of a mesh counts as a shape.
     static constexpr double kFurtherPair = 1.0 / 4;
 
+    /// Beside crowds, locating the impacts of the other bodies may cost as much as the rest of the step and this share of `base`; more than
+    /// that, and they are not worth it (EventLocator::run).
+    static constexpr double kBesideCrowds = 0x1p-5;
+
     /// `plain`: units that the step takes without event location.
-    void begin(double plain, double multiple, double base) { spent_ = 0, allowed_ = base + multiple * plain; }
+    void begin(double plain, double multiple, double base)
+    {
+        spent_ = 0, allowed_ = base + multiple * plain, allowed_beside_crowds_ = kBesideCrowds * base + plain;
+    }
     void spend(double units) { spent_ += units; }
     bool is_spent() const { return spent_ >= allowed_; }
+    bool is_too_much_beside_crowds() const { return spent_ >= allowed_beside_crowds_; }
     double spent() const { return spent_; }
     double allowed() const { return allowed_; }
 
 private:
-    double spent_ = 0, allowed_ = 0;
+    double spent_ = 0, allowed_ = 0, allowed_beside_crowds_ = 0;
 };
 
 }  // namespace plab::simulation

@@ -37,6 +37,7 @@ ContactsImage image_of(const ContactCache& from, const world::World& world)
     out.parked_force_pairs = taken_apart(cache.parked_force_pairs(), &ContactsImage::ForcePairs::heads);
     out.next_id = cache.next_id();
     out.rest = cache.rest().bodies, out.rest_cause = cache.rest().scene_cause;
+    out.crowded_until = cache.crowded_until();
     return out;
 }
 

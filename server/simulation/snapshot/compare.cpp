@@ -1,6 +1,7 @@
 #include "simulation/snapshot/compare.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "model/values.h"
@@ -215,6 +216,9 @@ Portrait contacts_of(const world::Image& image, const ContactsImage& contacts)
     out["contacts"].push_back({"next id", Weight::State, whole(contacts.next_id)});
     for (std::uint32_t b = 0; b < contacts.rest.size(); ++b)
         if (const BodyRest& r = contacts.rest[b]; !(r == BodyRest{})) add_rest(r, out["rest of " + names.body(b)]);
+    for (std::uint32_t b = 0; b < contacts.crowded_until.size(); ++b)
+        if (const double until = contacts.crowded_until[b]; std::isfinite(until))
+            out["crowd of " + names.body(b)].push_back({"crowded until", Weight::State, until});
     return out;
 }
 

@@ -1,5 +1,6 @@
 // From bytes to a snapshot.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "simulation/snapshot/format.h"
@@ -33,6 +34,7 @@ constexpr const char* kOtherSections[] = {"run",
                                           "parked_spring_pairs",
                                           "parked_spring_pairs.points",
                                           "rest",
+                                          "crowded",
                                           "waiting",
                                           "notes"};
 
@@ -276,7 +278,15 @@ private:
         for (auto& [name, list] :
              {std::pair<const char*, Springs*>{"spring_pairs", &c.force_pairs}, {"parked_spring_pairs", &c.parked_force_pairs}})
             if (auto done = read_pairs(name, &Springs::heads, &Springs::points, *list); !done) return done;
-        return read_rest();
+        if (auto done = read_rest(); !done) return done;
+        return read_crowded();
+    }
+
+    /// Whether a row's component is a body.
+    bool is_body(std::uint32_t component) const
+    {
+        const auto& components = directory_->components;
+        return component < components.size() && components[component].facet == Facet::Body && components[component].table != kNoIndex;
     }
 
     Result<void> read_rest()
@@ -288,10 +298,23 @@ private:
         if (!rows->empty()) c.rest.resize(out_->world.bodies.size());
         for (const Rest& row : *rows)
         {
-            const std::uint32_t i = row.component;
-            if (i >= components.size() || components[i].facet != Facet::Body || components[i].table == kNoIndex)
-                return reason("the snapshot's section 'rest' has a row that is not valid");
-            c.rest[components[i].host_index] = row.body, c.rest_cause = row.scene_cause;
+            if (!is_body(row.component)) return reason("the snapshot's section 'rest' has a row that is not valid");
+            c.rest[components[row.component].host_index] = row.body, c.rest_cause = row.scene_cause;
+        }
+        return {};
+    }
+
+    Result<void> read_crowded()
+    {
+        auto rows = rows_of<Crowded>(section("crowded"));
+        if (!rows) return rows.errors();
+        std::vector<double>& until = out_->contacts.crowded_until;
+        if (!rows->empty()) until.assign(out_->world.bodies.size(), -HUGE_VAL);
+        for (const Crowded& row : *rows)
+        {
+            if (!is_body(row.component) || !std::isfinite(row.until))
+                return reason("the snapshot's section 'crowded' has a row that is not valid");
+            until[directory_->components[row.component].host_index] = row.until;
         }
         return {};
     }

@@ -1,4 +1,5 @@
 // From a snapshot to bytes.
+#include <cmath>
 #include <map>
 
 #include "simulation/snapshot/build.h"
@@ -151,6 +152,11 @@ Result<std::vector<std::uint8_t>> encode(const Snapshot& snapshot, std::span<con
         if (const BodyRest& r = s.contacts.rest[b]; !(r == BodyRest{}))
             rest.push_back({rows.body({Facet::Body, b}).index, r, s.contacts.rest_cause});
     if (!rest.empty()) sections.push_back(section_of("rest", rest));
+    std::vector<Crowded> crowded;
+    for (std::uint32_t b = 0; b < s.contacts.crowded_until.size(); ++b)
+        if (const double until = s.contacts.crowded_until[b]; std::isfinite(until))
+            crowded.push_back({rows.body({Facet::Body, b}).index, until});
+    if (!crowded.empty()) sections.push_back(section_of("crowded", crowded));
 
     std::vector<Note> texts, all;
     for (const std::string& text : waiting) texts.push_back({{}, text});

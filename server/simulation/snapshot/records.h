@@ -38,7 +38,8 @@ void columns(RunRow& r, V visit)
 {
     visit("build", r.build), visit("run", r.run), visit("revision", r.revision), visit("state_hash", r.state_hash);
     visit("next_contact", r.next_contact), visit("departed_work", r.departed_work), visit("requests_work", r.requests_work);
-    visit("kinetic_at_start", r.kinetic_at_start), visit("told_stiff", r.reported_stiff), visit("told_stiff_forces", r.reported_stiff_forces);
+    visit("kinetic_at_start", r.kinetic_at_start), visit("told_stiff", r.reported_stiff),
+        visit("told_stiff_forces", r.reported_stiff_forces);
     visit("loaded_is_scene", r.loaded_is_scene);
 }
 
@@ -230,6 +231,18 @@ void columns(Rest& r, V visit)
     visit("component", r.component), visit("quiet", r.body.quiet), visit("asleep", r.body.asleep), visit("cause", r.body.cause);
     visit("moved", r.body.moved), visit("moved_before", r.body.moved_before);
     visit("turned", r.body.turned), visit("turned_before", r.body.turned_before), visit("scene_cause", r.scene_cause);
+}
+
+/// Until when a body has been in an island that is too large to locate its impacts. Others have no row.
+struct Crowded
+{
+    std::uint32_t component = 0;
+    double until = 0;
+};
+template <class V>
+void columns(Crowded& c, V visit)
+{
+    visit("component", c.component), visit("until", c.until);
 }
 
 /// The divergence watch, without what it keeps by component, body and shaft.

@@ -1,5 +1,6 @@
 // From a snapshot to a run.
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -96,6 +97,13 @@ void restore_contacts(const ContactsImage& image, const world::Renumbering& now,
     cache.continue_ids(image.next_id);
     cache.rest().bodies = rearranged(image.rest, world.host().bodies.size(), [&](std::uint32_t b) { return now.body(b); });
     cache.rest().scene_cause = image.rest_cause;
+    for (std::uint32_t b = 0; b < image.crowded_until.size(); ++b)
+    {
+        const std::uint32_t to = now.body(b);
+        if (to == kNoIndex || !std::isfinite(image.crowded_until[b])) continue;
+        cache.crowded_until().resize(world.host().bodies.size(), -HUGE_VAL);
+        cache.crowded_until()[to] = image.crowded_until[b];
+    }
     const auto before = [&](const auto& x, const auto& y)
     {
         const auto key = [&](const auto& p) { return std::tuple(world.rank(p.detector), world.rank(p.a), world.rank(p.b)); };

@@ -42,6 +42,7 @@ struct ContactsImage
     ForcePairs force_pairs, parked_force_pairs;
     std::vector<BodyRest> rest;  ///< by body
     std::uint64_t rest_cause = 0;
+    std::vector<double> crowded_until;  ///< s, by body: ContactCache::crowded_until()
     std::uint64_t next_id = 1;
 };
 

@@ -82,7 +82,7 @@ void TunnelWatch::find_colliding_bodies(const RunView& s)
     for (const Detector& d : s.stepper.detectors())
     {
         if (!d.responds && !d.by_rows && !d.by_force) continue;  // a sensor lets bodies pass through
-        CollidingBodies colliding{d.component, {}, d.certifies && !d.persists()};
+        CollidingBodies colliding{d.component, {}, d.certifies && !d.persists() && !d.adapts};
         for (const Role& role : world.table_of(d.component).schema().roles())
             for (const Ref r : world.participants(d.component, role))
                 if (r.facet == Facet::Body) colliding.bodies.push_back(r.index);

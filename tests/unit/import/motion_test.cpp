@@ -125,6 +125,34 @@ TEST_CASE("a joint that mimics another follows it as a gear")
     CHECK(near(scene.real("jb", "angle"), -1, 1e-6));
 }
 
+TEST_CASE("fingers of a gripper that slide follow one another, and so do joints in a chain")
+{
+    const std::string link =
+        "<inertial><mass value='1'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial></link>";
+    const std::string limit = "<limit lower='-9' upper='9' effort='9' velocity='9'/>";
+    const std::string gripper =
+        "<robot name='g'><link name='world'/><link name='a'>" + link + "<link name='b'>" + link +
+        "<joint name='ja' type='prismatic'><parent link='world'/><child link='a'/><axis xyz='0 1 0'/>" + limit +
+        "</joint><joint name='jb' type='prismatic'><parent link='world'/><child link='b'/><axis xyz='0 -1 0'/><mimic joint='ja' "
+        "multiplier='0.5'/>" +
+        limit + "</joint></robot>";
+    Scene fingers =
+        imported_scene(imported_text(gripper, SceneFormat::Urdf), "<component id='push' type='Field/Load' between='a' force='0 1 0'/>");
+    fingers.run(1);
+    CHECK(near(fingers.vec("a", "position").y, 0.5 / 1.25, 1e-6));  // m_a + m_b / 4
+    CHECK(near(fingers.vec("b", "position").y, -0.25 / 1.25, 1e-6));
+    const std::string chain =
+        "<robot name='g'><link name='world'/><link name='a'>" + link + "<link name='b'>" + link +
+        "<joint name='ja' type='continuous'><parent link='world'/><child link='a'/><axis xyz='0 0 1'/></joint><joint name='jb' "
+        "type='continuous'><parent link='a'/><child link='b'/><origin xyz='1 0 0'/><axis xyz='0 0 1'/><mimic joint='ja' "
+        "multiplier='0.8'/></joint></robot>";
+    Scene finger =
+        imported_scene(imported_text(chain, SceneFormat::Urdf), "<component id='push' type='Field/Load' between='a' torque='0 0 2'/>");
+    finger.run(1);
+    CHECK(finger.real("ja", "angle") > 0.2);
+    CHECK(near(finger.real("jb", "angle"), 0.8 * finger.real("ja", "angle"), 1e-9));
+}
+
 TEST_CASE("a planar joint moves in its plane and turns about its axis; floating is free")
 {
     Scene planar = imported_scene(imported_text(urdf_joint("planar", "<axis xyz='0 0 1'/>"), SceneFormat::Urdf),
