@@ -36,9 +36,10 @@ void write_rotor(const PlacedJoint& placed, const std::string& a, const std::str
     out.lines.push_back(
         component(rotor, "State/Shaft",
                   attribute("position", placed.anchor_W) + attribute("axis", placed.axis_W) + attribute("inertia", placed.joint.armature)));
-    out.lines.push_back(component(ids.make(out.id + ".armature"), "Constraint/Gear",
+    const bool slides = placed.joint.kind == JointKind::Slide;
+    out.lines.push_back(component(ids.make(out.id + ".armature"), slides ? "Constraint/Coupler" : "Constraint/Gear",
                                   attribute("driver", b) + attribute("driven", rotor) + (a.empty() ? "" : attribute("carrier", a)) +
-                                      attribute("driver_axis", placed.axis_W)));
+                                      (slides ? " driver_along=\"slide\"" : "") + attribute("driver_axis", placed.axis_W)));
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ JointText joint_text(const PlacedJoint& placed, const std::string& a, const std:
             ids.make(out.id + ".spring"), "Constraint/TorsionSpring",
             out.place + attribute("stiffness", j.stiffness) + attribute("damping", j.damping) + attribute("rest", j.rest - j.start)));
     write_friction(j, out, ids);
-    if (!slides) write_rotor(placed, a, b, out, ids);
+    write_rotor(placed, a, b, out, ids);
     return out;
 }
 

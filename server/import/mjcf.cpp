@@ -1,12 +1,14 @@
 #include "import/mjcf.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "import/mjcf_actuator.h"
 #include "import/mjcf_geom.h"
 #include "import/mjcf_include.h"
 #include "import/mjcf_settings.h"
+#include "import/mjcf_tendon.h"
 #include "objects/shapes/volume_integration.h"
 
 namespace plab::import
@@ -25,7 +27,8 @@ public:
     Robot read()
     {
         document_.list_attributes(root_, {"model"});
-        document_.list_children(root_, {"compiler", "option", "default", "asset", "worldbody", "contact", "equality", "actuator"});
+        document_.list_children(root_,
+                                {"compiler", "option", "default", "asset", "worldbody", "contact", "equality", "tendon", "actuator"});
         robot_.title = document_.text(root_, "model");
         robot_.step = settings_.step(), robot_.gravity = settings_.gravity(), robot_.base_collides = robot_.fixed_parents_collide = true;
         robot_.surface_rule = SurfaceRule::MuJoCo;
@@ -42,6 +45,10 @@ public:
                 for (const XmlElement& child : e.children) read_equality(child);
             else if (e.name == "contact")
                 for (const XmlElement& child : e.children) read_contact(child);
+        std::vector<FixedTendon> tendons;
+        for (const XmlElement& e : root_.children)
+            if (e.name == "tendon") std::ranges::move(read_tendons(e, document_), std::back_inserter(tendons));
+        put_on_joints(robot_.actuators, tendons, robot_.couplings, document_);
         return std::move(robot_);
     }
 

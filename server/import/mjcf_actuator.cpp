@@ -69,12 +69,13 @@ void read_actuators(const XmlElement& section, MjcfSettings& settings, std::vect
         const XmlElement e = settings.resolved(own, "");
         Actuator actuator;
         actuator.where = e.where, actuator.joint = document.text(e, "joint"), actuator.name = document.text(e, "name");
-        if (actuator.joint.empty())
+        actuator.tendon = document.text(e, "tendon");
+        if (actuator.joint.empty() == actuator.tendon.empty())
         {
-            document.lost(e, "is not carried over: only actuators of joints are");
+            document.lost(e, "is not carried over: only actuators of a joint or of a tendon are");
             continue;
         }
-        if (actuator.name.empty()) actuator.name = actuator.joint + "." + e.name;
+        if (actuator.name.empty()) actuator.name = actuator.joint + actuator.tendon + "." + e.name;
         double gear[6] = {1, 0, 0, 0, 0, 0};
         document.numbers(e, "gear", gear, 1);
         actuator.gear = gear[0];

@@ -6,6 +6,6 @@
 namespace plab::import
 {
 
-/// All of `section` that acts on a joint and has no state of its own; the rest is listed.
+/// All of `section` that acts on a joint, or on a tendon (Actuator::tendon), and has no state of its own; the rest is listed.
 void read_actuators(const XmlElement& section, MjcfSettings& settings, std::vector<Actuator>& out, Document& document);
 }  // namespace plab::import

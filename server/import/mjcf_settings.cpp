@@ -48,15 +48,16 @@ void list_unused_attributes(const XmlElement& e, Document& document)
         document.list_attributes(e, {"name", "class", "type", "pos", "axis", "range", "limited", "ref", "springref", "stiffness", "damping",
                                      "frictionloss", "armature"});
     if (e.name == "motor")
-        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited"});
+        document.list_attributes(e, {"name", "class", "joint", "tendon", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited"});
     if (e.name == "position")
-        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "kp", "kv",
-                                     "timeconst", "dampratio"});
+        document.list_attributes(e, {"name", "class", "joint", "tendon", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited",
+                                     "kp", "kv", "timeconst", "dampratio"});
     if (e.name == "velocity")
-        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "kv"});
+        document.list_attributes(
+            e, {"name", "class", "joint", "tendon", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "kv"});
     if (e.name == "general")
-        document.list_attributes(e, {"name", "class", "joint", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited", "dyntype",
-                                     "gaintype", "gainprm", "biastype", "biasprm"});
+        document.list_attributes(e, {"name", "class", "joint", "tendon", "gear", "ctrlrange", "ctrllimited", "forcerange", "forcelimited",
+                                     "dyntype", "gaintype", "gainprm", "biastype", "biasprm"});
     if (e.name == "mesh") document.list_attributes(e, {"name", "class", "file", "scale", "vertex", "face"});
     if (e.name == "material") document.list_attributes(e, {"name", "class", "rgba"});
 }

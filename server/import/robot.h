@@ -54,6 +54,7 @@ struct Joint
 struct Actuator
 {
     std::string name, joint;
+    std::string tendon;  ///< of MJCF, in place of the joint until that is known (mjcf_tendon.h)
     double gear = 1, gain = 1;
     Vec3 bias;
     double control_lower = -kInfinity, control_upper = kInfinity, force_lower = -kInfinity, force_upper = kInfinity;

@@ -250,10 +250,8 @@ private:
         JointText text = joint_text(placed, base, held, ids_);
         for (const std::string& component : text.lines) line(component);
         manager_ = manager_ || text.needs_manager;
-        if (j.armature > 0 && j.kind != JointKind::Hinge)
-            document_.lost(j.where, "<joint> " + quoted(j.name),
-                           "armature of a " + std::string(j.kind == JointKind::Slide ? "slide" : "ball joint") +
-                               " is not carried over: only that of a hinge is");
+        if (j.armature > 0 && j.kind == JointKind::Ball)
+            document_.lost(j.where, "<joint> " + quoted(j.name), "armature of a ball joint is not carried over");
         places_[j.name] = {std::move(text.place), j.start};
     }
 

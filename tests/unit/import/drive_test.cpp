@@ -63,6 +63,32 @@ TEST_CASE("a velocity servo approaches its speed as exp(-kv gear^2 t / J); force
     CHECK(weak.vec("disc", "angular_velocity").z == doctest::Approx(1));
 }
 
+TEST_CASE("an actuator of a fixed tendon acts on fingers that follow one another")
+{
+    const auto hand = [](const std::string& equality)
+    {
+        const auto finger = [](const std::string& id, const std::string& axis)
+        {
+            return "<body name='" + id + "'><inertial pos='0 0 0' mass='0.5' diaginertia='0.1 0.1 0.1'/><joint name='" + id +
+                   "_joint' type='slide' axis='" + axis + "'/></body>";
+        };
+        return imported_text("<mujoco><worldbody>" + finger("left", "0 1 0") + finger("right", "0 -1 0") +
+                                 "</worldbody><tendon><fixed name='split'><joint joint='left_joint' coef='0.5'/><joint joint='right_joint' "
+                                 "coef='0.5'/></fixed><fixed name='idle'/><spatial name='cable'/></tendon>" +
+                                 equality + "<actuator><motor name='close' tendon='split' gear='2'/></actuator></mujoco>",
+                             SceneFormat::Mjcf);
+    };
+    const auto imported = hand("<equality><joint joint1='left_joint' joint2='right_joint' polycoef='0 3 0 0 0'/></equality>");
+    Scene scene = imported_scene(imported);
+    command(scene, "close", 1), scene.run(1);
+    // The length changes by (3 + 1) / 2 times what the right finger moves, and the gear doubles the force: 4 N on m + 9 m.
+    CHECK(near(scene.vec("right", "position").y, -0.5 * 4 / 5, 1e-6));
+    CHECK(near(scene.vec("left", "position").y, 3 * 0.5 * 4 / 5, 1e-6));
+    CHECK(lists(imported, "'idle': is not carried over: no actuator acts by it"));
+    CHECK(lists(imported, "<spatial> 'cable': is not carried over"));
+    CHECK(lists(hand(""), "'close': is not carried over: of a tendon's actuator all joints have to follow one another"));
+}
+
 TEST_CASE("<general> with an affine bias, defaults of actuators, and what is listed")
 {
     const auto imported = imported_text(
@@ -77,7 +103,7 @@ TEST_CASE("<general> with an affine bias, defaults of actuators, and what is lis
     CHECK(scene.vec("g", "bias") == Vec3{0.1, -0.2, -0.3});
     CHECK(scene.real("g", "control_upper") == 2);
     CHECK(lists(imported, "<general> 'h': is not carried over: it has a state of its own"));
-    CHECK(lists(imported, "<motor> 't': is not carried over: only actuators of joints are"));
+    CHECK(lists(imported, "'t': is not carried over: of a tendon's actuator all joints have to follow one another"));
     CHECK(lists(imported, "<muscle>: is not carried over"));
     CHECK(reasons(import_robot(disc("", "<motor joint='gone'/>"), SceneFormat::Mjcf)).find("there is no joint 'gone'") !=
           std::string::npos);
@@ -98,6 +124,19 @@ TEST_CASE("armature between two free bodies acts on both: what one gains the oth
     const double sum = 1 / 0.2 + 1 / 0.5, rate = 1.5 * sum / (1 + 0.3 * sum), torque = 1.5 - 0.3 * rate;
     CHECK(scene.vec("a", "angular_velocity").z == doctest::Approx(-torque / 0.2).epsilon(1e-9));
     CHECK(scene.vec("b", "angular_velocity").z == doctest::Approx(torque / 0.5).epsilon(1e-9));
+}
+
+TEST_CASE("armature of a slide is mass along it that has no weight")
+{
+    // a = g m / (m + armature)
+    const auto imported = imported_text(
+        "<mujoco><worldbody><body name='b'><inertial pos='0 0 0' mass='2' diaginertia='0.1 0.1 0.1'/><joint name='j' type='slide' "
+        "axis='0 0 1' armature='0.5'/></body></worldbody></mujoco>",
+        SceneFormat::Mjcf);
+    CHECK(!lists(imported, "armature"));
+    Scene scene = imported_scene(imported);
+    scene.run(1);
+    CHECK(scene.vec("b", "linear_velocity").z == doctest::Approx(-9.81 * 2 / 2.5).epsilon(1e-9));
 }
 
 TEST_CASE("the period of a pendulum with a rotor is that of the closed form, to 1e-6")
