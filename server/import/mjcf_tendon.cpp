@@ -15,17 +15,19 @@ struct Leader
 {
     std::string joint;
     double ratio = 1;
+    std::vector<std::string> by;  ///< names of the couplings
 };
 
 Leader leader_of(const std::string& joint, const std::vector<Coupling>& couplings)
 {
-    Leader out{joint};
+    Leader out{joint, 1, {}};
     for (std::size_t i = 0; i < couplings.size(); ++i)  // a ring of couplings has no leader
     {
         const auto follows = [&](const Coupling& c) { return c.kind == CouplingKind::Gear && c.second == out.joint; };
         const auto at = std::find_if(couplings.begin(), couplings.end(), follows);
         if (at == couplings.end()) break;
         out.joint = at->first, out.ratio *= at->factor;
+        out.by.push_back(at->name);
     }
     return out;
 }
@@ -33,12 +35,13 @@ Leader leader_of(const std::string& joint, const std::vector<Coupling>& coupling
 /// The joint on which a force in the tendon acts, and by how much the tendon's length changes with its coordinate.
 std::optional<Leader> leader_of(const FixedTendon& tendon, const std::vector<Coupling>& couplings)
 {
-    Leader out{"", 0};
+    Leader out{"", 0, {}};
     for (const FixedTendon::Term& term : tendon.terms)
     {
         const Leader own = leader_of(term.joint, couplings);
         if (!out.joint.empty() && own.joint != out.joint) return {};
         out.joint = own.joint, out.ratio += term.coefficient * own.ratio;
+        out.by.insert(out.by.end(), own.by.begin(), own.by.end());
     }
     if (out.joint.empty() || out.ratio == 0) return {};
     return out;
@@ -61,7 +64,11 @@ std::vector<FixedTendon> read_tendons(const XmlElement& section, Document& docum
         FixedTendon tendon;
         tendon.name = document.text(e, "name"), tendon.where = e.where;
         for (const XmlElement& joint : e.children)
-            if (joint.name == "joint") tendon.terms.push_back({document.text(joint, "joint"), document.number(joint, "coef", 1)});
+            if (joint.name == "joint")
+            {
+                document.list_attributes(joint, {"joint", "coef"});
+                tendon.terms.push_back({document.text(joint, "joint"), document.number(joint, "coef", 1)});
+            }
         out.push_back(std::move(tendon));
     }
     return out;
@@ -76,7 +83,7 @@ void put_on_joints(std::vector<Actuator>& actuators, const std::vector<FixedTend
         const auto at = std::find_if(tendons.begin(), tendons.end(), [&](const FixedTendon& t) { return t.name == a.tendon; });
         const auto leader = at == tendons.end() ? std::nullopt : leader_of(*at, couplings);
         if (leader)
-            a.joint = leader->joint, a.gear *= leader->ratio;
+            a.joint = leader->joint, a.gear *= leader->ratio, a.relies_on = leader->by;
         else
             document.lost(
                 a.where, model::quoted(a.name),

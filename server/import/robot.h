@@ -54,7 +54,8 @@ struct Joint
 struct Actuator
 {
     std::string name, joint;
-    std::string tendon;  ///< of MJCF, in place of the joint until that is known (mjcf_tendon.h)
+    std::string tendon;                  ///< of MJCF, in place of the joint until that is known (mjcf_tendon.h)
+    std::vector<std::string> relies_on;  ///< names of couplings without which it would act otherwise
     double gear = 1, gain = 1;
     Vec3 bias;
     double control_lower = -kInfinity, control_upper = kInfinity, force_lower = -kInfinity, force_upper = kInfinity;

@@ -261,6 +261,9 @@ private:
         if (found == places_.end()) return document_.error(a.where, quoted(a.name), "there is no joint " + quoted(a.joint));
         if (found->second.text.empty())
             return document_.lost(a.where, quoted(a.name), "is not carried over: the ball joint " + quoted(a.joint) + " has no axis");
+        const auto lost = [&](const std::string& coupling) { return lost_couplings_.contains(coupling); };
+        if (std::ranges::any_of(a.relies_on, lost))
+            return document_.lost(a.where, quoted(a.name), "is not carried over: the joints of its tendon do not follow one another here");
         line(actuator_text(a, found->second.text, found->second.start, ids_));
     }
 
@@ -312,9 +315,12 @@ private:
         const auto base = [&](const PlacedBody& b) { return b.parent == kWorld || body(b.parent).fixed ? kWorld : b.parent; };
         const bool beside = base(driver) == base(driven), in_chain = base(driven) == first->second;
         if (c.factor == 0 || !moves(driver) || !moves(driven) || (!beside && !in_chain))
+        {
+            lost_couplings_.insert(c.name);
             return document_.lost(c.where, quoted(c.name),
                                   "is not carried over: a Constraint/Coupler couples hinges and sliders that are the only joint of their "
                                   "bodies, on the same body or one after the other, with a factor that is not zero");
+        }
         const std::string carrier = base(driver) == kWorld ? "" : attribute("carrier", body_ids_[base(driver)]);
         const std::string axes =
             attribute("driver_axis", driver.joints.front().axis_W) + attribute("driven_axis", driven.joints.front().axis_W) + "/>";
@@ -417,6 +423,7 @@ private:
     std::map<std::string, Place> places_;  ///< by joint
     std::vector<std::string> heavy_;       ///< ids of the bodies that gravity acts on
     bool manager_ = false;
+    std::set<std::string> lost_couplings_;
     WrittenScene out_;
 };
 

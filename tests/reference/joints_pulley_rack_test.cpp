@@ -247,3 +247,33 @@ TEST_CASE("the last joint of a finger follows the one before it, and nothing com
     CHECK(distance(totals_of(s).angular_momentum, before.angular_momentum) < 1e-12);
     CHECK(near(totals_of(s).kinetic, before.kinetic, 1e-8));
 }
+
+TEST_CASE("a coupler that is told to couple other motions engages where its bodies are")
+{
+    Scene s(body("arm", 1, {0.02, 0.02, 0.03}, {0, 0, 0}, "angular_velocity='0 0 2'") + body("hand", 1, {0.02, 0.02, 0.03}, {0.5, 0, 0}) +
+            joint("shoulder", "Hinge", "", "arm", "axis='0 0 1'") +
+            joint("wrist", "Hinge", "arm", "hand", "anchor='0.3 0 0' axis='0 0 1'") +
+            "<component id='follows' type='Constraint/Coupler' driver='arm' driven='hand' in_chain='true' factor='0.5'/>");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(1);
+    CHECK(near(s.real("wrist", "angle"), 0.5 * s.real("shoulder", "angle"), 1e-11));
+    const Vec3 at = s.vec("hand", "position");
+    const double bent = s.real("wrist", "angle");
+    // From now on the hand's turn in the world is half of the arm's, so the wrist bends back by half of what the shoulder turns.
+    REQUIRE(s.ask(simulation::SetOperation{"follows", "in_chain", Value(false)}).done);
+    CHECK(distance(s.vec("hand", "position"), at) < 1e-12);
+    const double turned = s.real("shoulder", "angle");
+    s.run(2.5);
+    CHECK(std::fabs(s.real("shoulder", "angle") - turned) > 0.1);
+    CHECK(near(s.real("wrist", "angle") - bent, -0.5 * (s.real("shoulder", "angle") - turned), 1e-10));
+}
+
+TEST_CASE("a body does not slide along a shaft, and a shaft does not slide")
+{
+    const std::string both = body("b", 1, {1, 1, 1}, {0, 0, 0}) + "<component id='s' type='State/Shaft' inertia='1'/>";
+    const auto refused = [&](const std::string& more)
+    { return Scene(both + "<component id='j' type='Constraint/Coupler' " + more + "/>").error(); };
+    CHECK(refused("driver='s' driven='b' in_chain='true' driven_along='slide'").find("cannot slide along a shaft") != std::string::npos);
+    CHECK(refused("driver='s' driven='b' driver_along='slide'").find("a shaft cannot slide") != std::string::npos);
+    CHECK(refused("driver='s' driven='b' in_chain='true'").find("a body against a body") != std::string::npos);
+}

@@ -31,6 +31,7 @@ Result<bool> CoupledColumns::place_coordinate(Row row, Ref participant, Ref base
         return fresh;
     }
     if (participant.facet != Facet::Body) return reason("a shaft cannot slide");
+    if (base.valid() && base.facet != Facet::Body) return reason("a body cannot slide along a shaft");
     const Side from = side_of(bodies, base, {}), to = side_of(bodies, participant, {});
     place_axis(row, from.q, to.q);
     if (fresh) base_point[row] = rotate(conjugate(from.q), to.p - from.p);
@@ -42,29 +43,20 @@ void CoupledColumns::begin_turn(Row row, Ref participant, Ref base, const Bodies
     if (!slides(row)) begin(row, spin_of(row, participant, base, bodies, shafts), now);
 }
 
-void CoupledColumns::keep_turn(Row row, const CoupledCoordinate& now_at, double now)
+void CoupledColumns::keep_turn(Row row, const Coordinate& c, double now)
 {
-    if (!slides(row)) angle[row] = now_at.value, start(row, now_at.rate, now);
+    if (!slides(row)) angle[row] = c.x, start(row, c.speed, now);
 }
 
-CoupledCoordinate CoupledColumns::coordinate_of(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts,
-                                                double now) const
+Coordinate CoupledColumns::coordinate_of(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts, double now) const
 {
-    CoupledCoordinate out;
     if (!slides(row))
     {
         const Spin spin = spin_of(row, participant, base, bodies, shafts);
-        add_spin(spin, 1, out.row);
-        out.value = angle_now(row, spin, now), out.rate = spin.speed;
-        return out;
+        return turning(spin, angle_now(row, spin, now));
     }
-    const Sides sides = sides_of(side_of(bodies, base, base_point[row]), side_of(bodies, participant, {}));
-    const Vec3 in_base = rotate(frame_a[row], Vec3{0, 0, 1});
-    const Vec3 t = base.valid() ? rotate(sides.a.q, in_base) : in_base;
-    out.row = travel_row(sides, t, 0, 0);
-    out.value = out.row.error, out.row.error = 0;
-    out.rate = dot(t, sides.rate) + dot(cross(sides.a.w, t), sides.d);
-    return out;
+    const Sides s = sides_of(side_of(bodies, base, base_point[row]), side_of(bodies, participant, {}));
+    return sliding(s, rotate(s.a.q * frame_a[row], Vec3{0, 0, 1}));
 }
 
 // Two of them ---------------------------------------------------------------------------------------------------------
@@ -73,6 +65,9 @@ void CoupledRows::describe_outputs(Schema& s, const std::string& driver_name, co
 {
     s.state(offset, "offset", unit::one, "of " + driven_name + " when they engaged, rad or m");
     s.state(engaged_factor, "engaged_factor", unit::one, "factor for which offset was taken; 0: not engaged yet");
+    s.state(placed_as, "placed_as", unit::one,
+            "how the axes were placed: 1: " + driver_name + " slides, 2: " + driven_name + " slides, 4: in a chain; their sum; -1: not yet")
+        .initially(-1);
     s.output(driver_position, driver_name + "_position", unit::one, "value of its coordinate, rad or m");
     s.output(driven_position, driven_name + "_position", unit::one, "likewise");
     s.output(driver_effort, driver_name + "_effort", unit::one,
@@ -81,6 +76,14 @@ void CoupledRows::describe_outputs(Schema& s, const std::string& driver_name, co
     s.output(position_error, "position_error", unit::one, "of " + driven_name + " since they engaged, rad or m").reported_as_error();
     s.output(speed_error, "speed_error", unit::one, "of its rate").reported_as_error();
     s.output(redundant, "redundant", unit::one, "1: the row is implied by other rows");
+}
+
+void CoupledRows::place_anew_as(Row row, bool chained)
+{
+    const std::int64_t as = (driver_coordinate.slides(row) ? 1 : 0) + (driven_coordinate.slides(row) ? 2 : 0) + (chained ? 4 : 0);
+    if (std::exchange(placed_as[row], as) == as) return;
+    driver_coordinate.placed_axis[row] = driven_coordinate.placed_axis[row] = {};
+    engaged_factor[row] = 0;
 }
 
 void CouplerRows::describe(Schema& s)
@@ -112,7 +115,7 @@ namespace
 
 struct CoupledPair
 {
-    CoupledCoordinate driver, driven;
+    Coordinate driver, driven;
     double phase = 0, speed = 0;  ///< before the offset
 };
 
@@ -122,8 +125,8 @@ CoupledPair coupled_pair(const Table& rows, Row row, const Bodies& bodies, const
     CoupledPair p;
     p.driver = rows.driver_coordinate.coordinate_of(row, rows.driver[row], rows.base_of_driver(row), bodies, shafts, now);
     p.driven = rows.driven_coordinate.coordinate_of(row, rows.driven[row], rows.base_of_driven(row), bodies, shafts, now);
-    p.phase = p.driven.value - rows.factor[row] * p.driver.value;
-    p.speed = p.driven.rate - rows.factor[row] * p.driver.rate;
+    p.phase = p.driven.x - rows.factor[row] * p.driver.x;
+    p.speed = p.driven.speed - rows.factor[row] * p.driver.speed;
     return p;
 }
 
@@ -151,6 +154,7 @@ double multiplier(const ConstraintRow& row, const RowReport& report)
 template <class Table>
 Result<void> prepare_coupled(Row row, Table& rows, const Bodies& bodies)
 {
+    rows.place_anew_as(row, rows.chained(row));
     const auto first = rows.driver_coordinate.place_coordinate(row, rows.driver[row], rows.base_of_driver(row), bodies);
     if (!first) return first.errors();
     const auto second = rows.driven_coordinate.place_coordinate(row, rows.driven[row], rows.base_of_driven(row), bodies);
@@ -193,7 +197,7 @@ void finish_coupled(const StepContext& step, Rows which, Table& rows, const Bodi
         rows.driver_coordinate.keep_turn(row, p.driver, step.time);
         rows.driven_coordinate.keep_turn(row, p.driven, step.time);
         const RowReport report = reports.of(step.component_of_row[row]);
-        rows.driver_position[row] = p.driver.value, rows.driven_position[row] = p.driven.value;
+        rows.driver_position[row] = p.driver.x, rows.driven_position[row] = p.driven.x;
         rows.driven_effort[row] = multiplier(row_of(p, rows.factor[row], rows.driven[row]), report);
         rows.driver_effort[row] = -rows.factor[row] * rows.driven_effort[row];
         rows.position_error[row] = p.phase - rows.offset[row], rows.speed_error[row] = p.speed;

@@ -19,12 +19,6 @@ namespace plab::constraints
 {
 
 /// The turn or slide of one participant.
-struct CoupledCoordinate
-{
-    ConstraintRow row;  ///< J and bias of its rate
-    double value = 0, rate = 0;
-};
-
 struct CoupledColumns : SpinColumns
 {
     Column<std::string> along;
@@ -33,13 +27,13 @@ struct CoupledColumns : SpinColumns
 
     /// `slides`: empty: a parameter says it.
     void describe_coordinate(Schema& s, const std::string& prefix, const std::string& whose, std::optional<bool> slides);
-    /// Phase::Prepare. Returns whether axis or base are new.
+    /// Phase::Prepare. Returns whether the axis is new.
     Result<bool> place_coordinate(Row row, Ref participant, Ref base, const Bodies& bodies);
     /// Phase::Drive and Phase::Finish: turns are counted.
     void begin_turn(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts, double now);
-    void keep_turn(Row row, const CoupledCoordinate& now_at, double now);
+    void keep_turn(Row row, const Coordinate& c, double now);
     bool slides(Row row) const { return slides_always ? *slides_always : along[row] == "slide"; }
-    CoupledCoordinate coordinate_of(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts, double now) const;
+    Coordinate coordinate_of(Row row, Ref participant, Ref base, const Bodies& bodies, const Shafts& shafts, double now) const;
 };
 
 struct CoupledRows
@@ -48,6 +42,7 @@ struct CoupledRows
     Column<double> factor;
     CoupledColumns driver_coordinate, driven_coordinate;
     Column<double> offset, engaged_factor;
+    Column<std::int64_t> placed_as;  ///< which sides slid, and in which order they stand, when axes were placed last; -1: they were not
     Column<double> driver_position, driven_position, driver_effort, driven_effort;
     Column<double> position_error, speed_error;
     Column<std::int64_t> redundant;
@@ -55,6 +50,8 @@ struct CoupledRows
     /// The base of a participant; the axle of a shaft is fixed in the world.
     Ref carried(Ref participant, Row row) const { return participant.facet == Facet::Body ? carrier[row] : Ref{}; }
     Ref base_of_driver(Row row) const { return carried(driver[row], row); }
+    /// Another motion, or another base, needs axes at the present poses.
+    void place_anew_as(Row row, bool chained);
     void describe_outputs(Schema& s, const std::string& driver_name, const std::string& driven_name);
 };
 struct CouplerRows : CoupledRows
@@ -62,11 +59,13 @@ struct CouplerRows : CoupledRows
     Column<bool> in_chain;
 
     void describe(Schema& s);
+    bool chained(Row row) const { return in_chain[row]; }
     Ref base_of_driven(Row row) const { return in_chain[row] ? driver[row] : carried(driven[row], row); }
 };
 struct RackRows : CoupledRows
 {
     void describe(Schema& s);
+    static bool chained(Row) { return false; }
     Ref base_of_driven(Row row) const { return carrier[row]; }
 };
 

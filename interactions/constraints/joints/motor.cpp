@@ -36,20 +36,13 @@ Result<void> CoordinateRows::place_coordinate(Row row, const Bodies& bodies)
 
 Coordinate coordinate_of(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now)
 {
-    Coordinate c;
     if (rows.turns(row))
     {
         const Spin spin = rows.spin_of(row, rows.b[row], rows.a[row], bodies, shafts);
-        c.x = rows.angle_now(row, spin, now), c.speed = spin.speed;
-        add_spin(spin, 1, c.row);
-        return c;
+        return turning(spin, rows.angle_now(row, spin, now));
     }
     const Sides s = rows.sides(row, bodies);
-    const Vec3 n = rotate(s.a.q, rows.travel_axis_a[row]);
-    c.row = travel_row(s, n, 0, 0);
-    c.x = c.row.error, c.row.error = 0;
-    c.speed = dot(n, s.rate) + dot(cross(s.a.w, n), s.d);
-    return c;
+    return sliding(s, rotate(s.a.q, rows.travel_axis_a[row]));
 }
 
 void begin_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now)

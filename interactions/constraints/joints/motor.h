@@ -28,12 +28,6 @@ struct CoordinateRows : PairRows, SpinColumns
     bool of_shafts(Row row) const { return b[row].facet == Facet::Shaft; }
 };
 
-/// The coordinate at the present state, with its row: J and bias, but no error yet.
-struct Coordinate
-{
-    double x = 0, speed = 0;
-    ConstraintRow row;
-};
 Coordinate coordinate_of(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
 /// Adds `effort` (N m or N) along the coordinate to the wrench that has been begun.
 void add_effort(const Coordinate& c, double effort, const Bodies& bodies, const Shafts& shafts, Wrenches& wrenches);

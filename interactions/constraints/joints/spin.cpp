@@ -1,5 +1,7 @@
 #include "joints/spin.h"
 
+#include <utility>
+
 namespace plab::constraints
 {
 
@@ -8,6 +10,20 @@ void add_spin(const Spin& spin, double factor, ConstraintRow& row)
     add_block({spin.base, {}, -factor * spin.n}, row);
     add_block({spin.participant, {}, factor * spin.n}, row);
     row.bias += factor * spin.extra;
+}
+
+Coordinate turning(const Spin& spin, double angle)
+{
+    Coordinate c{angle, spin.speed, {}};
+    add_spin(spin, 1, c.row);
+    return c;
+}
+
+Coordinate sliding(const Sides& s, const Vec3& t)
+{
+    Coordinate c{0, dot(t, s.rate) + dot(cross(s.a.w, t), s.d), travel_row(s, t, 0, 0)};
+    c.x = std::exchange(c.row.error, 0.0);
+    return c;
 }
 
 void SpinColumns::describe_axle(Schema& s, const std::string& prefix, const std::string& whose)

@@ -24,6 +24,17 @@ struct Spin
 /// Adds `factor` times this speed to a row: its blocks, and the corresponding bias. Blocks of the same participant are merged.
 void add_spin(const Spin& spin, double factor, ConstraintRow& row);
 
+/// A coordinate at the present state, with its row: J and bias of its speed, but no error yet.
+struct Coordinate
+{
+    double x = 0, speed = 0;  ///< rad or m; rad/s or m/s
+    ConstraintRow row;
+};
+/// The turn of a participant. `angle`: rad, with whole turns.
+Coordinate turning(const Spin& spin, double angle);
+/// The slide of b along t (unit, in W, fixed in a): t . d.
+Coordinate sliding(const Sides& s, const Vec3& t);
+
 /// An axle, and the angle about it. Angles are kept as state, so that they remain exact over any number of turns.
 struct SpinColumns : AxisColumns, MeterColumns
 {
