@@ -9,6 +9,7 @@
 #include "joints/cylindrical.h"
 #include "joints/distance.h"
 #include "joints/gear.h"
+#include "joints/limit.h"
 #include "joints/motor.h"
 #include "joints/pulley.h"
 #include "joints/rigid_joints.h"
@@ -214,7 +215,8 @@ void register_pulley(Registrar& registrar)
         .strengths("hoists, tackles and counterweights, without the bodies of the wheels and of the rope")
         .cost("1 row")
         .limits(
-            "the rope pushes as well as it pulls: check that tension is above 0; where an end reaches its wheel it has no direction; the "
+            "the rope pushes as well as it pulls, unless slack is true: then its bodies are stepped by a manager while it is taut; where "
+            "an end reaches its wheel it has no direction; the "
             "rope has no mass, and the wheels have neither inertia nor friction nor radius")
         .source(kSource);
 }

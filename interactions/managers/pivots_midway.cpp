@@ -105,9 +105,10 @@ bool changes_by_more(const Mat3& A, const Quat& turn, double share)
 void Problem::put_inertia_midway(std::size_t i, const Bodies& bodies, double h)
 {
     constexpr double kLittle = 0x1p-40;  // of w: rounding
-    // Of its size, what the inertia may change in half a step: beyond it a contact that begins to slip could give more than turning loses.
+    // Of its size, what the inertia may change in half a step: as far as levers may turn, or those of joints (HeldMotion::put_rows_midway).
     // What spins about its own axis keeps its inertia, however fast.
-    constexpr double kMost = 0x1p-6;
+    constexpr double kMostWithRows = 0x1p-6;
+    const double most = has_rows() ? kMostWithRows : kFarthestTurn;
     Mover& m = movers[i];
     Anchor& anchor = anchors[i];
     const std::uint32_t b = anchor.host;
@@ -116,7 +117,7 @@ void Problem::put_inertia_midway(std::size_t i, const Bodies& bodies, double h)
     const Vec3 &w = bodies.angular_velocity[b], &momentum = bodies.angular_momentum[b];
     if (turn_of(w, 0.5 * h) == Turn::Little) return;
     const auto [half_turn, turn] = free_turns(bodies, b, h);
-    if (length(w) * 0.5 * h > kMost && changes_by_more(m.inverse_inertia, half_turn, kMost)) return;
+    if (length(w) * 0.5 * h > most && changes_by_more(m.inverse_inertia, half_turn, most)) return;
     const Vec3 at_end = rotate(turn, m.inverse_inertia * rotate_back(turn, momentum));
     anchor.midway = true, anchor.half_turn = half_turn;
     turn_inertia(i, half_turn);

@@ -8,7 +8,7 @@
 //
 // | joint  | error, with the default solver at 1/240 s unless it is said                  |
 // |--------|------------------------------------------------------------------------------|
-// | Pulley | Atwood's machine 1e-12 m; swinging, 2 s: 2e-11 m with RungeKutta4 at 1/2000 s  |
+// | Pulley | Atwood's machine 1e-12 m; also jerked taut; swinging, 2 s: 2e-11 m with RungeKutta4 at 1/2000 s  |
 // | Rack   | 1e-11 m after 39 turns; on carriers that move freely, momentum to 1e-12        |
 // | Coupler | fingers 1e-12 m; a joint that follows its parent's joint, momentum to 1e-12    |
 #include <cmath>
@@ -93,6 +93,51 @@ TEST_CASE("a rope that is longer or shorter than it was placed is drawn to its l
     REQUIRE(s.ask(simulation::SetOperation{"rope", "length", Value(4.2)}).done);
     s.run(1);
     CHECK(near(s.real("rope", "length_a") + s.real("rope", "length_b"), 4.2, 1e-12));
+}
+
+TEST_CASE("a rope that can go slack pulls only, and is jerked taut")
+{
+    // With 0.3 m too much, both fall freely until g t^2 = 0.3 m. The jerk ends the sum of their speeds; then it is Atwood's machine.
+    constexpr double kSlack = 0.3, m_a = 1, m_b = 2, kEnd = 0.5;
+    const double taut = std::sqrt(kSlack / kG), v = kG * taut, jerk = 2 * v / (1 / m_a + 1 / m_b), a = kG * (m_b - m_a) / (m_a + m_b),
+                 then = kEnd - taut;
+    const double due = 1 - 0.5 * kG * taut * taut - (v - jerk / m_b) * then - 0.5 * a * then * then;
+    for (const int rate : {60, 240, 960})
+    {
+        Scene s(weights(m_a, m_b) + rope(" length='4.3' slack='true' manager='Manager/Automatic'"), dt(rate));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(0.9 * taut);
+        CHECK(s.real("rope", "tension") == 0);
+        CHECK(s.real("rope", "position_error") == 0);
+        CHECK(near(s.vec("a", "position").z, s.vec("b", "position").z, 1e-12));
+        s.run(kEnd);
+        const double error = std::fabs(s.vec("b", "position").z - due);
+        MESSAGE("1/", rate, " s: ", error, " m");
+        CHECK(near(s.real("rope", "tension"), m_a * (kG + a), 1e-6));
+        CHECK(std::fabs(s.real("rope", "position_error")) < 1e-6);
+        CHECK(error < 1e-12);
+    }
+    // Thrown up, a comes back into the rope, which has pushed nothing until then.
+    Scene s(weights(m_b, m_b) + rope(" slack='true' manager='Manager/Automatic'"));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(0.1);
+    CHECK(near(s.vec("a", "position").z, 1, 1e-9));
+    REQUIRE(s.ask(simulation::SetOperation{"a", "linear_velocity", Value(Vec3{0, 0, 2})}).done);
+    double least = 0;
+    for (int i = 0; i < 90; ++i)
+    {
+        s.step();
+        least = std::min(least, s.real("rope", "tension"));
+        CHECK(s.real("rope", "length_a") + s.real("rope", "length_b") < 4 + 1e-6);
+    }
+    CHECK(least == 0);
+}
+
+TEST_CASE("a rope with slack is refused without a manager")
+{
+    Scene s(weights(1, 1) + rope(" slack='true'"));
+    CHECK_FALSE(s.loaded());
+    CHECK(s.error().find("a rope with slack needs a manager") != std::string::npos);
 }
 
 TEST_CASE("swinging Atwood's machine is of the order of its solver, and keeps its energy")

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "joints/distance.h"
-
 namespace plab::constraints
 {
 
@@ -182,84 +180,6 @@ void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows
     {
         keep_coordinate(rows, row, bodies, shafts, step.time);
         rows.effort[row] = effort_of(rows, row, coordinate_of(rows, row, bodies, shafts, step.time));
-    }
-}
-
-void LimitRows::describe(Schema& s)
-{
-    describe_coordinate(s, {"turn", "slide", "distance"});
-    s.role(manager, "manager", {Facet::Component}, "advances the bodies while a bound is near; by default a `Manager/Automatic`")
-        .family("Manager/")
-        .default_type("Manager/Automatic");
-    s.param(lower, "lower", unit::one, "least position, rad or m; -inf: none").or_else(-kInfinity).may_be_infinite();
-    s.param(upper, "upper", unit::one, "largest position, rad or m; inf: none").or_else(kInfinity).may_be_infinite();
-    s.param(restitution, "restitution", unit::one, "coefficient of restitution: fraction of the speed returned at a bound")
-        .or_else(0)
-        .not_negative()
-        .at_most(1);
-    describe_reaction(s, "b");
-}
-
-Result<void> prepare_limit(Row row, LimitRows& rows, const Bodies& bodies)
-{
-    if (!(rows.lower[row] <= rows.upper[row])) return reason("lower must not be above upper");
-    return rows.place_coordinate(row, bodies);
-}
-
-namespace
-{
-
-/// Rows are emitted before they can act: when the distance to a limit is less than this fraction of the distance between the
-/// limits, or at twice the time that the present speed needs to reach it. If there is only one limit, or no distance between
-/// them, it is this fraction of 1 rad, or of the smaller body's radius of gyration. A limit reached unexpectedly acts in the
-/// next step.
-constexpr double kActivation = 0x1p-9;
-
-double gyration(const Bodies& bodies, Ref r)
-{
-    if (r.facet != Facet::Body || !bodies.dynamic(r.index)) return kInfinity;
-    const Mat3& inertia = bodies.inertia_B[r.index];
-    return std::sqrt(0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2)) * bodies.inverse_mass[r.index]);
-}
-
-double activation_distance(const LimitRows& rows, Row row, const Bodies& bodies)
-{
-    const double range = rows.upper[row] - rows.lower[row];
-    if (std::isfinite(range) && range > 0) return kActivation * range;
-    if (rows.turns(row)) return kActivation;
-    const double size = std::fmin(gyration(bodies, rows.a[row]), gyration(bodies, rows.b[row]));
-    return std::isfinite(size) ? kActivation * size : 0.0;
-}
-
-void add_side(double activation, const StepContext& step, ConstraintRow side, double gap, double speed, double restitution, RowSink& sink)
-{
-    if (gap > activation + 2 * step.dt * std::fmax(0.0, -speed)) return;
-    side.kind = RowKind::OneSided;
-    side.error = gap, side.lower = 0, side.restitution = restitution;
-    sink.add(side);
-}
-
-}  // namespace
-
-void constrain_limit(const StepContext& step, Rows which, const LimitRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink)
-{
-    for (const Row row : which)
-    {
-        Coordinate c;
-        if (rows.along[row] == "distance")
-        {
-            const Stretch s = stretch_of(rows.sides(row, bodies));
-            c.row = stretch_row(s, 0, 1, 0), c.x = s.distance, c.speed = s.rate;
-        }
-        else
-            c = coordinate_of(rows, row, bodies, shafts, step.time);
-        sink.begin(step.component_of_row[row]);
-        const double activation = activation_distance(rows, row, bodies);
-        add_side(activation, step, c.row, c.x - rows.lower[row], c.speed, rows.restitution[row], sink);
-        for (std::uint32_t k = 0; k < c.row.count; ++k)
-            c.row.blocks[k].linear = -c.row.blocks[k].linear, c.row.blocks[k].angular = -c.row.blocks[k].angular;
-        c.row.bias = -c.row.bias, c.row.feature = 1;
-        add_side(activation, step, c.row, rows.upper[row] - c.x, -c.speed, rows.restitution[row], sink);
     }
 }
 

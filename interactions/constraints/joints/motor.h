@@ -82,16 +82,4 @@ void stored_by_torsion(const StepContext& step, Rows which, const TorsionSpringR
                        StoredEnergy& stored);
 void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts);
 
-/// Limit: keeps the coordinate, or the distance between the points, within [lower, upper].
-///
-///   error = x - lower, or upper - x        one-sided rows, emitted only where they may act within the step
-struct LimitRows : CoordinateRows, ReactionColumns
-{
-    Column<double> lower, upper, restitution;
-    Column<Ref> manager;
-    void describe(Schema& s);
-};
-Result<void> prepare_limit(Row row, LimitRows& rows, const Bodies& bodies);
-void constrain_limit(const StepContext& step, Rows which, const LimitRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink);
-
 }  // namespace plab::constraints

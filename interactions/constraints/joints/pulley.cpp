@@ -1,5 +1,9 @@
 #include "joints/pulley.h"
 
+#include <array>
+
+#include "joints/limit.h"
+
 namespace plab::constraints
 {
 
@@ -17,6 +21,12 @@ void PulleyRows::describe(Schema& s)
         .or_else(kInfinity)
         .not_negative()
         .may_be_infinite();
+    s.param(slack, "slack", unit::one, "the rope can go slack: it pulls only, and needs a manager").or_else(false);
+    s.param(restitution, "restitution", unit::one, "of a slack rope: fraction of the speed returned when it becomes taut")
+        .or_else(0)
+        .not_negative()
+        .at_most(1);
+    s.role(manager, "manager", {Facet::Component}, "solves the row of a rope that can go slack").family("Manager/").optional();
     s.state(placed_wheel_a, "placed_wheel_a", unit::metre, "the parameter from which point_a was taken")
         .initially(kNotGiven)
         .may_be_infinite();
@@ -28,7 +38,8 @@ void PulleyRows::describe(Schema& s)
     s.state(placed_length, "placed_length", unit::metre, "of the rope when it was placed");
     s.output(length_a, "length_a", unit::metre, "from wheel_a to a");
     s.output(length_b, "length_b", unit::metre, "from wheel_b to b");
-    s.output(tension, "tension", unit::newton, "of the rope, at the last solver stage of the step; below 0 a real one would be slack");
+    s.output(tension, "tension", unit::newton,
+             "of the rope, at the last solver stage of the step; where it cannot go slack, it pushes below 0");
     s.output(position_error, "position_error", unit::metre, "of the rope's length").reported_as_error();
     s.output(speed_error, "speed_error", unit::metre_per_second, "of its rate").reported_as_error();
     s.output(redundant, "redundant", unit::one, "1: the row is implied by other rows");
@@ -57,8 +68,10 @@ double rest_of(const PulleyRows& rows, Row row) { return rows.length[row] < kInf
 
 }  // namespace
 
-void prepare_pulley(Row row, PulleyRows& rows, const Bodies& bodies)
+Result<void> prepare_pulley(Row row, PulleyRows& rows, const Bodies& bodies)
 {
+    if (rows.slack[row] && !rows.manager[row].valid())
+        return reason("a rope with slack needs a manager: manager='Manager/Automatic', or the id of one");
     const Side carrier = side_of(bodies, rows.carrier[row], {});
     const auto place = [&](const Vec3& wheel, Vec3& placed, Vec3& point)
     {
@@ -69,6 +82,7 @@ void prepare_pulley(Row row, PulleyRows& rows, const Bodies& bodies)
     const bool moved_a = place(rows.wheel_a[row], rows.placed_wheel_a[row], rows.point_a[row]),
                moved_b = place(rows.wheel_b[row], rows.placed_wheel_b[row], rows.point_b[row]);
     if (moved_a || moved_b) rows.placed_length[row] = rope_of(rows, row, bodies).length;
+    return {};
 }
 
 void constrain_pulley(const StepContext& step, Rows which, const PulleyRows& rows, const Bodies& bodies, RowSink& sink)
@@ -81,7 +95,13 @@ void constrain_pulley(const StepContext& step, Rows which, const PulleyRows& row
         add_row(stretch_row(rope.b, 0, 1, 0), rows.ratio[row], out);  // last, as the reaction is that on b
         out.error = rope.length - rest_of(rows, row);
         sink.begin(step.component_of_row[row]);
-        sink.add(out);
+        if (!rows.slack[row])
+        {
+            sink.add(out);
+            continue;
+        }
+        const double activation = activation_by_size(bodies, std::array{rows.a[row], rows.b[row], rows.carrier[row]});
+        add_bound(step, opposite(out), -out.error, -rope.rate, activation, rows.restitution[row], sink);
     }
 }
 
@@ -93,7 +113,9 @@ void finish_pulley(const StepContext& step, Rows which, PulleyRows& rows, const 
         const RowReport report = reports.of(step.component_of_row[row]);
         rows.length_a[row] = rope.a.distance, rows.length_b[row] = rope.b.distance;
         rows.tension[row] = -dot(rope.b.u, report.force) / rows.ratio[row];
-        rows.position_error[row] = rope.length - rest_of(rows, row), rows.speed_error[row] = rope.rate;
+        const double longer = rope.length - rest_of(rows, row);
+        const bool is_slack = rows.slack[row] && longer < 0;
+        rows.position_error[row] = is_slack ? 0 : longer, rows.speed_error[row] = is_slack ? 0 : rope.rate;
         rows.redundant[row] = report.redundant;
     }
 }

@@ -303,10 +303,10 @@ bool ContactBook::detect_with_gaps(std::uint32_t index)
     return ask(detector, sink, {}, false);
 }
 
-void ContactBook::warm_start(std::span<FoundContact> contacts, bool trial)
+void ContactBook::warm_start(std::span<FoundContact> contacts, bool begins)
 {
     std::size_t near = 0;
-    for (FoundContact& f : contacts) f.contact.impulse = cache_.contact_of(*find_pair(f, near), f).warm_start(trial);
+    for (FoundContact& f : contacts) f.contact.impulse = cache_.contact_of(*find_pair(f, near), f).warm_start(begins);
 }
 
 PairState* ContactBook::find_pair(const FoundContact& f)

@@ -89,6 +89,8 @@ public:
     }
     /// m: overlap up to this is not corrected.
     double overlap_tolerance(Ref a, Ref b) const { return kOverlapShare * smaller_radius(a, b); }
+    /// Whether a body is as thick in any direction: a ball about its centre of mass.
+    bool is_ball(std::uint32_t body) const { return thickness_of_body_[body] >= radius_of_body_[body] * (1 - 1e-9); }
     /// Whether a body has a shape that is round, or a round wall that is touched from inside.
     bool is_round(Ref body) const { return std::isfinite(curve_radius_of_body_[body.index]); }
     /// m: gaps up to this do not end a persistent contact.
@@ -117,7 +119,7 @@ public:
     /// `only_located`: of those whose impacts are located.
     void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h = 0, bool only_located = false);
     /// Gives contacts of known pairs the impulses that an advance starts from (KnownContact::warm_start).
-    void warm_start(std::span<FoundContact> contacts, bool trial);
+    void warm_start(std::span<FoundContact> contacts, bool begins);
     PairState* find_pair(const FoundContact& found);
     /// The same, faster for contacts in the order of pairs (ContactCache::find).
     PairState* find_pair(const FoundContact& found, std::size_t& near);

@@ -56,13 +56,14 @@ void ForceParts::rebuild()
 bool ForceParts::measure(std::span<const std::uint32_t> groups, double from, double to)
 {
     any_divided_ = false;
-    if (!any_ || motion_.extra() || !(to > from)) return false;
+    if (!any_) return false;
     plain_.clear();
     for (const std::uint32_t g : groups)
     {
         parts_[g] = 1;
         if (depends_[g] != 0) plain_.push_back(g);
     }
+    if (motion_.extra() || !(to > from)) return false;
     if (!plain_.empty()) measure_together(plain_, from, to);
     return any_divided_;
 }

@@ -44,9 +44,11 @@ void HardContacts::advance(std::span<const std::uint32_t> groups, std::span<cons
                            WorkBook book, bool trial)
 {
     join_islands(groups);
-    if (!parts_.measure(groups, from, to)) return advance_at_once(groups, observed, from, to, book, trial);
+    const bool by_forces = parts_.measure(groups, from, to);
+    const bool by_turns = turns_.measure(groups, places_, islands_, to - from);
+    if (!by_forces && !by_turns) return advance_at_once(groups, observed, from, to, book, trial, !trial);
     list_divided(groups);
-    if (!whole_.empty()) advance_at_once(whole_, observed, from, to, book, trial);
+    if (!whole_.empty()) advance_at_once(whole_, observed, from, to, book, trial, !trial);
     advance_in_parts(observed, from, to, book, trial);
 }
 
@@ -57,7 +59,7 @@ void HardContacts::list_divided(std::span<const std::uint32_t> groups)
     for (const std::uint32_t g : groups)
     {
         std::uint32_t& parts = parts_of_[islands_.find(g)];
-        parts = std::max(parts, parts_.of(g));
+        parts = std::max({parts, parts_.of(g), turns_.of(g)});
     }
     divided_.clear(), whole_.clear();
     for (const std::uint32_t g : groups)
@@ -85,7 +87,7 @@ void HardContacts::advance_in_parts(std::span<const std::uint32_t> observed, dou
         {
             const double end = k == parts ? to : from + (to - from) * k / parts;
             if (k > 1) motion_.put_prescribed(kinematic_, begin);
-            advance_at_once(part_members_, observed, begin, end, book, trial);
+            advance_at_once(part_members_, observed, begin, end, book, trial, !trial && k == 1);
             begin = end;
         }
         motion_.put_prescribed(kinematic_, from);
@@ -111,13 +113,13 @@ void HardContacts::list_kinematic(std::uint32_t island)
 }
 
 void HardContacts::advance_at_once(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,
-                                   WorkBook book, bool trial)
+                                   WorkBook book, bool trial, bool begins)
 {
     groups_.assign(groups.begin(), groups.end());
     held_.take(groups_, islands_, reached_.members(), places_);
-    if (held_.holds_any()) held_.advance(observed, islands_, from, to, book, trial);
+    if (held_.holds_any()) held_.advance(observed, islands_, from, to, book, trial, begins);
     const std::size_t count = list_islands();
-    for (std::size_t i = 0; i < count; ++i) impulses_.advance(members_[i], observed, from, to, book, trial);
+    for (std::size_t i = 0; i < count; ++i) impulses_.advance(members_[i], observed, from, to, book, trial, begins);
 }
 
 /// Joins the groups that persistent contacts hold together with some of `groups`. All others stay single sets, so that the cost of an

@@ -6,6 +6,7 @@
 #include "simulation/contacts/held_islands.h"
 #include "simulation/contacts/impulse_islands.h"
 #include "simulation/contacts/sleeping_islands.h"
+#include "simulation/contacts/turn_parts.h"
 
 namespace plab::simulation
 {
@@ -21,7 +22,8 @@ public:
           held_(step, motion, contacts),
           impulses_(step, motion, contacts, positions_),
           sleeping_(step, motion, contacts),
-          parts_(step, motion)
+          parts_(step, motion),
+          turns_(step, contacts)
     {
     }
 
@@ -56,7 +58,7 @@ private:
     void update_features(PairState& pair, std::span<FoundContact> found);
     void join_islands(std::span<const std::uint32_t> groups);
     void advance_at_once(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,
-                         WorkBook book, bool trial);
+                         WorkBook book, bool trial, bool begins);
     void advance_in_parts(std::span<const std::uint32_t> observed, double from, double to, WorkBook book, bool trial);
     void list_divided(std::span<const std::uint32_t> groups);
     void list_kinematic(std::uint32_t island);
@@ -70,6 +72,7 @@ private:
     ImpulseIslands impulses_;
     SleepingIslands sleeping_;
     ForceParts parts_;
+    TurnParts turns_;
     DisjointSets islands_;               ///< of groups; single sets but for those in reached_
     IndexSet reached_;                   ///< groups that hold together with those of the present advance
     std::vector<std::uint32_t> places_;  ///< of the pairs between them

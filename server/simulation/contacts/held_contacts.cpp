@@ -174,7 +174,7 @@ void HeldIslands::pass_on(PairState& pair, std::uint32_t known, std::span<const 
 /// Collects the contacts of the held groups at the present state. Those of detectors that persist are known if nothing has moved since the
 /// last detection. Contacts of the other detectors are detected anew, because they depend on which pairs have come to rest in the meantime:
 /// this way the result is a function of the state alone, whatever happened before.
-void HeldIslands::collect_contacts(double from, double h, bool trial)
+void HeldIslands::collect_contacts(double from, double h, bool begins)
 {
     touching_.clear();
     run_count_ = 0;
@@ -185,13 +185,13 @@ void HeldIslands::collect_contacts(double from, double h, bool trial)
     if (!known || locates)
     {
         contacts_.touching_pairs_of(held_, touching_, h, known);
-        contacts_.warm_start(touching_, trial);
+        contacts_.warm_start(touching_, begins);
     }
     list_touching();
     if (known) list_known();
     all_.clear();
     for (std::size_t i = 0; i < island_count_; ++i) all_.push_back(islands_[i].get());
-    fill(all_, h, trial);
+    fill(all_, h, begins);
 }
 
 void HeldIslands::list_touching()
@@ -241,7 +241,7 @@ void HeldIslands::add_run(std::span<const FoundContact> found, PairState* pair, 
 }
 
 /// Copies the contacts into their islands.
-void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
+void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool begins)
 {
     laws_.clear();
     for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d) laws_.push_back(contacts_.response_law(d));
@@ -256,7 +256,7 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
                             {
                                 if (k + PairState::kAhead < end) island.runs[k + PairState::kAhead].pair->prefetch();
                                 if (k + kRunsAhead < end) prefetch(island, island.runs[k + kRunsAhead]);
-                                fill_run(island, island.runs[k], h, trial);
+                                fill_run(island, island.runs[k], h, begins);
                             }
                         });
           });
@@ -276,7 +276,7 @@ void HeldIslands::fill(std::span<HeldIsland*> islands, double h, bool trial)
         for (std::uint32_t i = r.run->first; i < r.run->end; ++i)
         {
             FoundContact f = r.run->found[i - r.run->first];
-            take_known(r.island->contacts[i], f.contact, contacts_.cache().contact_of(*r.run->pair, f), trial);
+            take_known(r.island->contacts[i], f.contact, contacts_.cache().contact_of(*r.run->pair, f), begins);
             r.island->slots[i] = f.slot;
         }
 }
@@ -327,7 +327,7 @@ void HeldIslands::find_resistances(HeldIsland& island) const
             island.resistances.push_back({run.first, run.end, law.rolling_friction, law.spinning_friction});
 }
 
-void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
+void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool begins)
 {
     const SurfaceLaw& law = run.known ? law_of(run) : laws_[run.found->detector];
     for (std::uint32_t i = run.first; i < run.end; ++i)
@@ -345,7 +345,7 @@ void HeldIslands::fill_run(HeldIsland& island, Run& run, double h, bool trial)
         if (slot == all.size())
             run.incomplete = true;
         else
-            take_known(c, f.contact, all[slot], trial), island.slots[i] = slot;
+            take_known(c, f.contact, all[slot], begins), island.slots[i] = slot;
     }
     const std::span<const Contact> contacts = island.of(run);
     const double least = -contacts_.overlap_tolerance(contacts.front().a, contacts.front().b);
@@ -376,9 +376,9 @@ bool HeldIslands::has_pivot(const HeldIsland& island, const Contact& c, double h
     return !turns_far(spin(face) + length(speed(own) - speed(face)) * length(c.pivot.hollow.vector()));
 }
 
-void HeldIslands::take_known(Contact& c, const Contact& found, KnownContact& known, bool trial)
+void HeldIslands::take_known(Contact& c, const Contact& found, KnownContact& known, bool begins)
 {
-    c.id = known.id, c.impulse = known.warm_start(trial);
+    c.id = known.id, c.impulse = known.warm_start(begins);
     c.depth = found.depth - known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
 }
 

@@ -129,13 +129,14 @@ void HeldIslands::make_islands(DisjointSets& islands)
 
 // The step ------------------------------------------------------------------------------------------------------------
 
-void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial)
+void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial,
+                          bool begins)
 {
     // An advance by no time, to query the start of a piece: no impulses.
     if (!(to > from)) return;
     if (book.work && book.sign < 0 && contacts_.log().on()) take_back_contacts(from);
     make_islands(islands);
-    collect_contacts(from, to - from, trial);
+    collect_contacts(from, to - from, begins);
     plain_.clear(), jointed_.clear(), plain_groups_.clear();
     for (std::size_t i = 0; i < island_count_; ++i)
     {

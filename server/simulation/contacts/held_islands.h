@@ -168,7 +168,9 @@ public:
     std::span<const RestSample> starts() const { return starts_; }
     /// The pairs that were added last.
     std::span<const PairState> fresh() const { return fresh_; }
-    void advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
+    /// `begins`: KnownContact::warm_start.
+    void advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial,
+                 bool begins);
 
 private:
     struct HeldIsland
@@ -222,18 +224,18 @@ private:
     };
     using Run = HeldIsland::Run;
     std::uint32_t manager_of(const PairState& pair) const;
-    void collect_contacts(double from, double h, bool trial);
+    void collect_contacts(double from, double h, bool begins);
     void list_touching();
     void list_known();
     void add_run(std::span<const FoundContact> found, PairState* pair, bool known);
-    void fill(std::span<HeldIsland*> islands, double h, bool trial);
-    void fill_run(HeldIsland& island, Run& run, double h, bool trial);
+    void fill(std::span<HeldIsland*> islands, double h, bool begins);
+    void fill_run(HeldIsland& island, Run& run, double h, bool begins);
     const SurfaceLaw& law_of(const Run& run) const;
     void find_resistances(HeldIsland& island) const;
     void make_room(std::span<HeldIsland*> islands);
     static void prefetch(const HeldIsland& island, const Run& run);
     bool has_pivot(const HeldIsland& island, const Contact& contact, double h) const;
-    static void take_known(Contact& contact, const Contact& found, KnownContact& known, bool trial);
+    static void take_known(Contact& contact, const Contact& found, KnownContact& known, bool begins);
     void make_islands(DisjointSets& islands);
     void set_approach(HeldIsland& island, const GroupSystem& system, double h);
     void find_paradoxes(HeldIsland& island);

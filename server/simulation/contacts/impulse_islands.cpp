@@ -25,17 +25,17 @@ bool ImpulseIslands::meets_any(GroupSystem& system, double h) const
 
 /// Stops such corners without a bounce before the step: moving with the mean of the velocities before and after the impact would carry
 /// them into the other body.
-void ImpulseIslands::stop_closing(std::span<const std::uint32_t> island, double from, double to, WorkBook book, bool trial)
+void ImpulseIslands::stop_closing(std::span<const std::uint32_t> island, double from, double to, WorkBook book)
 {
     for (FoundContact& f : touching_) f.contact.impulse = {};
     contacts_.respond(touching_, ImpactMode::Rest, to - from, book);
     log_touching(island, from, to, true, book);
     // The impulse of the impact is not an estimate of how hard the contact will press; that of the last step is.
-    contacts_.warm_start(touching_, trial);
+    contacts_.warm_start(touching_, false);
 }
 
 void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> observed, double from, double to,
-                             WorkBook book, bool trial)
+                             WorkBook book, bool trial, bool begins)
 {
     const double h = to - from;
     Bodies& bodies = step_.world.host().bodies;
@@ -43,7 +43,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     GroupSystem& system = motion_.system_for(island, observed);
     touching_.clear();
     contacts_.touching_pairs_of(island, touching_, h);
-    contacts_.warm_start(touching_, trial);
+    contacts_.warm_start(touching_, begins);
     system.begin(from, to, book, trial ? nullptr : &step_);
     members_.resize(system.bodies().size());
     std::iota(members_.begin(), members_.end(), 0u);
@@ -51,7 +51,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     if (!at_midpoint && !trial) report_paradoxes(from);
     if (!at_midpoint && meets_any(system, h))
     {
-        stop_closing(island, from, to, book, trial);
+        stop_closing(island, from, to, book);
         system.join();
         system.begin(from, to, book, trial ? nullptr : &step_);  // the work of forces is booked with the speeds that the impact leaves
     }

@@ -19,13 +19,14 @@ public:
     {
     }
 
-    /// `island`: groups, ascending, that persistent contacts hold together. `observed`: groups whose state the forces read.
+    /// `island`: groups, ascending, that persistent contacts hold together. `observed`: groups whose state the forces read. `begins`:
+    /// KnownContact::warm_start.
     void advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> observed, double from, double to, WorkBook book,
-                 bool trial);
+                 bool trial, bool begins);
 
 private:
     bool meets_any(GroupSystem& system, double h) const;
-    void stop_closing(std::span<const std::uint32_t> island, double from, double to, WorkBook book, bool trial);
+    void stop_closing(std::span<const std::uint32_t> island, double from, double to, WorkBook book);
     bool advance_to_midpoint(GroupSystem& system, double h);
     void update_touching(double h);
     void report_paradoxes(double from);

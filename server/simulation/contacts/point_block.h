@@ -19,16 +19,17 @@ struct KnownContact
     std::uint32_t feature = 0;
     std::uint64_t id = 0;
     Vec3 impulse;           ///< N s per step on b, for warm starts
-    Vec3 start_impulse;     ///< N s: `impulse` when the advance of the present piece of the step began
+    Vec3 start_impulse;     ///< N s: `impulse` when the advance of the present piece of the step began, with the first of its parts
     Vec3 stretch;           ///< m, as in Contact: state of force contacts
     double rest_depth = 0;  ///< m
     double preload = 0;     ///< N
 
-    /// The impulse that an advance starts from. A trial repeats an advance that has replaced `impulse` by its result, and must give
-    /// the same motion: otherwise events are located on another path, and the work of that advance cannot be taken back.
-    const Vec3& warm_start(bool trial)
+    /// The impulse that an advance starts from, and each of its parts if it has some (HardContacts). A trial repeats an advance that has
+    /// replaced `impulse` by its result, and must give the same motion: otherwise events are located on another path, and the work of that
+    /// advance cannot be taken back. `begins`: whether this is the first part of an advance that is no trial.
+    const Vec3& warm_start(bool begins)
     {
-        if (!trial) start_impulse = impulse;
+        if (begins) start_impulse = impulse;
         return start_impulse;
     }
 };
