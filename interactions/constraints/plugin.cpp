@@ -225,7 +225,7 @@ void register_coordinates(Registrar& registrar)
 {
     constexpr const char* kStart = "Constraint/Start";
     constexpr const char* kStartDoc = "the initial angle, from which turns are counted";
-    registrar.component<MotorRows>("Constraint/Motor", "rotates or slides b relative to a at a speed, or to a target")
+    registrar.component<MotorRows>("Constraint/Motor", "rotates or slides b relative to a, or draws two points apart, at a speed or to a target")
         .family("Constraint/Motor")
         .command<&prepare_motor>(Phase::Prepare, kPrepare, kPlaced)
         .command<&begin_turning<MotorRows>>(Phase::Drive, kStart, kStartDoc)
@@ -251,7 +251,7 @@ void register_coordinates(Registrar& registrar)
         .cost("1 force")
         .limits("explicit solvers: unstable for steps beyond 2 sqrt(J/k) and 2 J/c")
         .source("Hooke's law, Kelvin-Voigt body");
-    registrar.component<ActuatorRows>("Constraint/Actuator", "a force about a hinge's axis, or along a slider's, as a control demands")
+    registrar.component<ActuatorRows>("Constraint/Actuator", "a force about a hinge's axis, along a slider's, or between two points, as a control demands")
         .family("Constraint/Actuator")
         .command<&prepare_actuator>(Phase::Prepare, kPrepare, kPlaced)
         .command<&begin_turning<ActuatorRows>>(Phase::Drive, kStart, kStartDoc)
@@ -259,7 +259,7 @@ void register_coordinates(Registrar& registrar)
         .command<&linearize_actuator>(Phase::Linearize, "Constraint/ForceChange", kChange)
         .command<&finish_actuator>(Phase::Finish, kFinish, "position, rate and effort at the end of the step")
         .accuracy("the solver's order")
-        .strengths("motors and servos of a robot, with gear ratio and limits; its input is one number that requests and scripts set")
+        .strengths("motors, servos and pistons of a robot, with gear ratio and limits; its input is one number that requests and scripts set")
         .cost("1 force")
         .limits("explicit solvers: unstable for steps beyond 2 sqrt(J/k) and 2 J/c, k and c the negative biases times gear^2")
         .source("MuJoCo's actuation model (E. Todorov, T. Erez, Y. Tassa, MuJoCo, IROS 2012)");

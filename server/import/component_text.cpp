@@ -1,5 +1,7 @@
 #include "import/component_text.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "blueprint/writer.h"
@@ -83,6 +85,8 @@ std::string attribute(std::string_view name, const Quat& q)
     return attribute(name, format_real(q.w) + " " + format_real(q.x) + " " + format_real(q.y) + " " + format_real(q.z));
 }
 
+std::string bound(std::string_view name, double value) { return std::isfinite(value) ? attribute(name, value) : std::string(); }
+
 std::string component(const std::string& id, std::string_view type, const std::string& attributes)
 {
     return "<component" + attribute("id", id) + attribute("type", type) + attributes + "/>";
@@ -111,6 +115,38 @@ std::string mass_attributes(const MassProperties& mass)
     std::string moments = triple({I(0, 0), I(1, 1), I(2, 2)});
     if (I(0, 1) != 0 || I(0, 2) != 0 || I(1, 2) != 0) moments += " " + triple({I(0, 1), I(0, 2), I(1, 2)});
     return attribute("mass", mass.mass) + attribute("center_of_mass", mass.center) + attribute("inertia", moments);
+}
+
+std::optional<Vec3> take_color(std::vector<RobotShape>& shapes)
+{
+    if (std::ranges::none_of(shapes, [](const RobotShape& s) { return s.color.has_value(); })) return {};
+    constexpr Vec3 kPlain{0.8, 0.8, 0.8};  // the default of Shape/*
+    Vec3 body;
+    for (const RobotShape& s : shapes)
+        for (int k = 0; k < 3; ++k) body[k] = std::max(body[k], s.color.value_or(kPlain)[k]);
+    for (RobotShape& s : shapes)
+    {
+        Vec3 rest = s.color.value_or(kPlain);
+        for (int k = 0; k < 3; ++k) rest[k] = body[k] > 0 ? rest[k] / body[k] : 1;
+        s.color = rest;
+    }
+    return body;
+}
+
+std::string camera(const Assembly& assembly)
+{
+    Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
+    double size = 0.1;
+    for (const PlacedBody& b : assembly.bodies)
+        for (const RobotShape& s : b.shapes)
+        {
+            const Vec3 p = b.X_WB * s.pose.p;
+            for (int k = 0; s.kind != ShapeKind::Plane && k < 3; ++k)
+                low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]), size = std::max(size, s.size[k]);
+        }
+    if (!(low.x <= high.x)) return {};
+    const Vec3 center = (low + high) * 0.5, from = Vec3{1.6, -2.2, 0.8} * (length(high - low) / 2 + size);
+    return "<camera id=\"front\"" + attribute("position", center + from) + attribute("look_at", center) + "/>";
 }
 
 }  // namespace plab::import

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "import/assembly.h"
 #include "import/robot.h"
 
 namespace plab::import
@@ -32,6 +35,8 @@ std::string attribute(std::string_view name, std::string_view value);
 std::string attribute(std::string_view name, double value);
 std::string attribute(std::string_view name, const Vec3& v);
 std::string attribute(std::string_view name, const Quat& q);
+/// The same of a bound that is there; "" if it is infinite.
+std::string bound(std::string_view name, double value);
 
 /// <component id type attributes/>
 std::string component(const std::string& id, std::string_view type, const std::string& attributes);
@@ -39,5 +44,10 @@ std::string component(const std::string& id, std::string_view type, const std::s
 std::string shape_component(const RobotShape& shape, const std::string& id);
 /// mass, center_of_mass and inertia.
 std::string mass_attributes(const MassProperties& mass);
+/// Gives a body the largest red, green and blue of its shapes, and each shape what is left: their products are the shapes' colours.
+/// Viewers that show one colour for a body show that one. None if no shape has a colour.
+std::optional<Vec3> take_color(std::vector<RobotShape>& shapes);
+/// <camera> that sees all bodies, from the front right; "" if there is nothing to see.
+std::string camera(const Assembly& assembly);
 
 }  // namespace plab::import

@@ -5,9 +5,6 @@ namespace plab::import
 namespace
 {
 
-/// A bound that is there.
-std::string bound(std::string_view name, double value) { return std::isfinite(value) ? attribute(name, value) : std::string(); }
-
 void write_stops(const Joint& j, JointText& out, Ids& ids)
 {
     if (!std::isfinite(j.lower) && !std::isfinite(j.upper)) return;

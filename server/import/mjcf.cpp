@@ -5,6 +5,7 @@
 #include <set>
 
 #include "import/mjcf_actuator.h"
+#include "import/mjcf_cable.h"
 #include "import/mjcf_geom.h"
 #include "import/mjcf_include.h"
 #include "import/mjcf_settings.h"
@@ -47,8 +48,9 @@ public:
                 for (const XmlElement& child : e.children) read_contact(child);
         std::vector<FixedTendon> tendons;
         for (const XmlElement& e : root_.children)
-            if (e.name == "tendon") std::ranges::move(read_tendons(e, document_), std::back_inserter(tendons));
-        put_on_joints(robot_.actuators, tendons, robot_.couplings, document_);
+            if (e.name == "tendon") std::ranges::move(read_tendons(e, document_), std::back_inserter(tendons)), read_cables(e);
+        put_on_joints(robot_, tendons, document_);
+        sites_.list_unused(document_);
         return std::move(robot_);
     }
 
@@ -76,11 +78,13 @@ private:
         if (childclass.empty()) childclass = inherited;
         document_.list_attributes(e, {"name", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "childclass", "gravcomp"});
         read_gravity(e, body);
-        document_.list_children(e, {"inertial", "joint", "freejoint", "geom", "body"});
-        document_.list_repeated(e, {"joint", "freejoint", "geom", "body"});
+        document_.list_children(e, {"inertial", "joint", "freejoint", "geom", "site", "body"});
+        document_.list_repeated(e, {"joint", "freejoint", "geom", "site", "body"});
         body.pose = settings_.pose(e);
         read_joints(e, childclass, body);
         read_mass_and_shapes(e, childclass, body);
+        for (const XmlElement& child : e.children)
+            if (child.name == "site") sites_.read(child, childclass, body.name, settings_, document_);
         robot_.bodies.push_back(std::move(body));
         for (const XmlElement& child : e.children)
             if (child.name == "body") read_body(child, index, childclass);
@@ -256,6 +260,17 @@ private:
         robot_.couplings.push_back(std::move(c));
     }
 
+    void read_cables(const XmlElement& section)
+    {
+        for (const XmlElement& e : section.children)
+            if (e.name == "spatial")
+            {
+                if (auto cable = read_cable(e, sites_, settings_, document_)) robot_.cables.push_back(std::move(*cable));
+            }
+            else if (e.name != "fixed")
+                document_.lost(e, "is not carried over");
+    }
+
     void read_contact(const XmlElement& e)
     {
         const bool exclude = e.name == "exclude";
@@ -287,6 +302,7 @@ private:
     Document& document_;
     MjcfSettings settings_;
     Robot robot_;
+    Sites sites_;
     std::set<std::string> body_names_, joint_names_;
 };
 

@@ -16,12 +16,13 @@ constexpr std::array<std::string_view, 5> kOrientations{"quat", "axisangle", "eu
 
 double from_0_to_1(double x) { return std::fmin(1, std::fmax(0, x)); }
 
-/// Elements that share defaults: those of actuators have one set in a class.
-std::string default_of(const std::string& name) { return is_actuator(name) ? "actuator" : name; }
+/// Elements that share defaults: those of actuators and of tendons have one set in a class each.
+std::string default_of(const std::string& name) { return is_actuator(name) ? "actuator" : name == "spatial" ? "tendon" : name; }
 
 bool is_default_of(std::string_view name)
 {
-    return name == "geom" || name == "joint" || name == "mesh" || name == "material" || is_actuator(name);
+    return name == "geom" || name == "joint" || name == "site" || name == "mesh" || name == "material" || name == "tendon" ||
+           is_actuator(name);
 }
 
 /// However many there are; none with an error if one is faulty.
@@ -40,6 +41,13 @@ bool is_actuator(std::string_view name) { return name == "motor" || name == "pos
 void list_unused_attributes(const XmlElement& e, Document& document)
 {
     document.list_children(e, {});
+    // What sites and tendons look like does not matter: they are not drawn.
+    if (e.name == "site")
+        document.list_attributes(
+            e, {"name", "class", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "type", "size", "group", "rgba", "material"});
+    if (e.name == "tendon")
+        document.list_attributes(
+            e, {"class", "limited", "range", "springlength", "stiffness", "damping", "group", "width", "rgba", "material"});
     if (e.name == "geom")
         document.list_attributes(
             e, {"name", "class",   "type", "size",     "fromto",  "pos",         "quat",     "axisangle", "euler",  "xyaxes",   "zaxis",

@@ -54,11 +54,7 @@ std::vector<FixedTendon> read_tendons(const XmlElement& section, Document& docum
     std::vector<FixedTendon> out;
     for (const XmlElement& e : section.children)
     {
-        if (e.name != "fixed")
-        {
-            document.lost(e, "is not carried over: only <fixed> is, for actuators");
-            continue;
-        }
+        if (e.name != "fixed") continue;
         document.list_attributes(e, {"name"});
         document.list_children(e, {"joint"});
         FixedTendon tendon;
@@ -74,25 +70,27 @@ std::vector<FixedTendon> read_tendons(const XmlElement& section, Document& docum
     return out;
 }
 
-void put_on_joints(std::vector<Actuator>& actuators, const std::vector<FixedTendon>& tendons, const std::vector<Coupling>& couplings,
-                   Document& document)
+void put_on_joints(Robot& robot, const std::vector<FixedTendon>& tendons, Document& document)
 {
-    for (Actuator& a : actuators)
+    const auto is_on_cable = [&](const Actuator& a)
+    { return std::any_of(robot.cables.begin(), robot.cables.end(), [&](const Cable& c) { return c.name == a.tendon; }); };
+    for (Actuator& a : robot.actuators)
     {
-        if (a.tendon.empty()) continue;
+        if (a.tendon.empty() || is_on_cable(a)) continue;
         const auto at = std::find_if(tendons.begin(), tendons.end(), [&](const FixedTendon& t) { return t.name == a.tendon; });
-        const auto leader = at == tendons.end() ? std::nullopt : leader_of(*at, couplings);
+        const auto leader = at == tendons.end() ? std::nullopt : leader_of(*at, robot.couplings);
         if (leader)
             a.joint = leader->joint, a.gear *= leader->ratio, a.relies_on = leader->by;
         else
-            document.lost(
-                a.where, model::quoted(a.name),
-                "is not carried over: of a tendon's actuator all joints have to follow one another (<equality>), in a <fixed> tendon");
+            document.lost(a.where, model::quoted(a.name),
+                          "is not carried over: of a tendon's actuator all joints have to follow one another (<equality>), in a <fixed> "
+                          "tendon, or it "
+                          "has to be a <spatial> one that is carried over");
     }
     for (const FixedTendon& t : tendons)
-        if (std::none_of(actuators.begin(), actuators.end(), [&](const Actuator& a) { return a.tendon == t.name; }))
+        if (std::none_of(robot.actuators.begin(), robot.actuators.end(), [&](const Actuator& a) { return a.tendon == t.name; }))
             document.lost(t.where, model::quoted(t.name), "is not carried over: no actuator acts by it");
-    std::erase_if(actuators, [](const Actuator& a) { return a.joint.empty(); });
+    std::erase_if(robot.actuators, [&](const Actuator& a) { return a.joint.empty() && !is_on_cable(a); });
 }
 
 }  // namespace plab::import

@@ -20,13 +20,12 @@ struct FixedTendon
     blueprint::TextPosition where;
 };
 
-/// Of `section`; the rest is listed.
+/// <fixed> of `section`.
 std::vector<FixedTendon> read_tendons(const XmlElement& section, Document& document);
 
 /// Where all joints of a tendon follow one of them by couplings (<equality>), an actuator of the tendon acts on that joint: its length
-/// changes with the joint's coordinate q by the sum of coefficients times ratios, and the work of its force is the same. Other actuators of
-/// tendons are listed and dropped, and so are tendons without an actuator.
-void put_on_joints(std::vector<Actuator>& actuators, const std::vector<FixedTendon>& tendons, const std::vector<Coupling>& couplings,
-                   Document& document);
+/// changes with the joint's coordinate q by the sum of coefficients times ratios, and the work of its force is the same. Those of cables
+/// stay as they are. Other actuators of tendons are listed and dropped, and so are fixed tendons without an actuator.
+void put_on_joints(Robot& robot, const std::vector<FixedTendon>& tendons, Document& document);
 
 }  // namespace plab::import

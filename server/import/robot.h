@@ -54,7 +54,7 @@ struct Joint
 struct Actuator
 {
     std::string name, joint;
-    std::string tendon;                  ///< of MJCF, in place of the joint until that is known (mjcf_tendon.h)
+    std::string tendon;  ///< if there is no joint: the Cable along which it acts, or a tendon whose joint is not known yet (mjcf_tendon.h)
     std::vector<std::string> relies_on;  ///< names of couplings without which it would act otherwise
     double gear = 1, gain = 1;
     Vec3 bias;
@@ -149,6 +149,27 @@ struct Coupling
     blueprint::TextPosition where;
 };
 
+/// A rope, or an elastic band, of one or several straight parts between bodies. Its length is their sum, each divided by a number.
+struct Cable
+{
+    struct End
+    {
+        std::string body;
+        Vec3 point;  ///< m, in B
+    };
+    struct Part
+    {
+        End a, b;
+        double divisor = 1;
+    };
+    std::string name;
+    std::vector<Part> parts;
+    double lower = -kInfinity, upper = kInfinity;  ///< m, of its length
+    double stiffness = 0, damping = 0;             ///< N/m, N s/m
+    std::optional<double> rest;                    ///< m: length without force; none: that of the start
+    blueprint::TextPosition where;
+};
+
 /// Bodies that do not collide with one another.
 struct ExcludedBodies
 {
@@ -174,6 +195,7 @@ struct Robot
     bool fixed_parents_collide = false;  ///< a body collides with the one that it hangs on if that never moves (MJCF)
     std::vector<RobotBody> bodies;       ///< parents come first
     std::vector<Coupling> couplings;
+    std::vector<Cable> cables;
     std::vector<Actuator> actuators;
     std::vector<ExcludedBodies> exclusions;
     std::vector<CollidingPair> pairs;

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "import/cable_text.h"
 #include "import/component_text.h"
 #include "import/joint_text.h"
 #include "import/surface_law.h"
@@ -18,41 +19,6 @@ namespace
 /// A body that moves by several joints gets bodies between them, of this share of its mass and largest moment. Lighter ones would cost
 /// digits where a rotor is geared to them: rows on loops have a compliance relative to the mobility of what they hold.
 constexpr double kBetweenShare = 1e-5;
-
-/// Gives a body the largest red, green and blue of its shapes, and each shape what is left: their products are the shapes' colours.
-/// Viewers that show one colour for a body show that one. None if no shape has a colour.
-std::optional<Vec3> take_color(std::vector<RobotShape>& shapes)
-{
-    if (std::ranges::none_of(shapes, [](const RobotShape& s) { return s.color.has_value(); })) return {};
-    constexpr Vec3 kPlain{0.8, 0.8, 0.8};  // the default of Shape/*
-    Vec3 body;
-    for (const RobotShape& s : shapes)
-        for (int k = 0; k < 3; ++k) body[k] = std::max(body[k], s.color.value_or(kPlain)[k]);
-    for (RobotShape& s : shapes)
-    {
-        Vec3 rest = s.color.value_or(kPlain);
-        for (int k = 0; k < 3; ++k) rest[k] = body[k] > 0 ? rest[k] / body[k] : 1;
-        s.color = rest;
-    }
-    return body;
-}
-
-/// A camera that sees all bodies, from the front right.
-std::string camera(const Assembly& assembly)
-{
-    Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
-    double size = 0.1;
-    for (const PlacedBody& b : assembly.bodies)
-        for (const RobotShape& s : b.shapes)
-        {
-            const Vec3 p = b.X_WB * s.pose.p;
-            for (int k = 0; s.kind != ShapeKind::Plane && k < 3; ++k)
-                low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]), size = std::max(size, s.size[k]);
-        }
-    if (!(low.x <= high.x)) return {};
-    const Vec3 center = (low + high) * 0.5, from = Vec3{1.6, -2.2, 0.8} * (length(high - low) / 2 + size);
-    return "<camera id=\"front\"" + attribute("position", center + from) + attribute("look_at", center) + "/>";
-}
 
 class Writer
 {
@@ -77,6 +43,7 @@ public:
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_body(i);
         for (std::size_t i = 0; i < assembly_.bodies.size(); ++i) write_joints(i);
         for (const Coupling& coupling : robot_.couplings) write_coupling(coupling);
+        for (const Cable& cable : robot_.cables) write_cable(cable);
         for (const Actuator& actuator : robot_.actuators) write_actuator(actuator);
         for (const CollisionExclusion& exclusion : exclusions_) write_exclusion(exclusion);
         if (!body_ids_.empty()) out_.root = body_ids_.front();
@@ -255,8 +222,44 @@ private:
         places_[j.name] = {std::move(text.place), j.start};
     }
 
+    std::optional<PlacedEnd> placed(const Cable& cable, const Cable::End& end) const
+    {
+        const auto at = assembly_.frames.find(end.body);
+        if (at == assembly_.frames.end())
+            return document_.error(cable.where, quoted(cable.name), "there is no body " + quoted(end.body)), std::nullopt;
+        const PlacedBody& b = body(at->second.body);
+        const Vec3 point = at->second.pose * end.point;
+        if (b.fixed) return PlacedEnd{"", b.X_WB * point, b.X_WB * point};
+        return PlacedEnd{body_ids_[at->second.body], point, b.X_WB * point};
+    }
+
+    void write_cable(const Cable& cable)
+    {
+        std::vector<PlacedPart> parts;
+        for (const Cable::Part& part : cable.parts)
+        {
+            auto a = placed(cable, part.a), b = placed(cable, part.b);
+            if (!a || !b) return;
+            parts.push_back({std::move(*a), std::move(*b), part.divisor});
+        }
+        const CableText text = cable_text(cable, parts, ids_);
+        for (const std::string& component : text.lines) line(component);
+        manager_ = manager_ || text.needs_manager;
+        if (!text.lost.empty()) document_.lost(cable.where, quoted(cable.name), text.lost);
+        cables_[cable.name] = text.along;
+    }
+
+    void write_actuator_of_cable(Actuator a)
+    {
+        const auto& along = cables_[a.tendon];
+        if (!along) return document_.lost(a.where, quoted(a.name), "is not carried over: its tendon is not between two points");
+        a.gear *= along->ratio;
+        line(actuator_text(a, along->place, along->start, ids_));
+    }
+
     void write_actuator(const Actuator& a)
     {
+        if (a.joint.empty()) return write_actuator_of_cable(a);
         const auto found = places_.find(a.joint);
         if (found == places_.end()) return document_.error(a.where, quoted(a.name), "there is no joint " + quoted(a.joint));
         if (found->second.text.empty())
@@ -421,7 +424,8 @@ private:
         double start = 0;
     };
     std::map<std::string, Place> places_;  ///< by joint
-    std::vector<std::string> heavy_;       ///< ids of the bodies that gravity acts on
+    std::map<std::string, std::optional<CableText::Along>> cables_;
+    std::vector<std::string> heavy_;  ///< ids of the bodies that gravity acts on
     bool manager_ = false;
     std::set<std::string> lost_couplings_;
     WrittenScene out_;

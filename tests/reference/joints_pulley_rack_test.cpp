@@ -133,6 +133,30 @@ TEST_CASE("a rope that can go slack pulls only, and is jerked taut")
     CHECK(least == 0);
 }
 
+TEST_CASE("a winch draws two bodies that spin together at its speed, and passes on no momentum")
+{
+    constexpr double kSpeed = 0.4;
+    Scene s(body("a", 1, {0.02, 0.03, 0.04}, {0, 0, 0}, "linear_velocity='0.3 0.2 0' angular_velocity='1 2 0.5'") +
+                body("b", 2.5, {0.02, 0.05, 0.04}, {2, 0.1, 0.4}, "angular_velocity='0 -1 1'") +
+                "<component id='winch' type='Constraint/Motor' a='a' b='b' along='distance' anchor_a='0.1 0 0' anchor_b='-0.1 0.1 0' "
+                "speed='-0.4'/>",
+            "solver='Solver/RungeKutta4' " + dt(480));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    const auto apart = [&]
+    {
+        const auto point = [&](const std::string& id, const Vec3& at)
+        { return s.vec(id, "position") + rotate(s.quat(id, "orientation"), at); };
+        return distance(point("a", {0.1, 0, 0}), point("b", {-0.1, 0.1, 0}));
+    };
+    const double start = apart();
+    const Vec3 momentum = s.vec("a", "linear_velocity") + 2.5 * s.vec("b", "linear_velocity");
+    s.run(3);
+    CHECK(near(apart(), start - kSpeed * 3, 1e-8));
+    CHECK(near(s.real("winch", "position"), apart(), 1e-14));
+    CHECK(near(s.real("winch", "rate"), -kSpeed, 1e-12));
+    CHECK(distance(s.vec("a", "linear_velocity") + 2.5 * s.vec("b", "linear_velocity"), momentum) < 1e-12);
+}
+
 TEST_CASE("a rope with slack is refused without a manager")
 {
     Scene s(weights(1, 1) + rope(" slack='true'"));

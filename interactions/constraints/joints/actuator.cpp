@@ -7,7 +7,7 @@ namespace plab::constraints
 
 void ActuatorRows::describe(Schema& s)
 {
-    describe_coordinate(s, {"turn", "slide"});
+    describe_coordinate(s, {"turn", "slide", "distance"});
     s.param(control, "control", unit::one, "u, what it is told").or_else(0);
     s.param(control_lower, "control_lower", unit::one, "least u that counts; -inf: none").or_else(-kInfinity).may_be_infinite();
     s.param(control_upper, "control_upper", unit::one, "largest u that counts; inf: none").or_else(kInfinity).may_be_infinite();

@@ -1,4 +1,5 @@
-/// Actuator: an effort along the coordinate between a and b (rad or m) that a request, a script or a controller commands.
+/// Actuator: an effort along the coordinate between a and b (an angle, a travel or a distance; rad or m) that a request, a script or a
+/// controller commands.
 ///
 ///   u = control within [control_lower, control_upper],   l = gear x,   l' = gear x'
 ///   F = gain u + bias_0 + bias_1 l + bias_2 l'   within [force_lower, force_upper]

@@ -62,6 +62,8 @@ ConstraintRow stretch_row(const Stretch& s, double length, double sign, std::uin
     return row;
 }
 
+Coordinate stretching(const Stretch& s) { return {s.distance, s.rate, stretch_row(s, s.distance, 1, 0)}; }
+
 void prepare_distance(Row row, DistanceRows& rows, const Bodies& bodies) { rows.place_length(row, bodies); }
 
 void constrain_distance(const StepContext& step, Rows which, const DistanceRows& rows, const Bodies& bodies, RowSink& sink)

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "joints/pair.h"
+#include "joints/spin.h"
 
 namespace plab::constraints
 {
@@ -41,6 +42,8 @@ struct Stretch
     Vec3 u;  ///< from a to b; if the points coincide, their direction of motion, or any direction
 };
 Stretch stretch_of(const Sides& sides);
+/// The distance as a coordinate.
+Coordinate stretching(const Stretch& s);
 /// A row with the error sign (|d| - length).
 ConstraintRow stretch_row(const Stretch& s, double length, double sign, std::uint32_t feature);
 

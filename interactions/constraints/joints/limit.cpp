@@ -1,8 +1,7 @@
 #include "joints/limit.h"
 
+#include <array>
 #include <cmath>
-
-#include "joints/distance.h"
 
 namespace plab::constraints
 {
@@ -26,7 +25,7 @@ double activation_distance(const LimitRows& rows, Row row, const Bodies& bodies)
 void LimitRows::describe(Schema& s)
 {
     describe_coordinate(s, {"turn", "slide", "distance"});
-    s.role(manager, "manager", {Facet::Component}, "advances the bodies while a bound is near; by default a `Manager/Automatic`")
+    s.role(manager, "manager", {Facet::Component}, "advances the bodies while a bound is near")
         .family("Manager/")
         .default_type("Manager/Automatic");
     s.param(lower, "lower", unit::one, "least position, rad or m; -inf: none").or_else(-kInfinity).may_be_infinite();
@@ -76,14 +75,7 @@ void constrain_limit(const StepContext& step, Rows which, const LimitRows& rows,
 {
     for (const Row row : which)
     {
-        Coordinate c;
-        if (rows.along[row] == "distance")
-        {
-            const Stretch s = stretch_of(rows.sides(row, bodies));
-            c.row = stretch_row(s, 0, 1, 0), c.x = s.distance, c.speed = s.rate;
-        }
-        else
-            c = coordinate_of(rows, row, bodies, shafts, step.time);
+        Coordinate c = coordinate_of(rows, row, bodies, shafts, step.time);
         sink.begin(step.component_of_row[row]);
         const double activation = activation_distance(rows, row, bodies), e = rows.restitution[row];
         add_bound(step, c.row, c.x - rows.lower[row], c.speed, activation, e, sink);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "joints/distance.h"
+
 namespace plab::constraints
 {
 
@@ -40,6 +42,7 @@ Coordinate coordinate_of(const CoordinateRows& rows, Row row, const Bodies& bodi
         return turning(spin, rows.angle_now(row, spin, now));
     }
     const Sides s = rows.sides(row, bodies);
+    if (rows.along[row] == "distance") return stretching(stretch_of(s));
     return sliding(s, rotate(s.a.q, rows.travel_axis_a[row]));
 }
 
@@ -82,7 +85,7 @@ ConstraintRow change_along(const Coordinate& c, double stiffness, double damping
 
 void MotorRows::describe(Schema& s)
 {
-    describe_coordinate(s, {"turn", "slide"});
+    describe_coordinate(s, {"turn", "slide", "distance"});
     s.role(manager, "manager", {Facet::Component}, "solves the row if max_effort is finite").optional();
     s.param(mode, "mode", unit::one, "rate: moves at speed; servo: goes to target, at most at speed")
         .or_else("rate")

@@ -1,4 +1,5 @@
-/// Motor: turns b against a, or slides it along a, at a given speed; or moves it to a target and holds it there.
+/// Motor: turns b against a, slides it along a or changes the distance between two points, at a given speed; or moves it to a target and
+/// holds it there.
 ///
 /// Both are conditions on a speed; neither has a position error that a projection could remove. The servo's own bias makes its law hold for
 /// accelerations too, d/dt of the line below, so that a solver of high order sees a smooth equation.
@@ -6,8 +7,8 @@
 ///   rate      J v = speed
 ///   servo     J v = gain (target - x), within +-speed: x approaches its target as exp(-gain t)      bias = -gain J v
 ///
-/// J v is the angular velocity about the axis, or the rate of travel along it. If the effort of a motor is limited, its row can
-/// only be solved by a manager.
+/// J v is the angular velocity about the axis, or the rate of travel along it or of the distance. If the effort of a motor is limited, its
+/// row can only be solved by a manager.
 #pragma once
 
 #include "joints/spin.h"
@@ -15,7 +16,7 @@
 namespace plab::constraints
 {
 
-/// A coordinate between a and b, over bodies or shafts: turning about an axis or travel along it.
+/// A coordinate between a and b, over bodies or shafts: turning about an axis, travel along it, or the distance between two points.
 struct CoordinateRows : PairRows, SpinColumns
 {
     Column<std::string> along;

@@ -34,6 +34,7 @@ const Case kCases[] = {
     {"Distance", "a='a' b='b' anchor_a='0.1 0.2 0.3' anchor_b='-0.2 0.1 0.4'"},
     {"Motor", "a='a' b='b' axis='0.6 0 0.8' mode='servo' target='1' speed='inf' gain='3'"},
     {"Motor", "a='a' b='b' along='slide' anchor_a='0.1 0.2 0.3' anchor_b='-0.2 0.1 0.4' axis='0.6 0 0.8' speed='2'"},
+    {"Motor", "a='a' b='b' along='distance' anchor_a='0.1 0.2 0.3' anchor_b='-0.2 0.1 0.4' speed='2'"},
     {"Gear", "driver='a' driven='b' carrier='c' velocity_factor='-2.5' driver_axis='0.6 0 0.8' driven_axis='0 0.6 0.8'"},
     {"Gear", "driver='a' driven='s' velocity_factor='3' driver_axis='0 0 1'", false},
     {"Planetary", "sun='a' ring='s' carrier='t' sun_teeth='20' ring_teeth='80' sun_axis='0.6 0.8 0'", false},
@@ -143,6 +144,7 @@ TEST_CASE("the change that a force tells is its derivative: by displacements, an
         {"TorsionSpring", "a='a' b='b' along='slide' anchor='0.7 0.2 0.1' axis='0.6 0 0.8' stiffness='30' damping='4'"},
         {"Actuator", "a='a' b='b' axis='0.6 0 0.8' gain='5' control='3' bias='2 -30 -4' gear='-1.5'"},
         {"Actuator", "a='a' b='b' along='slide' anchor='0.7 0.2 0.1' axis='0 0.6 0.8' gain='5' control='3' bias='2 -30 -4' gear='1.5'"},
+        {"Actuator", "a='a' b='b' along='distance' anchor_a='0.1 0.2 0.3' anchor_b='-0.2 0.1 0.4' gain='5' control='3' bias='2 -30 -4'"},
     };
     for (const Case& c : cases)
     {
