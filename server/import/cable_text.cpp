@@ -82,6 +82,8 @@ CableText cable_text(const Cable& cable, const std::vector<PlacedPart>& parts, I
         write_line(cable, changing.front(), constant, out, ids);
     else if (changing.size() == 2)
         write_wheels(cable, changing.front(), changing.back(), constant, out, ids);
+    else if (changing.empty())
+        out.lost = "is not carried over: its length does not change";
     else
         out.lost = "is not carried over: only one or two of its parts may have lengths that change";
     return out;

@@ -265,7 +265,11 @@ private:
         for (const XmlElement& e : section.children)
             if (e.name == "spatial")
             {
-                if (auto cable = read_cable(e, sites_, settings_, document_)) robot_.cables.push_back(std::move(*cable));
+                auto cable = read_cable(e, sites_, settings_, document_);
+                const bool is_named = e.find_attribute("name") != nullptr;
+                if (cable && is_named && std::ranges::find(robot_.cables, cable->name, &Cable::name) != robot_.cables.end())
+                    document_.error(e, "there are two tendons of this name");
+                if (cable) robot_.cables.push_back(std::move(*cable));
             }
             else if (e.name != "fixed")
                 document_.lost(e, "is not carried over");

@@ -112,6 +112,11 @@ TEST_CASE("what cannot be carried over of a spatial tendon is listed, and so are
                                      SceneFormat::Mjcf);
     CHECK(lists(wound, "<spatial> 't': is not carried over: it winds around a shape"));
     CHECK(lists(wound, "the attribute margin='0.1' is not carried over"));
+    CHECK(lists(hoist(load("a", 1, {0, 0, 1}), "range='0 2'", "left right"), "'rope': is not carried over: its length does not change"));
+    const std::string twice =
+        "<mujoco><worldbody><site name='s'/><site name='t'/></worldbody><tendon><spatial name='x'><site site='s'/>"
+        "<site site='t'/></spatial><spatial name='x'><site site='t'/><site site='s'/></spatial></tendon></mujoco>";
+    CHECK(reasons(import_robot(twice, SceneFormat::Mjcf)).find("there are two tendons of this name") != std::string::npos);
     CHECK(reasons(import_robot("<mujoco><worldbody/><tendon><spatial><site site='gone'/></spatial></tendon></mujoco>", SceneFormat::Mjcf))
               .find("there is no site 'gone'") != std::string::npos);
 }
