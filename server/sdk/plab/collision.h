@@ -128,7 +128,8 @@ struct ContactLoad
     // in
     std::uint32_t bodies = 0;  ///< dynamic bodies of the scene
     /// Of these, the ones in islands beyond the limits that the resolution has as parameters `max_bodies` and `max_points`, or that have
-    /// been in one within its `dwell` (s). All bodies of an island are crowded, or none is.
+    /// been in one within its `dwell` (s), and those that sleep; all of them for the dwell after locating impacts has cost too much. All
+    /// bodies of an island are crowded, or none is.
     std::uint32_t crowded = 0;
     std::uint32_t island_bodies = 0;  ///< dynamic bodies of the largest island that persistent contacts hold together
     std::uint32_t island_points = 0;  ///< contact points of the island that has most of them
