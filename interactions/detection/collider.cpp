@@ -70,7 +70,10 @@ void Collider::make_hull_of_mesh()
     if (!source_.hull_collides) return make_surface();
     auto hull = make_hull(source_.vertices);
     if (hull)
+    {
         kind_ = ColliderKind::Hull, hull_ = hull.take();
+        fills_hollows_ = !fills_hull(source_.vertices, source_.triangles, hull_);
+    }
     else
         complaint_ = hull.error().reason;
 }

@@ -40,6 +40,8 @@ public:
     const Vec3& size() const { return source_.size; }  ///< of bowls and bores: x is the radius, z the rim_height (plab/surface.h)
     const Hull& hull() const { return hull_; }         ///< of meshes
     const TriangleSurface& triangles() const { return triangles_; }
+    /// Whether its hull covers hollows or openings of the mesh.
+    bool fills_hollows() const { return fills_hollows_; }
     /// Why a shape that should collide does not; empty if nothing is wrong.
     const std::string& complaint() const { return complaint_; }
 
@@ -55,6 +57,7 @@ private:
     ColliderKind kind_ = ColliderKind::None;
     Hull hull_;
     TriangleSurface triangles_;
+    bool fills_hollows_ = false;
     std::string complaint_;
 };
 

@@ -33,6 +33,9 @@ public:
     void clear() { count_ = 0, triangles_ = 0; }
     void clear(double margin) { clear(), margin_ = margin; }
     double margin() const { return margin_; }
+    /// Whether a level end of a cylinder has a furthest point (ContactSink::level_rims).
+    bool level_rims() const { return level_rims_; }
+    void set_level_rims(bool wanted) { level_rims_ = wanted; }
     /// Keeps the point if it is within the margin and there is room left.
     void add(const ContactPoint& contact_point)
     {
@@ -48,6 +51,7 @@ private:
     std::array<ContactPoint, kCapacity> contact_points_{};
     std::size_t count_ = 0, triangles_ = 0;
     double margin_ = 0;
+    bool level_rims_ = false;
 };
 
 /// The closest points of two shapes.

@@ -108,7 +108,7 @@ void cylinder_plane(const Solid& cylinder, const Pose& X_plane, ContactPoints& o
     };
     for (std::uint32_t end = 0; end < 2; ++end)
     {
-        const RimPoints rim = rim_points(cylinder, end == 1, -n);
+        const RimPoints rim = rim_points(cylinder, end == 1, -n, out.level_rims());
         for (std::uint32_t i = 0; i < rim.count; ++i) offer(rim.touching(i), 8 * end + rim.id[i]);
     }
 }

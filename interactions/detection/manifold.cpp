@@ -64,6 +64,7 @@ public:
         if (spread_) spread_->take(out_);
     }
     const Vec3& normal() const { return n_; }
+    bool level_rims() const { return out_.level_rims(); }
 
 private:
     Pivot pivot_at(std::uint32_t feature, const Vec3& on_a, const Vec3& on_b, const Vec3& point)
@@ -174,7 +175,7 @@ void lay_corners(const SupportingFace& X, const SupportingFace& Y, bool x_is_a, 
     if (X.kind != SupportingFace::Kind::Disc) return;
     for (const bool upper : {X.upper, !X.upper})
     {
-        const RimPoints rim = rim_points(*X.solid, upper, x_is_a ? n : -n);
+        const RimPoints rim = rim_points(*X.solid, upper, x_is_a ? n : -n, out.level_rims());
         for (std::uint32_t i = rim.count; i-- > 0;) lay(rim.p[i], rim.id[i] + (upper ? 8 : 0), rim.touching(i));
     }
 }

@@ -20,6 +20,22 @@ void report_complaints(const StepContext& context, Row row, const OdeScene& scen
     }
 }
 
+/// A bowl, a room or a ground with hills would otherwise show as a block on which bodies lie in the air.
+void report_filled_hollows(const StepContext& context, Row row, OdeScene& scene)
+{
+    if (!context.events) return;
+    for (const auto& [body, shape] : scene.fresh_filled_hollows())
+    {
+        Event e;
+        e.tick = context.tick, e.time = context.time, e.kind = "detection.hull", e.severity = Severity::Warning;
+        e.component = row < context.component_of_row.size() ? context.component_of_row[row] : kNoIndex;
+        e.a = {Facet::Shape, shape}, e.b = {Facet::Body, body};
+        e.message = "this mesh of a body that does not move collides as its convex hull, which covers its hollows or openings; "
+                    "surface_collides=\"true\" lets it collide as its triangles";
+        context.events->emit(std::move(e));
+    }
+}
+
 /// A misspelt role or a forgotten shape would otherwise show in bodies that fall through one another alone.
 void report_idle(const StepContext& context, Row row, const OdeScene& scene)
 {
@@ -61,7 +77,10 @@ Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bo
     auto& scene = rows.scene[row];
     if (!scene) scene = std::make_unique<OdeScene>();
     if (scene->update(context, rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink))
+    {
         report_complaints(context, row, *scene), report_idle(context, row, *scene);
+        report_filled_hollows(context, row, *scene);
+    }
     scene->detect(context, bodies, filter, sink);
     if (!sink.motion_margin().empty()) return {};  // this query asked for candidate pairs, not for contacts
     if (!sink.only_persistent()) rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());

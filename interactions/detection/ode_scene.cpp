@@ -86,17 +86,6 @@ bool OdeScene::update(const StepContext& context, const std::string& space, cons
     return rebuilds;
 }
 
-OdeScene::Participants OdeScene::participants() const
-{
-    Participants out;
-    for (const Member& m : members_)
-    {
-        out.dynamic += m.membership.dynamic ? 1 : 0;
-        if (m.first_shape != m.end_shape) ++(m.membership.between ? out.between : out.against);
-    }
-    return out;
-}
-
 void OdeScene::add_members(const RefList& bodies, bool between, const Bodies& table)
 {
     for (const Ref& r : bodies)
@@ -260,6 +249,7 @@ void OdeScene::query(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shi
     // Of bodies with several parts some contacts may turn out to be none.
     const bool of_parts = ma.end_part - ma.first_part > 1 || mb.end_part - mb.first_part > 1;
     contact_points.clear(of_parts ? std::max(margin_, seam_margin(ca, cb)) : margin_);
+    contact_points.set_level_rims(level_rims_);
     collide(ca, X_a, cb, X_b, contact_points);
     narrow.further_pairs += further_pairs_of(ca, cb, contact_points.triangles()) + (narrow.parts_met++ > 0 ? 1.0 : 0.0);
     const std::span<const ContactPoint> all = contact_points.all();
@@ -364,7 +354,7 @@ void OdeScene::detect(const StepContext& context, const Bodies& bodies, const Co
     filter_ = &filter;
     if (!sink.motion_margin().empty()) return report_near(context, sink);
     penetration_ = 0, further_pairs_ = 0;
-    margin_ = sink.margin();
+    margin_ = sink.margin(), level_rims_ = sink.level_rims();
     if (narrow_.empty()) narrow_.resize(1);
     collect_persistent(context, sink);
     query_persistent(bodies, sink);

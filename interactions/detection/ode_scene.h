@@ -41,6 +41,8 @@ public:
         bool any_pair() const { return between > 0 && between + against > 1; }
     };
     Participants participants() const;
+    /// Bodies that do not move and the first of their shapes whose hull covers hollows of the mesh; without those of the last call.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> fresh_filled_hollows();
 
 private:
     struct Member  // a body that takes part
@@ -137,7 +139,9 @@ private:
     std::size_t pairs_ = 0;
     double further_pairs_ = 0;  // for ContactSink::took
     double penetration_ = 0;
-    double margin_ = 0;  // m, of the present detection pass
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> filled_hollows_;  // as of the last call
+    double margin_ = 0;                                                    // m, of the present detection pass
+    bool level_rims_ = false;                                              // likewise
 };
 
 }  // namespace plab::detection

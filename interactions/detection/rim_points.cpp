@@ -18,7 +18,7 @@ Vec3 withdrawn(double radius, double sine, double cosine, const Vec3& lowest, co
 
 }  // namespace
 
-RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction)
+RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction, bool level_too)
 {
     RimPoints out;
     const double radius = c.size().x;
@@ -34,7 +34,10 @@ RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction)
         if (leans) out.withdrawal = withdrawn(radius, sine, cosine, across / sine, u);
         for (; out.count < 4; ++out.count) out.p[out.count] = middle + radius * fixed[out.count], out.id[out.count] = out.count;
     }
-    if (leans) out.p[out.count] = middle + (radius / sine) * across, out.id[out.count++] = RimPoints::kFurthest;
+    if (leans)
+        out.p[out.count] = middle + (radius / sine) * across, out.id[out.count++] = RimPoints::kFurthest;
+    else if (level_too && cosine > 0)
+        out.p[out.count] = middle + radius * normalized(c.axis(0) + c.axis(1)), out.id[out.count++] = RimPoints::kFurthest;
     return out;
 }
 

@@ -25,6 +25,7 @@ struct RimPoints
     Vec3 touching(std::uint32_t i) const { return id[i] == kFurthest ? p[i] : p[i] + withdrawal; }
 };
 /// `direction`: unit, or zero (then no point is the furthest). Only the furthest point counts of an end that faces away from it.
-RimPoints rim_points(const Solid& cylinder, bool upper, const Vec3& direction);
+/// `level_too`: of a level end, which has none, one between two fixed points is taken.
+RimPoints rim_points(const Solid& cylinder, bool upper, const Vec3& direction, bool level_too = false);
 
 }  // namespace plab::detection

@@ -29,16 +29,20 @@ public:
     /// The relative velocity that results; its tangential part must lie along (c, s).
     Vec3 relative_velocity(const Vec3& j) const { return r_ + K_ * j; }
 
-    /// Fixed-point iteration: slide along the slip direction that results. Converges at once where K does not couple directions.
+    /// Fixed-point iteration: slide along the slip direction that results. Converges at once where K does not couple directions; otherwise
+    /// Newton's method ends it.
     std::optional<Vec3> settle(double c, double s) const;
-    /// A solution near the direction of the last sweep.
-    std::optional<Vec3> find_near(double c, double s) const;
+    /// Turns from (c, s) towards the slip until that lies on the other side of the direction, and closes in on where it lies along it.
+    std::optional<Vec3> close_in(double c, double s) const;
     /// Scans all directions for one in which the resulting slip lies along the direction itself.
     std::optional<Vec3> scan() const;
 
 private:
+    /// rad: Newton's step to the direction (c, s) + turn (-s, c) for which the slip is along the direction itself. `u`: with the impulse j.
+    double newton_turn(double c, double s, const Vec3& j, const Vec3& u) const;
     /// Slip perpendicular to the direction, m/s; NaN if sliding in this direction is impossible.
-    double miss(double angle) const;
+    double miss(double c, double s) const;
+    double miss(double angle) const { return miss(std::cos(angle), std::sin(angle)); }
     std::optional<Vec3> along(double angle) const;
     /// Rounding error of a slip, which is the difference of r and K j, m/s.
     double rounding(const Vec3& j) const { return 4e-16 * (length(r_) + length(K_ * j)); }
@@ -48,27 +52,46 @@ private:
     double least_, mu_;
 };
 
+/// The slip across the direction d is g = d x u(d), with u = r + j_n (K_n - mu K_t d) and j_n = (b - r_n) / (K_nn - mu K_nt . d).
+double Sliding::newton_turn(double c, double s, const Vec3& j, const Vec3& u) const
+{
+    const double stiffness = K_(2, 2) - mu_ * (K_(2, 0) * c + K_(2, 1) * s), softer = mu_ * (K_(2, 1) * c - K_(2, 0) * s);
+    // Derivatives with respect to the angle: of d it is (-s, c), of j_n it is j_n `grows`.
+    const double grows = softer / stiffness;
+    const Vec3 dj{grows * j.x + mu_ * s * j.z, grows * j.y - mu_ * c * j.z, grows * j.z};
+    const Vec3 du = K_ * dj;
+    return (s * u.x - c * u.y) / (c * du.y - s * du.x - (c * u.x + s * u.y));
+}
+
 std::optional<Vec3> Sliding::settle(double c, double s) const
 {
-    constexpr int kTrials = 30;
-    constexpr double kSettled = 1e-15;
+    constexpr int kTrials = 10, kFixedPoint = 2;
+    constexpr double kSettled = 1e-15, kMostTurn = 0.25;
     for (int i = 0; i < kTrials; ++i)
     {
         const auto j = impulse(c, s);
         if (!j) return {};
         const Vec3 u = relative_velocity(*j);
-        const double speed = std::hypot(u.x, u.y);
+        const double speed = std::sqrt(u.x * u.x + u.y * u.y);
         if (!(speed > 0)) return {};
         const double turn = (c * u.y - s * u.x) / speed;
-        if (c * u.x + s * u.y > 0 && std::fabs(turn) <= std::max(kSettled, rounding(*j) / speed)) return j;
-        c = u.x / speed, s = u.y / speed;
+        const bool along = c * u.x + s * u.y > 0;
+        if (along && std::fabs(turn) <= std::max(kSettled, rounding(*j) / speed)) return j;
+        if (!along && i >= kFixedPoint) return {};  // the slip jumps to and fro
+        const double newton = i >= kFixedPoint ? newton_turn(c, s, *j, u) : kMostTurn;
+        if (std::fabs(newton) < kMostTurn)
+        {
+            const double x = c - newton * s, y = s + newton * c, size = std::sqrt(x * x + y * y);
+            c = x / size, s = y / size;
+        }
+        else
+            c = u.x / speed, s = u.y / speed;
     }
     return {};
 }
 
-double Sliding::miss(double angle) const
+double Sliding::miss(double c, double s) const
 {
-    const double c = std::cos(angle), s = std::sin(angle);
     const auto j = impulse(c, s);
     if (!j) return NAN;
     const Vec3 u = relative_velocity(*j);
@@ -84,24 +107,34 @@ std::optional<Vec3> Sliding::along(double angle) const
     return c * u.x + s * u.y > 0 ? j : std::nullopt;
 }
 
-/// False position (Illinois variant) between two neighbours of the last direction.
-std::optional<Vec3> Sliding::find_near(double c, double s) const
+/// Newton's method between bounds that hold the direction. Directions are (1 - t^2, 2 t) / (1 + t^2) from one that was passed.
+std::optional<Vec3> Sliding::close_in(double c, double s) const
 {
-    constexpr int kTrials = 40;
-    const double angle = std::atan2(s, c);
-    double lo = angle - kStep, hi = angle + kStep, f_lo = miss(lo), f_hi = miss(hi);
-    if (std::isnan(f_lo) || std::isnan(f_hi) || (f_lo < 0) == (f_hi < 0)) return {};
+    constexpr int kTurns = 8, kTrials = 60;
+    constexpr double kEighth = 0.7071067811865476, kHalfOfEighth = 0.41421356237309505;  // the cosine of 45 deg, the tangent of half of it
+    double from = miss(c, s), sign = from < 0 ? -1 : 1, next = from;
+    double x = c, y = s;
+    for (int i = 0; i < kTurns && next * sign >= 0; ++i)
+    {
+        c = x, s = y;
+        x = kEighth * (c - sign * s), y = kEighth * (s + sign * c);
+        next = miss(x, y);
+    }
+    if (!(next * sign < 0)) return {};
+    double low = 0, high = kHalfOfEighth, t = 0.5 * high;
     for (int i = 0; i < kTrials; ++i)
     {
-        const double next = lo - f_lo * ((hi - lo) / (f_hi - f_lo)), f = miss(next);
-        if (std::isnan(f)) return {};
-        const auto j = along(next);
-        if (f == 0 || (j && std::fabs(f) <= rounding(*j))) return j;
-        if ((f < 0) == (f_hi < 0))
-            f_lo *= 0.5;
-        else
-            lo = hi, f_lo = f_hi;
-        hi = next, f_hi = f;
+        const double size = 1 / (1 + t * t), cosine = (1 - t * t) * size, sine = 2 * t * size * sign;
+        x = cosine * c - sine * s, y = cosine * s + sine * c;
+        const auto j = impulse(x, y);
+        if (!j) return {};
+        const Vec3 u = relative_velocity(*j);
+        const double across = x * u.y - y * u.x;
+        const bool last = std::fabs(across) <= rounding(*j) || !(t > low && t < high);
+        if (last) return x * u.x + y * u.y > 0 ? j : std::nullopt;
+        (across * sign > 0 ? low : high) = t;
+        t += 0.5 * (1 + t * t) * sign * newton_turn(x, y, *j, u);
+        if (!(t > low && t < high)) t = 0.5 * (low + high);
     }
     return {};
 }
@@ -135,8 +168,9 @@ Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, con
     if (const double slip = std::hypot(r.x, r.y); slip > 0)
         if (const auto j = sliding.settle(r.x / slip, r.y / slip)) return *j;
     // Friction opposes the slip.
-    if (last.x != 0 || last.y != 0)
-        if (const auto j = sliding.find_near(-last.x, -last.y)) return *j;
+    const Vec3 near = last.x != 0 || last.y != 0 ? Vec3{-last.x, -last.y, 0} : Vec3{r.x, r.y, 0};
+    if (const double size = length(near); size > 0)
+        if (const auto j = sliding.close_in(near.x / size, near.y / size)) return *j;
     if (const auto j = sliding.scan()) return *j;
     // No sliding direction fits: the sticking impulse projected onto the cone keeps the contact from closing.
     const double normal = std::max(stick.z, (least - r.z) / K(2, 2));

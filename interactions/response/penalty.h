@@ -39,13 +39,14 @@ struct StoredShares
 };
 
 /// Columns common to both laws: surface parameters, and limits for the host (server/simulation/contact_forces/contact_forces.h
-/// reads steps_per_contact and max_substeps by name).
+/// reads the numbers of steps by name).
 struct SurfaceColumns
 {
     Column<double> friction, restitution;       // 1
     Column<double> tangential_ratio;            // 1, tangential stiffness over normal stiffness
     Column<double> tangential_damping_ratio;    // 1
     Column<std::int64_t> steps_per_contact;     // steps of the solver per half period
+    Column<std::int64_t> steps_among_many;      // the same where many points push
     Column<std::int64_t> max_substeps;          // per step
     Column<double> stored, force, penetration;  // J, N, m
     Column<StoredShares> shares;

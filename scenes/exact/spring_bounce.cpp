@@ -127,7 +127,9 @@ Result<std::unique_ptr<Solution>> make_spring_bounce(const SceneFacts& facts, do
     if (!e) return e.errors();
     const Value pulls = facts.world().get(springs.front(), "pulls");
     if (const auto* b = std::get_if<bool>(&pulls); b && !*b) return reason("its damper may not pull (pulls is false)");
-    const double k = real_of(facts, springs.front(), "stiffness"), m = facts.bodies().mass[facts.world().component(place->body).host_index];
+    const double k = real_of(facts, springs.front(), "stiffness");
+    if (!(k > 0)) return reason("its Response/Penalty has no stiffness of its own");
+    const double m = facts.bodies().mass[facts.world().component(place->body).host_index];
     // exp(-pi z / sqrt(1 - z^2)) = e.
     const double decay = *e < 1 && *e > 0 ? -std::log(*e) : 0;
     const double ratio = real_of(facts, springs.front(), "damping_ratio") + (*e > 0 ? decay / std::hypot(std::numbers::pi, decay) : 1.0);

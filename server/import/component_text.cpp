@@ -7,6 +7,7 @@
 #include "blueprint/writer.h"
 #include "model/numbers.h"
 #include "objects/shapes/built_mesh.h"
+#include "plab/convex_hull.h"
 
 namespace plab::import
 {
@@ -17,12 +18,13 @@ using model::format_real;
 
 std::string triple(const Vec3& v) { return format_real(v.x) + " " + format_real(v.y) + " " + format_real(v.z); }
 
-std::string mesh_attributes(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles, bool collides)
+std::string mesh_attributes(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles, const RobotShape& shape)
 {
     std::string points, corners;
     for (const Vec3& v : vertices) points += (points.empty() ? "" : " ") + triple(v);
     for (const std::uint32_t i : triangles) corners += (corners.empty() ? "" : " ") + std::to_string(i);
-    return attribute("vertices", points) + attribute("triangles", corners) + attribute("hull_collides", collides ? "true" : "false");
+    return attribute("vertices", points) + attribute("triangles", corners) +
+           (shape.is_surface ? attribute("surface_collides", "true") : attribute("hull_collides", shape.collides ? "true" : "false"));
 }
 
 /// What a shape looks like, in its own frame.
@@ -92,18 +94,23 @@ std::string component(const std::string& id, std::string_view type, const std::s
     return "<component" + attribute("id", id) + attribute("type", type) + attributes + "/>";
 }
 
+bool is_convex(const TriangleMesh& mesh)
+{
+    const auto hull = make_convex_hull(mesh.vertices);
+    return hull && fills_hull(mesh.vertices, mesh.triangles, *hull);
+}
+
 std::string shape_component(const RobotShape& shape, const std::string& id)
 {
     std::string common;
     if (!(shape.pose.p == Vec3{})) common += attribute("position", shape.pose.p);
     if (!(shape.pose.q == Quat{})) common += attribute("orientation", shape.pose.q);
     if (shape.color) common += attribute("color", *shape.color);
-    if (shape.mesh)
-        return component(id, "Shape/Mesh", common + mesh_attributes(shape.mesh->vertices, shape.mesh->triangles, shape.collides));
+    if (shape.mesh) return component(id, "Shape/Mesh", common + mesh_attributes(shape.mesh->vertices, shape.mesh->triangles, shape));
     if (shape.kind == ShapeKind::Ellipsoid || (!shape.collides && shape.kind != ShapeKind::Plane))
     {
         const shapes::BuiltMesh mesh = picture(shape);
-        return component(id, "Shape/Mesh", common + mesh_attributes(mesh.vertices, mesh.triangles, shape.collides));
+        return component(id, "Shape/Mesh", common + mesh_attributes(mesh.vertices, mesh.triangles, shape));
     }
     const auto [type, size] = solid(shape);
     return component(id, type, size + common);

@@ -40,6 +40,8 @@ std::string bound(std::string_view name, double value);
 
 /// <component id type attributes/>
 std::string component(const std::string& id, std::string_view type, const std::string& attributes);
+/// Whether a mesh is about what its convex hull is; a flat one has none.
+bool is_convex(const TriangleMesh& mesh);
 /// One <component> of kind Shape. Shapes that do not collide are triangles, as pLab has no others that are only seen.
 std::string shape_component(const RobotShape& shape, const std::string& id);
 /// mass, center_of_mass and inertia.

@@ -32,7 +32,7 @@ public:
                                 {"compiler", "option", "default", "asset", "worldbody", "contact", "equality", "tendon", "actuator"});
         robot_.title = document_.text(root_, "model");
         robot_.step = settings_.step(), robot_.gravity = settings_.gravity(), robot_.base_collides = robot_.fixed_parents_collide = true;
-        robot_.surface_rule = SurfaceRule::MuJoCo;
+        robot_.surface_rule = SurfaceRule::MuJoCo, robot_.fixed_meshes_are_surfaces = false;
         bool world = false;
         for (const XmlElement& e : root_.children)
         {

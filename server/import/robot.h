@@ -110,6 +110,7 @@ struct RobotShape
     std::shared_ptr<const TriangleMesh> mesh;
     std::optional<Vec3> color;
     bool collides = true;
+    bool is_surface = false;  ///< it collides as its triangles, not as their hull
     std::uint32_t contact_type = 1, contact_affinity = 1;  ///< it collides with what has one of its bits in the other word
     Surface surface;
     std::string name, owner;  ///< of the shape, may be empty; of the file's body, once it is assembled
@@ -193,7 +194,8 @@ struct Robot
     bool base_collides = false;  ///< bodies that never move collide with the others
     SurfaceRule surface_rule = SurfaceRule::Gazebo;
     bool fixed_parents_collide = false;  ///< a body collides with the one that it hangs on if that never moves (MJCF)
-    std::vector<RobotBody> bodies;       ///< parents come first
+    bool fixed_meshes_are_surfaces = true;  ///< meshes of bodies that never move collide as their triangles (not in MJCF)
+    std::vector<RobotBody> bodies;          ///< parents come first
     std::vector<Coupling> couplings;
     std::vector<Cable> cables;
     std::vector<Actuator> actuators;

@@ -162,8 +162,9 @@ private:
         std::vector<RobotShape> shapes = b.shapes;
         if (const auto color = take_color(shapes)) head += attribute("color", *color);
         line(head + (b.shapes.empty() ? "/>" : ">"));
-        for (const RobotShape& shape : shapes)
+        for (RobotShape& shape : shapes)
         {
+            shape.is_surface = b.fixed && robot_.fixed_meshes_are_surfaces && shape.collides && shape.mesh && !is_convex(*shape.mesh);
             shape_ids_[i].push_back(ids_.make(body_ids_[i] + ".shape"));
             line("  " + shape_component(shape, shape_ids_[i].back()));
         }

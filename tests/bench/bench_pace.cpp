@@ -379,6 +379,7 @@ int main(int argc, char** argv)
     all.push_back(growth_table("free bodies", {100, 1000, 10000, 50000}, 2000, free_bodies));
     all.push_back(growth_table("cubes in a pile", hundreds, 120, pile, true));
     all.push_back(growth_table("balls in a box", hundreds, 120, balls, true));
+    all.push_back(growth_table("cubes in threes on springs", {48, 192, 768}, 40, stacks_on_springs));
     all.push_back(growth_table("gears, Graph", tens, 2000, [](int n) { return gears("Graph", n); }));
     all.push_back(growth_table("gears, Impulse", tens, 2000, [](int n) { return gears("Impulse", n); }));
     all.push_back(growth_table("links of a chain", tens, 2000, [](int n) { return hinges(n, "Automatic"); }));

@@ -145,6 +145,14 @@ std::string pyramid(int wide, const std::string& manager)
     return standing(places, manager);
 }
 
+std::string stacks_on_springs(int n)
+{
+    std::string out = kGravity + kGround + component("s", "Shape/Box", "half_extents=\"0.25 0.25 0.25\"");
+    for (int i = 0; i < n; ++i) out += body(i, {1.0 * (i / 3 % 100), 1.0 * (i / 300), 0.25 + 0.5 * (i % 3)});
+    return scene("1/240",
+                 out + component("contact", "CDetection/ODE", "between=\"*\" response=\"Response/Penalty\" response.friction=\"0.5\""));
+}
+
 std::string cubes_apart(int n)
 {
     std::vector<Vec3> places;

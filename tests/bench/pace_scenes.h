@@ -31,6 +31,8 @@ std::string newcomers_heap(int n);
 /// nothing is named.
 std::string tower(int high, const std::string& manager = "");
 std::string pyramid(int wide, const std::string& manager = "");
+/// Cubes in stacks of three that are put down on springs.
+std::string stacks_on_springs(int n);
 /// Cubes that stand apart; no algorithm is named.
 std::string cubes_apart(int n);
 /// Solids of one shape that fall in random orientations into one heap, 0.2 m large. `type`, `parameters`: of the shape.

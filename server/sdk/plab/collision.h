@@ -92,6 +92,9 @@ public:
     /// Motion margin, m, by body: how far its surface may move from its present place. If not empty, the caller wants pairs whose
     /// bounding boxes overlap when expanded by this margin, by near(), and no contacts.
     virtual std::span<const double> motion_margin() const { return {}; }
+    /// Of an end of a cylinder that is level, which has no furthest point, one of its rim is wanted as that (Pivot::Arm::OnRim), too: springs
+    /// move it to the middle, and would otherwise lose and gain one wherever the end passes through level.
+    virtual bool level_rims() const { return false; }
     virtual void near(Ref /*a*/, Ref /*b*/) {}
     /// The normal points from a to b; a and b in the order given by precedes().
     virtual void add(const Contact& contact) = 0;

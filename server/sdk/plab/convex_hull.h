@@ -310,4 +310,17 @@ inline Result<ConvexHull> make_convex_hull(std::span<const Vec3> points)
     return reason("the vertices are too close to common planes and lines for a hull accurate to 1e-8 of their extent; use fewer vertices");
 }
 
+/// Whether a mesh is about what its hull is. The surface of a hull is covered once by a mesh that is closed and convex, in part by one that
+/// is open, and more than once, as a rule, by one that is hollow. Points without triangles have nothing but their hull.
+inline bool fills_hull(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles, const ConvexHull& hull)
+{
+    constexpr double kSameArea = 0.05;
+    const auto area = [](const Vec3& a, const Vec3& b, const Vec3& c) { return 0.5 * length(cross(b - a, c - a)); };
+    double of_mesh = 0, of_hull = 0;
+    for (std::size_t i = 0; i + 2 < triangles.size(); i += 3)
+        of_mesh += area(vertices[triangles[i]], vertices[triangles[i + 1]], vertices[triangles[i + 2]]);
+    for (const auto& [a, b, c] : hull.faces) of_hull += area(hull.vertices[a], hull.vertices[b], hull.vertices[c]);
+    return triangles.empty() || std::fabs(of_mesh - of_hull) <= kSameArea * of_hull;
+}
+
 }  // namespace plab

@@ -18,8 +18,16 @@ constexpr int kMostEvents = 20000;
 /// Smallest number of pieces per contact, however stiff: well inside the stability limit of explicit methods (rate * h < 2 for the
 /// weakest).
 constexpr double kFewestPerContact = 4;
-/// The same for a resting contact.
-constexpr double kFewestAtRest = 5;
+/// More points are many (steps_among_many).
+constexpr std::size_t kFew = 8;
+/// The same for a resting contact; and with methods of order 4 and above (rate * h < 2.7 is stable for these), if it is damped: what is not
+/// may swing again later, as energy goes to and fro between contacts.
+constexpr double kFewestAtRest = 5, kFewestDamped = 2;
+/// Twice the ratio to critical damping from which a contact is damped.
+constexpr double kDamped = 1;
+/// Pieces for the decay of a damper, as a fraction of those for an oscillation: where contacts are damped more than critically, what decays
+/// fastest is soon forgotten.
+constexpr double kDecayShare = 0.25;
 constexpr int kMostTrials = 100;
 constexpr int kMostPieces = 10'000'000;
 /// As a fraction of the smaller body's radius: gaps up to this are detected, whatever the speeds.
@@ -31,6 +39,12 @@ constexpr double kUnseen = 0.25;
 /// turns of an oscillation: pieces that are longer after the largest speed than before it would add energy in every period. The time
 /// stepping is symplectic only with pieces of one length.
 constexpr double kMemory = 1, kMixedMemory = 16;
+
+double fewest_at_rest(const ContactRates& rates, int order)
+{
+    const bool damped = rates.damping >= kDamped * std::sqrt(std::max(rates.normal, rates.tangential));
+    return damped && order >= 4 ? kFewestDamped : kFewestAtRest;
+}
 
 /// m: half of the smallest width. For a hull half of the smallest half-width along its axes, as it may be thinner in other directions.
 double thinnest(const Geometry& g)
@@ -128,11 +142,11 @@ double ContactForces::time_through(const NearPair& p) const
     return least;
 }
 
-/// rad/s: bound on the largest frequency or decay rate of all pushing contacts together. By Gershgorin's theorem the squared frequencies,
+/// Bounds on the largest frequency and decay rate of all pushing contacts together. By Gershgorin's theorem the squared frequencies,
 /// the eigenvalues of M^-1 J^T k J, are at most the largest, over the contacts, of the sums over all contacts of its two bodies.
-double ContactForces::fastest_rate()
+ContactForces::FastestRates ContactForces::fastest_rates()
 {
-    for (const std::uint32_t b : bodies_)
+    for (const std::uint32_t b : bodies_.members())
         for (auto& sums : sums_) sums[b] = 0;
     const auto parts = [](const ForceContact& c) { return std::array{c.rates.normal, c.rates.tangential, c.rates.damping}; };
     for (const Pushing& p : pushing_)
@@ -148,8 +162,7 @@ double ContactForces::fastest_rate()
         const ForcePair& pair = live_.pairs[p.pair];
         for (std::size_t i = 0; i < 3; ++i) most[i] = std::max(most[i], sums_[i][pair.a.index] + sums_[i][pair.b.index]);
     }
-    const double swing = std::sqrt(std::max(most[0], most[1]));
-    return most[2] > 2 * swing ? most[2] : swing;
+    return {std::sqrt(std::max(most[0], most[1])), most[2]};
 }
 
 double ContactForces::spin_rate() const
@@ -165,8 +178,8 @@ double ContactForces::spin_rate() const
 double ContactForces::pieces_per_contact(const ForceContact& contact, double wanted) const
 {
     if (!(contact.swing_speed < contact.peak_swing_speed)) return wanted;
-    return std::clamp(wanted * std::pow(contact.swing_speed / contact.peak_swing_speed, 1.0 / order_), std::min(kFewestAtRest, wanted),
-                      wanted);
+    return std::clamp(wanted * std::pow(contact.swing_speed / contact.peak_swing_speed, 1.0 / order_),
+                      std::min(fewest_at_rest(contact.rates, order_), wanted), wanted);
 }
 
 /// s: length of a piece while something pushes. The first half of the pieces that a step may have are as short as steps_per_contact asks
@@ -184,17 +197,20 @@ double ContactForces::contact_time(double left, int used)
             const Detector& d = *std::find_if(contacts_.detectors().begin(), contacts_.detectors().end(), is_it);
             response = d.response;
             wanted_pieces = d.steps_per_contact.value_or(200);
+            if (pushing_.size() > kFew) wanted_pieces = std::min(wanted_pieces, d.steps_among_many.value_or(40));
             most = std::min(most, d.max_substeps.value_or(20000));
         }
         per_contact = std::max(per_contact, pieces_per_contact(pair.contacts[p.contact], wanted_pieces));
     }
     undersampled_ = false;
-    const double rate = fastest_rate();
+    const FastestRates rates = fastest_rates();
+    const double rate = rates.decay > 2 * rates.swing ? rates.decay : rates.swing;
     // The rotation of a body within a piece is measured by its rotation vector, which is unique up to half a turn only.
     const double turn = spin_rate();
     const double longest = turn > 0 ? std::min(left, 1 / turn) : left;
     if (!(rate > 0)) return longest;
-    const double wanted = std::numbers::pi / (rate * per_contact);
+    const double per_decay = std::min(per_contact, std::max(kDecayShare * per_contact, order_ >= 4 ? kFewestDamped : kFewestAtRest));
+    const double wanted = std::numbers::pi / std::max(rates.swing * per_contact, rates.decay * per_decay);
     if (used < 0.5 * most || left / wanted <= most - used) return std::min(longest, wanted);
     if (left / wanted + used > pieces_needed_) pieces_needed_ = left / wanted + used, stiff_ = response;
     undersampled_ = true;
@@ -265,7 +281,7 @@ void ContactForces::one_piece(Piece& piece)
     const double from = std::exchange(piece.t, to);
     ++piece.pieces;
     commit(to, to - from);
-    switch_contacts(at_end_, to);
+    switch_contacts(at_end_, to, to - from);
 }
 
 void ContactForces::attach(GroupSystem& system, std::span<const std::uint32_t> groups)
@@ -281,7 +297,8 @@ void ContactForces::start(double from)
     anchor();
     margin_ = margin_for(1e-9 * step_.frame.step);
     inspect(margin_, at_end_);
-    switch_contacts(at_end_, from);
+    at_start_ = at_end_;
+    switch_contacts(at_end_, from, 0);
     if (from > 0) return;
     // The expected largest depth is computed again in each step: a contact that began with a hard impact may have come to rest.
     for (const Seen& s : at_end_)
@@ -330,10 +347,11 @@ void ContactForces::advance_mixed(const Island& island, double from, double to, 
         motion_.feel(nullptr);
         time_ahead_ = 0;
         const double gone = next - std::exchange(t, next);
+        std::swap(at_start_, at_end_);
         inspect(margin_, at_end_);
         evaluate_laws();
         commit(t, gone);
-        switch_contacts(at_end_, t);
+        switch_contacts(at_end_, t, gone);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "plab/number_text.h"
 #include "simulation/contact_forces/contact_forces.h"
+#include "simulation/contact_forces/rim_near_level.h"
 
 namespace plab::simulation
 {
@@ -107,6 +108,8 @@ void ContactForces::emit_stiff()
 
 void ContactForces::finish_step(std::vector<FoundContact>& found)
 {
+    for (FoundContact& f : found)
+        if (by_force_[f.detector]) round_rim_near_level(f.contact);
     report(found);
     if (contacts_.log().on()) log_contacts(found);
     run_outputs(found);

@@ -118,6 +118,32 @@ double ForceProbe::peak_depth(world::World& world, std::uint32_t response, doubl
     return open_depth + high;
 }
 
+double ForceProbe::stored(world::World& world, std::uint32_t response, double depth, double rest_depth)
+{
+    // Gauss and Legendre's rule of order 10: exact for powers up to 9, and to 1e-4 for Hertz's law.
+    constexpr std::array<double, 5> at{0.04691007703066802, 0.23076534494715845, 0.5, 0.7692346550528415, 0.9530899229693319};
+    constexpr std::array<double, 5> weight{0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324,
+                                           0.11846344252809454};
+    contact_.rest_depth = rest_depth;
+    const double travel = depth - rest_depth;
+    double sum = 0;
+    for (std::size_t i = 0; i < at.size(); ++i) sum += weight[i] * normal_force(world, response, rest_depth + at[i] * travel, 0);
+    return sum * travel;
+}
+
+double ForceProbe::rest_depth_that_stores(world::World& world, std::uint32_t response, double depth, double energy)
+{
+    if (!(energy > 0)) return depth;
+    double low = 0, high = depth;
+    if (stored(world, response, depth, low) <= energy) return low;
+    for (int i = 0; i < 40; ++i)
+    {
+        const double middle = 0.5 * (low + high);
+        (stored(world, response, depth, middle) > energy ? low : high) = middle;
+    }
+    return high;
+}
+
 ContactRates ForceProbe::rates(world::World& world, std::uint32_t response, double depth)
 {
     ContactRates out;

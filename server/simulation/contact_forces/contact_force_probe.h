@@ -28,6 +28,10 @@ public:
     double open_depth(world::World& world, std::uint32_t response);
     /// m: the largest depth that an impact with the speed `closing` (m/s) reaches if it starts at `open_depth` (m).
     double peak_depth(world::World& world, std::uint32_t response, double open_depth, double closing);
+    /// J: what the spring stores at a depth (m), if its rest_depth (m) is this.
+    double stored(world::World& world, std::uint32_t response, double depth, double rest_depth);
+    /// m: the rest_depth with which the spring stores `energy` (J) at a depth (m): 0 where it would store less even then.
+    double rest_depth_that_stores(world::World& world, std::uint32_t response, double depth, double energy);
     /// Frequencies and decay rate at a depth (m).
     ContactRates rates(world::World& world, std::uint32_t response, double depth);
     /// N/m of the stiction spring at a depth; 0 without friction.

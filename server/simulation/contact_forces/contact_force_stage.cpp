@@ -12,7 +12,7 @@
 namespace plab::simulation
 {
 
-/// Selects the pairs and bodies of an island, before its pieces.
+/// Selects the pairs and bodies of some groups.
 void ContactForces::bind(std::span<const std::uint32_t> groups)
 {
     const auto inside = [&](Ref r)
@@ -20,23 +20,41 @@ void ContactForces::bind(std::span<const std::uint32_t> groups)
         const std::uint32_t g = step_.groups.of(r);
         return g != kNoIndex && dynamic(r) && std::binary_search(groups.begin(), groups.end(), g);
     };
-    pairs_.clear(), bodies_.clear();
+    pairs_.clear();
     for (const NearPair& p : near_)
-    {
-        if (!inside(p.a) && !inside(p.b)) continue;
-        pairs_.push_back(p);
-        bodies_.push_back(p.a.index), bodies_.push_back(p.b.index);
-    }
-    std::sort(bodies_.begin(), bodies_.end());
-    bodies_.erase(std::unique(bodies_.begin(), bodies_.end()), bodies_.end());
+        if (inside(p.a) || inside(p.b)) pairs_.push_back(p);
+    list_bodies();
     list_pushing();
 }
 
-std::vector<ForcePair>::iterator ContactForces::place_of(std::uint32_t detector, Ref a, Ref b)
+/// Selects the pairs and bodies of an island, before its pieces.
+void ContactForces::bind(const Island& island)
+{
+    pairs_.clear();
+    for (const std::uint32_t i : island.near) pairs_.push_back(near_[i]);
+    list_bodies();
+    list_pushing();
+}
+
+void ContactForces::list_bodies()
+{
+    bodies_.begin(step_.world.host().bodies.size());
+    for (const NearPair& p : pairs_) bodies_.add(p.a.index), bodies_.add(p.b.index);
+    bodies_.sort();
+}
+
+bool ContactForces::precedes(const ForcePair& x, const ForcePair& y) const
+{
+    const world::World& world = step_.world;
+    const auto key = [&](const ForcePair& p) { return std::tuple(world.rank(p.detector), world.rank(p.a), world.rank(p.b)); };
+    return key(x) < key(y);
+}
+
+std::vector<ForcePair>::iterator ContactForces::place_of(std::vector<ForcePair>& pairs, std::uint32_t detector, Ref a, Ref b)
 {
     const world::World& world = step_.world;
     const auto key = [&](std::uint32_t d, Ref x, Ref y) { return std::tuple(world.rank(d), world.rank(x), world.rank(y)); };
-    return std::lower_bound(live_.pairs.begin(), live_.pairs.end(), key(detector, a, b),
+    return std::lower_bound(pairs.begin(), pairs.end(), key(detector, a, b),
                             [&](const ForcePair& p, const auto& k) { return key(p.detector, p.a, p.b) < k; });
 }
 
@@ -51,7 +69,7 @@ ForcePair* ContactForces::find_pair(std::uint32_t detector, Ref a, Ref b)
     };
     if (is_it(last_pair_)) return &live_.pairs[last_pair_];
     if (is_it(last_pair_ + 1)) return &live_.pairs[++last_pair_];
-    const auto at = static_cast<std::size_t>(place_of(detector, a, b) - live_.pairs.begin());
+    const auto at = static_cast<std::size_t>(place_of(live_.pairs, detector, a, b) - live_.pairs.begin());
     if (!is_it(at)) return nullptr;
     last_pair_ = at;
     return &live_.pairs[at];
@@ -85,7 +103,7 @@ ForceContact* ContactForces::find_pushing(const FoundContact& f)
 void ContactForces::anchor()
 {
     const Bodies& bodies = step_.world.host().bodies;
-    for (const std::uint32_t b : bodies_) anchors_[b] = {bodies.position[b], bodies.orientation[b]};
+    for (const std::uint32_t b : bodies_.members()) anchors_[b] = {bodies.position[b], bodies.orientation[b]};
 }
 
 void ContactForces::detect(std::uint32_t index, std::span<const PersistentPair> pairs, double margin, std::vector<FoundContact>& out)
@@ -93,8 +111,11 @@ void ContactForces::detect(std::uint32_t index, std::span<const PersistentPair> 
     const Detector& detector = contacts_.detectors()[index];
     ContactCollector sink(step_.world, out);
     sink.begin_query(index, pairs, true, margin);
+    sink.want_level_rims();
     ComponentCall query(step_, *step_.world.tables()[detector.table], detector.row);
     query.context.events = nullptr, query.arguments.contacts = &sink;
+    // The detector has looked at all bodies in find_near(), and need not do so in each evaluation. When contacts are converted it has not.
+    if (!bodies_.members().empty()) query.context.active_bodies = bodies_.flags();
     const std::size_t first = out.size();
     (void)query.run(*detector.command);  // an error occurs again in the detection at the end of the step, which reports it
     for (FoundContact& found : std::span(out).subspan(first)) round_rim_near_level(found.contact);
@@ -146,11 +167,10 @@ Vec3 ContactForces::moved_along(const FoundContact& f) const
     return displacement(f.contact.b.index) - displacement(f.contact.a.index);
 }
 
-/// Detects the pushing contact points at the present state, and fills in their stored state. With `extrapolate`, depth and stretch
-/// are those expected time_ahead_ later.
-void ContactForces::gather(bool extrapolate)
+/// Detects the contacts of pushing pairs at the present state.
+void ContactForces::detect_pushing()
 {
-    found_.clear(), matched_.clear();
+    found_.clear();
     for (std::size_t i = 0; i < pushing_.size();)
     {
         const std::uint32_t component = live_.pairs[pushing_[i].pair].detector;
@@ -163,25 +183,45 @@ void ContactForces::gather(bool extrapolate)
         detect(d, persistent_, margin_, found_);
     }
     sort_contacts(found_, step_.world);
-    for (std::size_t i = 0; i < found_.size(); ++i)
+}
+
+/// Finds the pushing contact points among those detected. With `extrapolate`, depth and stretch are those expected time_ahead_ later.
+void ContactForces::match(bool extrapolate)
+{
+    matched_.clear();
+    for (std::size_t begin = 0, end = 0; begin < found_.size(); begin = end)
     {
-        FoundContact& f = found_[i];
-        ForceContact* known = find_pushing(f);
-        if (!known) continue;
-        Contact& c = f.contact;
-        fill_surface(f);
-        c.id = known->id, c.approach = known->approach, c.rest_depth = known->rest_depth, c.preload = known->preload;
-        Vec3 stretch = known->stretch + moved_along(f);
-        if (extrapolate)
+        const Contact& first = found_[begin].contact;
+        for (end = begin + 1; end < found_.size() && same_pair(found_[end], found_[begin]);) ++end;
+        ForcePair* pair = find_pair(contacts_.detectors()[found_[begin].detector].component, first.a, first.b);
+        if (!pair) continue;
+        const Renamed renamed =
+            find_renamed(*pair, end - begin, [&](std::size_t k) -> const Contact& { return found_[begin + k].contact; });
+        for (std::size_t i = begin; i < end; ++i)
         {
-            const Bodies& bodies = step_.world.host().bodies;
-            const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
-            c.depth -= time_ahead_ * dot(u, c.normal);
-            stretch += u * time_ahead_;
+            ForceContact* const known = renamed.known && i == begin + renamed.place ? renamed.known : pair->find(found_[i].contact.feature);
+            if (known && !known->dormant) add_match(i, *known, extrapolate);
         }
-        c.stretch = stretch - c.normal * dot(stretch, c.normal);
-        matched_.push_back({i, known});
     }
+}
+
+/// Fills the stored state of a point into what was detected.
+void ContactForces::add_match(std::size_t i, ForceContact& known, bool extrapolate)
+{
+    FoundContact& f = found_[i];
+    Contact& c = f.contact;
+    fill_surface(f);
+    c.id = known.id, c.approach = known.approach, c.rest_depth = known.rest_depth, c.preload = known.preload;
+    Vec3 stretch = known.stretch + moved_along(f);
+    if (extrapolate)
+    {
+        const Bodies& bodies = step_.world.host().bodies;
+        const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
+        c.depth -= time_ahead_ * dot(u, c.normal);
+        stretch += u * time_ahead_;
+    }
+    c.stretch = stretch - c.normal * dot(stretch, c.normal);
+    matched_.push_back({i, &known});
 }
 
 /// Evaluates the force laws of the gathered contacts, one call for each detector's response.
@@ -204,7 +244,8 @@ void ContactForces::add(const StepContext& context, Wrenches& wrenches)
 {
     if (time_ahead_ == 0)
     {
-        gather(false);
+        detect_pushing();
+        match(false);
         run_laws(context, wrenches);
         return;
     }
@@ -212,7 +253,8 @@ void ContactForces::add(const StepContext& context, Wrenches& wrenches)
     // change in between.
     if (!std::exchange(taken_, true))
     {
-        gather(true);
+        detect_pushing();
+        match(true);
         run_laws(context, scratch_);
         clear_scratch();
     }
@@ -252,10 +294,10 @@ void ContactForces::book(const StepContext& context, std::vector<double>& work, 
     }
 }
 
-/// Evaluates the laws at the present state, outside of solver stages.
+/// Evaluates the laws at the present state, outside of solver stages; after inspect(), which has detected all contacts.
 void ContactForces::evaluate_laws()
 {
-    gather(false);
+    match(false);
     StepContext context;
     context.time = step_.frame.start_time, context.dt = step_.frame.step, context.tick = step_.frame.tick;
     run_laws(context, scratch_);

@@ -121,7 +121,7 @@ void ContactForces::soft_to_soft(const ForcePair& pair, std::uint32_t d)
     }
     const ForcePair to = remember_or_soften(as_hard, d);
     live_.pairs.erase(find_same(live_.pairs, pair.detector, pair.a, pair.b));
-    if (to.count > 0) live_.pairs.insert(place_of(pair.detector, pair.a, pair.b), to);
+    if (to.count > 0) live_.pairs.insert(place_of(live_.pairs, pair.detector, pair.a, pair.b), to);
     contacts_.cache().parked_force_pairs().push_back(pair);
     converted_[d] += to.count;
 }
@@ -130,7 +130,7 @@ void ContactForces::hard_to_soft(const PairState& pair, std::uint32_t d)
 {
     ContactCache& cache = contacts_.cache();
     const ForcePair to = remember_or_soften(pair, d);
-    if (to.count > 0) live_.pairs.insert(place_of(pair.detector, pair.a, pair.b), to);
+    if (to.count > 0) live_.pairs.insert(place_of(live_.pairs, pair.detector, pair.a, pair.b), to);
     cache.parked_pairs().push_back(pair);
     cache.erase(*cache.find(pair.detector, pair.a, pair.b, step_.world));
     converted_[d] += to.count;

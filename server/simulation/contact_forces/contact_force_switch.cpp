@@ -11,9 +11,11 @@ namespace plab::simulation
 
 const ContactForces::Seen* ContactForces::find_seen(const std::vector<Seen>& list, const FoundContact& f) const
 {
-    for (const Seen& s : list)
-        if (s.found.contact.feature == f.contact.feature && same_pair(s.found, f)) return &s;
-    return nullptr;
+    const auto at =
+        std::lower_bound(list.begin(), list.end(), f,
+                         [&](const Seen& s, const FoundContact& wanted) { return simulation::precedes(s.found, wanted, step_.world); });
+    const bool is_it = at != list.end() && at->found.contact.feature == f.contact.feature && same_pair(at->found, f);
+    return is_it ? &*at : nullptr;
 }
 
 /// m: rounding error of a depth.
@@ -130,24 +132,53 @@ void ContactForces::begin_contact(const Seen& seen, double time)
     {
         ForcePair p;
         p.detector = detector, p.a = c.a, p.b = c.b, p.since = step_.frame.tick;
-        pair = &*live_.pairs.insert(place_of(detector, c.a, c.b), p);
+        pair = &*live_.pairs.insert(place_of(live_.pairs, detector, c.a, c.b), p);
     }
     if (fresh) pair->law_type = laws_[seen.found.detector].type, pair->law = laws_[seen.found.detector].values;
     ForceContact* old = pair->find(c.feature);
     if (!old && pair->count == ForcePair::kMostContacts) return;
-    // If a swap has left an overlap in this pair, a new corner starts without force as well.
-    const auto eases = [](const ForceContact& other) { return other.rest_depth > 0; };
-    const bool overlap_is_old = std::any_of(pair->all().begin(), pair->all().end(), eases);
     pair->normal = c.normal;
     ForceContact known;
     known.asked = step_.frame.tick;
     known.feature = c.feature, known.id = old ? old->id : contacts_.cache().new_id();
     known.begin = time, known.depth = c.depth, known.approach = std::max(0.0, -seen.separation_speed);
     known.swing_speed = known.peak_swing_speed = known.approach;
-    if (overlap_is_old && c.depth > 0) known.rest_depth = known.open_depth = c.depth;
+    // Corners of bodies that begin to touch now, also those that overlap at the start of a run, push with all of their depth.
+    const bool begins = std::ranges::all_of(pair->all(), [&](const ForceContact& other) { return other.begin == time; });
+    if (!begins && c.depth > 1e3 * rounding(c)) known.rest_depth = known.open_depth = take_over(*pair, seen.found);
     expect(known, seen.found, known.approach);
     (old ? *old : pair->contacts[pair->count++]) = known;
     if (fresh) report(ContactForceEvent::Kind::Begin, *pair, c, {}, time);
+}
+
+/// m: the rest_depth of a point that appears in an overlap. With the whole of it the spring would give the bodies energy out of nothing. So
+/// it takes over what points that vanished have left, and otherwise begins without force.
+double ContactForces::take_over(ForcePair& pair, const FoundContact& at)
+{
+    const std::uint32_t response = contacts_.detectors()[at.detector].response;
+    probe_.take(step_.world.host().bodies, at.contact, contacts_.smaller_radius(at.contact.a, at.contact.b), step_.frame.step);
+    const double depth = at.contact.depth, rest = probe_.rest_depth_that_stores(step_.world, response, depth, pair.released);
+    if (pair.released > 0) pair.released = std::max(0.0, pair.released - probe_.stored(step_.world, response, depth, rest));
+    return rest;
+}
+
+/// J: what the spring of a point that has vanished in a piece of h seconds stores at its end, where its depth is that at the start and what
+/// the mean of its speeds has made of it: without that the spring would keep the work that it has done in the piece.
+double ContactForces::stored_in(const ForcePair& pair, const ForceContact& known, double h)
+{
+    const auto was_it = [&](const Seen& s)
+    {
+        return s.found.contact.feature == known.feature && s.found.contact.a == pair.a && s.found.contact.b == pair.b &&
+               contacts_.detectors()[s.found.detector].component == pair.detector;
+    };
+    const auto then = std::find_if(at_start_.begin(), at_start_.end(), was_it);
+    if (then == at_start_.end()) return 0;
+    Contact at = then->found.contact;
+    at.preload = known.preload, at.rest_depth = known.rest_depth;
+    const double depth = at.depth - 0.5 * h * (then->separation_speed + contacts_.normal_velocity(at));
+    if (!(depth > known.open_depth)) return 0;
+    probe_.take(step_.world.host().bodies, at, contacts_.smaller_radius(at.a, at.b), step_.frame.step);
+    return std::max(0.0, probe_.stored(step_.world, contacts_.detectors()[then->found.detector].response, depth, known.rest_depth));
 }
 
 /// Ends a contact point whose force is over. If it still overlaps because of a swap, it becomes dormant instead.
@@ -220,24 +251,45 @@ void ContactForces::drop_ended(double time)
 }
 
 /// Lists pushing points that are not detected any more although their gap is small: their feature ids have changed.
-void ContactForces::list_gone(const std::vector<Seen>& seen)
+void ContactForces::list_gone(const std::vector<Seen>& seen, double h)
 {
     there_.clear(), gone_.clear();
     for (const Seen& s : seen)
         if (const ForceContact* known = find_pushing(s.found)) there_.push_back(known->id);
     std::sort(there_.begin(), there_.end());
     for (const Pushing& p : pushing_)
-        if (const std::uint64_t id = live_.pairs[p.pair].contacts[p.contact].id; !std::binary_search(there_.begin(), there_.end(), id))
-            gone_.push_back(id);
+    {
+        ForcePair& pair = live_.pairs[p.pair];
+        const ForceContact& known = pair.contacts[p.contact];
+        if (std::binary_search(there_.begin(), there_.end(), known.id)) continue;
+        gone_.push_back(known.id);
+        pair.released += stored_in(pair, known, h);
+    }
 }
 
-/// At the end of a piece: updates which points push in the next one.
-void ContactForces::switch_contacts(const std::vector<Seen>& seen, double t)
+/// Gives points that touch with another feature now its name.
+void ContactForces::rename_points(const std::vector<Seen>& seen)
+{
+    for (std::size_t begin = 0, end = 0; begin < seen.size(); begin = end)
+    {
+        const FoundContact& first = seen[begin].found;
+        for (end = begin + 1; end < seen.size() && same_pair(seen[end].found, first);) ++end;
+        ForcePair* pair = find_pair(contacts_.detectors()[first.detector].component, first.contact.a, first.contact.b);
+        if (!pair) continue;
+        const auto contact_of = [&](std::size_t k) -> const Contact& { return seen[begin + k].found.contact; };
+        const Renamed renamed = find_renamed(*pair, end - begin, contact_of);
+        if (renamed.known) renamed.known->feature = contact_of(renamed.place).feature;
+    }
+}
+
+/// At the end of a piece of h seconds, or 0 before the first one: updates which points push in the next one.
+void ContactForces::switch_contacts(const std::vector<Seen>& seen, double t, double h)
 {
     const double time = step_.frame.start_time + t;
     // Contacts that would switch within this time switch now: the corners of a face land together.
     const double instant = 1e-12 * step_.frame.step;
-    list_gone(seen);
+    rename_points(seen);
+    list_gone(seen, h);
     for (const Seen& s : seen)
     {
         const Contact& c = s.found.contact;

@@ -22,7 +22,7 @@ void ContactForces::rebuild()
     by_force_.clear();
     for (const Detector& d : contacts_.detectors()) by_force_.push_back(d.by_force ? 1 : 0);
     any_ = std::find(by_force_.begin(), by_force_.end(), 1) != by_force_.end();
-    near_.clear();
+    near_.clear(), pairs_.clear(), bodies_.clear();
     live_ = {}, segment_ = {}, end_ = {};
     convert_contacts();
     if (!any_) return;
@@ -217,126 +217,6 @@ bool ContactForces::close_over(std::vector<std::uint8_t>& in_scope) const
         a = b = a | b;
     }
     return grown;
-}
-
-void ContactForces::make_islands(std::span<const std::uint32_t> groups)
-{
-    const std::size_t count = step_.groups.all.size();
-    member_.assign(count, 0), bound_.assign(count, 0);
-    for (const std::uint32_t g : groups) member_[g] = 1;
-    sets_.reset(count);
-    const auto link = [&](Ref a, Ref b)
-    {
-        if (dynamic(a) && dynamic(b) && member_[step_.groups.of(a)] && member_[step_.groups.of(b)])
-            sets_.join(step_.groups.of(a), step_.groups.of(b));
-    };
-    for (const NearPair& p : near_) link(p.a, p.b);
-    for (const PairState& p : contacts_.cache().pairs())
-        if (p.resting) link(p.a, p.b);
-    for (const NearPair& p : near_)
-        for (const Ref r : {p.a, p.b})
-            if (dynamic(r) && member_[step_.groups.of(r)]) bound_[sets_.find(step_.groups.of(r))] = 1;
-}
-
-void ContactForces::take(std::span<const std::uint32_t> groups, std::vector<std::uint32_t>& smooth, std::vector<std::uint32_t>& in_contact,
-                         double from, double to)
-{
-    island_count_ = 0;
-    if (!within_motion_margins(groups, to - from))
-    {
-        // An impact within the step has made a body faster than its margin allows.
-        for (const std::uint32_t g : groups)
-            for (const std::uint32_t b : step_.groups.all[g].bodies)
-                motion_margin_[b] = std::max(motion_margin_[b], 2 * speed_of({Facet::Body, b}) * (to - from));
-        find_near();
-    }
-    if (near_.empty()) return;
-    make_islands(groups);
-    const auto claimed = [&](std::uint32_t g) { return bound_[sets_.find(g)] && step_.groups.all[g].solver != kNoIndex; };
-    for (const std::uint32_t first : groups)
-    {
-        if (!claimed(first) || !member_[first]) continue;
-        if (islands_.size() == island_count_) islands_.emplace_back();
-        Island& island = islands_[island_count_++];
-        island.groups.clear(), island.mixed = false;
-        for (const std::uint32_t g : groups)
-        {
-            if (!member_[g] || !claimed(g) || sets_.find(g) != sets_.find(first)) continue;
-            member_[g] = 0;
-            island.groups.push_back(g);
-            island.mixed = island.mixed || std::binary_search(in_contact.begin(), in_contact.end(), g);
-        }
-        std::sort(island.groups.begin(), island.groups.end());
-    }
-    std::erase_if(smooth, claimed), std::erase_if(in_contact, claimed);
-}
-
-void ContactForces::collect_observed(Island& island, std::span<const std::uint32_t> observed)
-{
-    // The groups that the forces of the island read, and those of kinematic bodies that may be touched.
-    bound_.assign(step_.groups.all.size(), 0);
-    for (const std::uint32_t g : island.groups) bound_[g] = 1;
-    island.observed.assign(observed.begin(), observed.end());
-    for (const std::uint32_t g : observed) bound_[g] = 1;
-    const auto want = [&](std::uint32_t g)
-    {
-        if (g != kNoIndex && !bound_[g]) bound_[g] = 1, island.observed.push_back(g);
-    };
-    for (const std::uint32_t g : island.groups)
-        for (const std::uint32_t up : step_.groups.all[g].upstream) want(up);
-    for (std::size_t i = 0; i < island.observed.size(); ++i)
-        for (const std::uint32_t up : step_.groups.all[island.observed[i]].upstream) want(up);
-    for (const NearPair& p : pairs_)
-        for (const Ref r : {p.a, p.b})
-            if (!dynamic(r)) want(step_.groups.of(r));
-    std::sort(island.observed.begin(), island.observed.end());
-}
-
-std::uint32_t ContactForces::solver_of(const Island& island) const
-{
-    // The same rule as for a group: the solver of the highest order, then the first by id.
-    std::uint32_t best = kNoIndex;
-    const world::World& world = step_.world;
-    for (const std::uint32_t g : island.groups)
-    {
-        const std::uint32_t solver = step_.groups.all[g].solver;
-        if (best == kNoIndex || solver == best)
-        {
-            best = solver;
-            continue;
-        }
-        const int old = world.type_of(best)->info.order, fresh = world.type_of(solver)->info.order;
-        if (fresh > old || (fresh == old && world.rank(solver) < world.rank(best))) best = solver;
-    }
-    return best;
-}
-
-void ContactForces::advance(std::span<const std::uint32_t> observed, double from, double to, WorkBook book, bool trial)
-{
-    for (std::size_t i = 0; i < island_count_; ++i)
-    {
-        Island& island = islands_[i];
-        bind(island.groups);
-        collect_observed(island, observed);
-        world::HostTables& host = step_.world.host();
-        const auto each = [&](auto body, auto shaft, auto quantities)
-        {
-            for (const std::uint32_t g : island.observed)
-            {
-                for (const std::uint32_t b : step_.groups.all[g].bodies) body(b);
-                for (const std::uint32_t s : step_.groups.all[g].shafts) shaft(s);
-                for (const std::uint32_t q : step_.groups.all[g].quantities) quantities(q);
-            }
-        };
-        each([&](auto b) { observed_memento_.save_body(host, b); }, [&](auto s) { observed_memento_.save_shaft(host, s); },
-             [&](auto q) { observed_memento_.save_quantities(host, q); });
-        if (island.mixed)
-            advance_mixed(island, from, to, book, trial);
-        else
-            advance_island(island, from, to, book, trial);
-        each([&](auto b) { observed_memento_.restore_body(host, b); }, [&](auto s) { observed_memento_.restore_shaft(host, s); },
-             [&](auto q) { observed_memento_.restore_quantities(host, q); });
-    }
 }
 
 }  // namespace plab::simulation

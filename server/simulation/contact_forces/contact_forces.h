@@ -24,6 +24,7 @@
 /// restart there); Cundall, Strack, Geotechnique 29 (1979) (contacts as springs and dampers with a tangential history).
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "simulation/contact_forces/contact_force_probe.h"
@@ -103,6 +104,7 @@ private:
     struct Island
     {
         std::vector<std::uint32_t> groups, observed;
+        std::vector<std::uint32_t> near;  ///< indices in near_
         bool mixed = false;
     };
     /// A detected contact with its separation speed.
@@ -121,6 +123,17 @@ private:
     struct Pushing
     {
         std::uint32_t pair = 0, contact = 0;  ///< in live_
+    };
+    /// A pushing point that touches with another feature than before: it, and its place among the contacts of the pair.
+    struct Renamed
+    {
+        ForceContact* known = nullptr;
+        std::size_t place = 0;
+    };
+    struct FastestRates
+    {
+        double swing = 0;  ///< rad/s
+        double decay = 0;  ///< 1/s
     };
     struct Piece
     {
@@ -145,12 +158,20 @@ private:
     void level_motion_margins();
     bool within_motion_margins(std::span<const std::uint32_t> groups, double h) const;
     void add_near(std::uint32_t detector, Ref a, Ref b);
-    void make_islands(std::span<const std::uint32_t> groups);
-    void collect_observed(Island& island, std::span<const std::uint32_t> observed);
-    std::uint32_t solver_of(const Island& island) const;
     bool dynamic(Ref r) const;
     double speed_of(Ref r) const;
     double positions_of(Ref a, Ref b) const;
+
+    // contact_force_islands.cpp
+    void join_near(std::span<const std::uint32_t> groups);
+    void make_islands(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> in_contact);
+    bool claims(std::uint32_t group);
+    void borrow(const Island& island);
+    void give_back();
+    void merge_returned();
+    void collect_observed(Island& island, std::span<const std::uint32_t> observed);
+    std::uint32_t solver_of(const Island& island) const;
+    void advance_beside(const Island& island, double from, double to, WorkBook book, bool trial);
 
     // contact_force_swap.cpp
     void convert_contacts();
@@ -165,16 +186,43 @@ private:
 
     // contact_force_stage.cpp
     void bind(std::span<const std::uint32_t> groups);
+    void bind(const Island& island);
+    void list_bodies();
     void list_pushing();
     void anchor();
+    /// The only pushing point of the pair that is not among `count` contacts, if just one of these overlaps without being known, about as
+    /// deep. So the same place stays one contact when its feature changes, as where the end of a capsule that is nearly upright counts as
+    /// nearest point or as corner: between two pieces it would lose and gain a spring, within one its force.
+    template <class ContactOf>
+    Renamed find_renamed(ForcePair& pair, std::size_t count, ContactOf contact_of) const
+    {
+        Renamed out;
+        std::size_t strangers = 0, lost = 0, there = 0;  // bits by contact
+        for (std::size_t k = 0; k < count; ++k)
+        {
+            const Contact& c = contact_of(k);
+            if (const ForceContact* known = pair.find(c.feature))
+                there |= std::size_t{1} << (known - pair.contacts.data());
+            else if (c.depth > 0)
+                ++strangers, out.place = k;
+        }
+        if (strangers != 1) return {};
+        for (std::uint32_t i = 0; i < pair.count; ++i)
+            if ((there >> i & 1) == 0 && !pair.contacts[i].dormant) ++lost, out.known = &pair.contacts[i];
+        const bool is_it = lost == 1 && std::fabs(contact_of(out.place).depth - out.known->depth) <= margin_;
+        return is_it ? out : Renamed{};
+    }
     void detect(std::uint32_t detector, std::span<const PersistentPair> pairs, double margin, std::vector<FoundContact>& out);
     void inspect(double margin, std::vector<Seen>& out);
     void fill_surface(FoundContact& found) const;
-    void gather(bool extrapolate);
+    void detect_pushing();
+    void match(bool extrapolate);
+    void add_match(std::size_t i, ForceContact& known, bool extrapolate);
     Vec3 moved_along(const FoundContact& f) const;
     ForceContact* find_known(const FoundContact& f);
     ForceContact* find_pushing(const FoundContact& f);
-    std::vector<ForcePair>::iterator place_of(std::uint32_t detector, Ref a, Ref b);
+    bool precedes(const ForcePair& x, const ForcePair& y) const;
+    std::vector<ForcePair>::iterator place_of(std::vector<ForcePair>& pairs, std::uint32_t detector, Ref a, Ref b);
     ForcePair* find_pair(std::uint32_t detector, Ref a, Ref b);
     bool is_advanced(const StepContext& context, const Contact& c) const;
     void clear_scratch();
@@ -191,15 +239,18 @@ private:
     bool any_switch(const std::vector<Seen>& before, const std::vector<Seen>& after);
     double guess(double low, double high, const std::vector<Seen>& at_low, const std::vector<Seen>& at_high);
     bool is_there(const std::vector<Seen>& now, const std::vector<Seen>& beyond);
-    void switch_contacts(const std::vector<Seen>& seen, double t);
+    void switch_contacts(const std::vector<Seen>& seen, double t, double h);
     void begin_contact(const Seen& seen, double time);
+    double take_over(ForcePair& pair, const FoundContact& at);
+    double stored_in(const ForcePair& pair, const ForceContact& known, double h);
     void let_go(const Seen& seen, ForcePair& pair, double time);
     void follow_dormant(const Seen& seen, ForceContact& known, double time);
     void drop_dormant(const std::vector<Seen>& seen);
     void end_contact(ForcePair& pair, const Contact& at, double time);
     void drop_ended(double time);
+    void rename_points(const std::vector<Seen>& seen);
     void expect(ForceContact& known, const FoundContact& at, double closing);
-    void list_gone(const std::vector<Seen>& seen);
+    void list_gone(const std::vector<Seen>& seen, double h);
     void end_gone(double time);
     void report(ContactForceEvent::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time);
     void report_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time);
@@ -216,7 +267,7 @@ private:
     double pieces_per_contact(const ForceContact& contact, double wanted) const;
     double free_time(double most) const;
     double time_through(const NearPair& pair) const;
-    double fastest_rate();
+    FastestRates fastest_rates();
     double spin_rate() const;
     double closing_bound(const NearPair& pair) const;
     double margin_for(double h) const;
@@ -236,25 +287,34 @@ private:
     HardContacts& hard_;
     bool any_ = false;
     std::vector<std::uint8_t> by_force_;  ///< by detector
-    ForceState live_, segment_, end_;
+    /// Of the whole scene; while an island is advanced only what it has borrowed from `scene_`, so that its pieces cost what it has.
+    ForceState live_;
+    ForceState scene_, segment_, end_;
+    std::vector<std::uint32_t> borrowed_;  ///< in scene_.pairs: those of the island that is being advanced
+    std::vector<std::uint8_t> gone_back_;  ///< by pair of scene_: 1 if `returned_` has it, or its end
+    std::vector<ForcePair> returned_;      ///< pairs of islands in which pairs have begun or ended
+    std::vector<std::uint32_t> order_of_returned_;
+    std::vector<ForcePair> merged_;
     std::vector<NearPair> near_;
     std::vector<double> motion_margin_;  ///< m, by body, for the whole step: expansion of its AABB
 
     std::vector<Island> islands_;
     std::size_t island_count_ = 0;
     std::vector<std::uint8_t> member_, bound_;  ///< by group
+    std::vector<std::uint32_t> island_of_;      ///< by first group of a set
+    IndexSet known_;                            ///< groups
     DisjointSets sets_;
 
     // State of the island that is being advanced.
     std::vector<NearPair> pairs_;
     std::vector<Pushing> pushing_;
-    std::vector<std::uint32_t> bodies_;  ///< bodies of pairs_
-    std::vector<Anchor> anchors_;        ///< by body; valid for bodies_
-    double margin_ = 0;                  ///< m: gaps up to this are detected within a piece
-    int order_ = 1;                      ///< order of the solver
-    double memory_ = 1;                  ///< half periods in which the speed amplitude of an oscillation is forgotten
-    bool taken_ = false;                 ///< the forces of this piece of a mixed island have been evaluated
-    double time_ahead_ = 0;              ///< s: how far ahead of the state springs are evaluated (mixed islands)
+    IndexSet bodies_;              ///< bodies of pairs_
+    std::vector<Anchor> anchors_;  ///< by body; valid for bodies_
+    double margin_ = 0;            ///< m: gaps up to this are detected within a piece
+    int order_ = 1;                ///< order of the solver
+    double memory_ = 1;            ///< half periods in which the speed amplitude of an oscillation is forgotten
+    bool taken_ = false;           ///< the forces of this piece of a mixed island have been evaluated
+    double time_ahead_ = 0;        ///< s: how far ahead of the state springs are evaluated (mixed islands)
     std::vector<PersistentPair> persistent_;
     std::vector<FoundContact> found_;
     std::vector<std::pair<std::size_t, ForceContact*>> matched_;  ///< index in found_, and the known contact

@@ -185,6 +185,7 @@ bool ContactBook::detect(const Detector& detector, std::uint32_t index, std::spa
 {
     ContactCollector sink(step_.world, out);
     sink.begin_query(index, persistent, only_persistent, margin);
+    if (detector.by_force) sink.want_level_rims();
     return ask(detector, sink, persistent, only_persistent);
 }
 

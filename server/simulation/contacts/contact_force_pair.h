@@ -1,6 +1,7 @@
 /// State of force contacts (springs and dampers) over time: what is stored from the first contact to the end of the contact.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -58,6 +59,8 @@ struct ForcePairHead
     std::uint64_t law = 0;       ///< hash of its type and parameters
     Vec3 normal;
     std::uint32_t count = 0;  ///< number of its contacts
+    /// J, of springs whose points have vanished while others pushed: points that appear in their place take it over, and no more.
+    double released = 0;
 };
 
 struct ForcePair : ForcePairHead
@@ -65,6 +68,17 @@ struct ForcePair : ForcePairHead
     static constexpr std::size_t kMostContacts = 16;
 
     std::array<ForceContact, kMostContacts> contacts;
+
+    ForcePair() = default;
+    // Pairs are copied in each piece of a step, so only the points that there are.
+    ForcePair(const ForcePair& other) { *this = other; }
+    ForcePair& operator=(const ForcePair& other)
+    {
+        if (this == &other) return *this;
+        ForcePairHead::operator=(other);
+        std::copy_n(other.contacts.begin(), other.count, contacts.begin());
+        return *this;
+    }
 
     std::span<ForceContact> all() { return {contacts.data(), count}; }
     std::span<const ForceContact> all() const { return {contacts.data(), count}; }

@@ -132,16 +132,7 @@ void ContactCache::copy(const ContactCache& from)
     }
     keys_ = from.keys_;
     parked_pairs_ = from.parked_pairs_;
-    const auto copy_forces = [](const std::vector<ForcePair>& list, std::vector<ForcePair>& to)
-    {
-        to.resize(list.size());
-        for (std::size_t i = 0; i < list.size(); ++i)
-        {
-            static_cast<ForcePairHead&>(to[i]) = list[i];
-            std::copy_n(list[i].contacts.begin(), list[i].count, to[i].contacts.begin());
-        }
-    };
-    copy_forces(from.force_pairs_, force_pairs_), copy_forces(from.parked_force_pairs_, parked_force_pairs_);
+    force_pairs_ = from.force_pairs_, parked_force_pairs_ = from.parked_force_pairs_;
     next_id_ = from.next_id_, may_have_rest_depth_ = from.may_have_rest_depth_;
     rest_.copy(from.rest_);
     crowded_until_ = from.crowded_until_;
@@ -183,7 +174,8 @@ void describe(Detector& d, const world::World& world)
     }
     d.friction = {world, d.response, "friction"}, d.restitution = {world, d.response, "restitution"};
     d.rolling_friction = {world, d.response, "rolling_friction"}, d.spinning_friction = {world, d.response, "spinning_friction"};
-    d.steps_per_contact = {world, d.response, "steps_per_contact"}, d.max_substeps = {world, d.response, "max_substeps"};
+    d.steps_per_contact = {world, d.response, "steps_per_contact"}, d.steps_among_many = {world, d.response, "steps_among_many"};
+    d.max_substeps = {world, d.response, "max_substeps"};
     if (!find_command(world, d.resolution, Phase::Locate)) return;
     d.speculation_acceleration = {world, d.resolution, "acceleration"}, d.max_work = {world, d.resolution, "max_work"};
     d.base_work = {world, d.resolution, "base_work"};

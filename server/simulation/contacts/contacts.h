@@ -60,7 +60,8 @@ struct Detector
     bool by_force = false;                               ///< the response is a force
     DeclaredNumber friction, restitution;                ///< of the response; materials may have their own
     DeclaredNumber rolling_friction, spinning_friction;  ///< likewise
-    DeclaredNumber steps_per_contact, max_substeps;      ///< of a response that is a force
+    DeclaredNumber steps_per_contact, steps_among_many;  ///< of a response that is a force
+    DeclaredNumber max_substeps;                         ///< likewise
     DeclaredNumber speculation_acceleration;             ///< m/s^2, of a resolution that speculates
     DeclaredNumber max_work, base_work;                  ///< of a resolution that locates
     DeclaredNumber max_bodies, max_points, dwell;        ///< of one that adapts: limits of crowds
@@ -326,6 +327,8 @@ public:
     std::span<const PersistentPair> persistent() const override { return persistent_; }
     bool only_persistent() const override { return only_persistent_; }
     double margin() const override { return margin_; }
+    bool level_rims() const override { return level_rims_; }
+    void want_level_rims() { level_rims_ = true; }
     void add(const Contact& contact) override
     {
         const FoundContact& last = put(contact);
@@ -360,7 +363,7 @@ private:
     double further_pairs_ = 0;
     std::uint32_t detector_ = 0;
     std::span<const PersistentPair> persistent_;
-    bool only_persistent_ = false;
+    bool only_persistent_ = false, level_rims_ = false;
     double margin_ = 0;
 };
 

@@ -180,6 +180,7 @@ void add_head(const ForcePairHead& p, Facts& out)
     out.push_back({"since", Weight::State, Value(std::int64_t{p.since})});
     out.push_back({"normal", Weight::State, p.normal});
     out.push_back({"law", Weight::State, whole(p.law)});
+    out.push_back({"released", Weight::State, p.released});
 }
 
 void add_rest(const BodyRest& r, Facts& out)

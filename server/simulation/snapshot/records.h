@@ -204,6 +204,7 @@ void columns(ForcePairHead& p, V visit)
 {
     visit("detector", p.detector), visit("a", p.a), visit("b", p.b), visit("since", p.since);
     visit("law_type", p.law_type), visit("law", p.law), visit("normal", p.normal), visit("points", p.count);
+    visit("released", p.released);
 }
 
 template <class V>

@@ -146,6 +146,22 @@ TEST_CASE("meshes: STL and OBJ with scale, mass by their volume; a missing one i
     REQUIRE(found.ok());
     CHECK(found->blueprint.find("Shape/Mesh") != std::string::npos);
     CHECK(found->losses.empty());
+    // What never moves collides as its triangles, unless these are convex; in MJCF as its hull.
+    std::ofstream(folder / "tent.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\n";
+    const auto fixed = [&](const std::string& mesh, SceneFormat format)
+    {
+        const std::string collision = "<collision name='c'><geometry><mesh><uri>meshes/" + mesh + "</uri></mesh></geometry></collision>";
+        const std::string sdf =
+            "<sdf version='1.9'><model name='m'><static>true</static><link name='a'>" + collision + "</link></model></sdf>";
+        const std::string mjcf = "<mujoco><compiler meshdir='meshes'/><asset><mesh name='m' file='" + mesh +
+                                 "'/></asset><worldbody><geom type='mesh' mesh='m'/></worldbody></mujoco>";
+        const auto imported = import_robot(format == SceneFormat::Sdf ? sdf : mjcf, format, (folder.parent_path() / "m").string());
+        REQUIRE_MESSAGE(imported.ok(), reasons(imported));
+        return imported->blueprint.find("surface_collides=\"true\"") != std::string::npos;
+    };
+    CHECK(fixed("tent.obj", SceneFormat::Sdf));
+    CHECK_FALSE(fixed("tetra.obj", SceneFormat::Sdf));
+    CHECK_FALSE(fixed("tent.obj", SceneFormat::Mjcf));
     const auto missing = import_robot(link + "gone.stl'/></geometry></visual></link></robot>", SceneFormat::Urdf, file);
     REQUIRE(missing.ok());
     CHECK(lists(*missing, "gone.stl' is missing"));
