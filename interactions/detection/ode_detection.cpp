@@ -30,8 +30,9 @@ void report_filled_hollows(const StepContext& context, Row row, OdeScene& scene)
         e.tick = context.tick, e.time = context.time, e.kind = "detection.hull", e.severity = Severity::Warning;
         e.component = row < context.component_of_row.size() ? context.component_of_row[row] : kNoIndex;
         e.a = {Facet::Shape, shape}, e.b = {Facet::Body, body};
-        e.message = "this mesh of a body that does not move collides as its convex hull, which covers its hollows or openings; "
-                    "surface_collides=\"true\" lets it collide as its triangles";
+        e.message =
+            "this mesh of a body that does not move collides as its convex hull, which covers its hollows or openings; "
+            "surface_collides=\"true\" lets it collide as its triangles";
         context.events->emit(std::move(e));
     }
 }

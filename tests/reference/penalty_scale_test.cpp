@@ -64,6 +64,23 @@ TEST_CASE("islands of springs move as each would by itself, to the last bit, whi
     }
 }
 
+TEST_CASE("detection for springs looks at what touches: ten times the islands, ten times the bodies")
+{
+    const auto visited = [](int islands)
+    {
+        std::string all = kGround + std::string(kCube);
+        for (int i = 0; i < islands; ++i) all += cube("a" + std::to_string(i), 1, {2.0 * i, 0, 0.1});
+        Scene s(all + springs("Penalty") + test::kGravity, "dt=\"1/240\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        double sum = 0;
+        for (int i = 0; i < 5; ++i) s.step(), sum += static_cast<double>(s.simulation().stepper().report().visited);
+        return sum;
+    };
+    const double few = visited(8), many = visited(80);
+    CHECK(few > 100);
+    CHECK(many < 12 * few);
+}
+
 TEST_CASE("whatever a body weighs, by default it sinks by as much and takes as many pieces")
 {
     const double g = test::kG;

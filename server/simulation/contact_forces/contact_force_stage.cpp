@@ -116,6 +116,7 @@ void ContactForces::detect(std::uint32_t index, std::span<const PersistentPair> 
     query.context.events = nullptr, query.arguments.contacts = &sink;
     // The detector has looked at all bodies in find_near(), and need not do so in each evaluation. When contacts are converted it has not.
     if (!bodies_.members().empty()) query.context.active_bodies = bodies_.flags();
+    step_.report.visited += bodies_.members().empty() ? step_.world.host().bodies.size() : bodies_.members().size();
     const std::size_t first = out.size();
     (void)query.run(*detector.command);  // an error occurs again in the detection at the end of the step, which reports it
     for (FoundContact& found : std::span(out).subspan(first)) round_rim_near_level(found.contact);

@@ -143,8 +143,10 @@ void ContactForces::begin_contact(const Seen& seen, double time)
     known.feature = c.feature, known.id = old ? old->id : contacts_.cache().new_id();
     known.begin = time, known.depth = c.depth, known.approach = std::max(0.0, -seen.separation_speed);
     known.swing_speed = known.peak_swing_speed = known.approach;
-    // Corners of bodies that begin to touch now, also those that overlap at the start of a run, push with all of their depth.
-    const bool begins = std::ranges::all_of(pair->all(), [&](const ForceContact& other) { return other.begin == time; });
+    // Corners of bodies that begin to touch now, also those that overlap at the start of a run, push with all of their depth; not so beside
+    // those that a swap has converted.
+    const auto is_new = [&](const ForceContact& other) { return other.begin == time && !other.reported; };
+    const bool begins = std::ranges::all_of(pair->all(), is_new);
     if (!begins && c.depth > 1e3 * rounding(c)) known.rest_depth = known.open_depth = take_over(*pair, seen.found);
     expect(known, seen.found, known.approach);
     (old ? *old : pair->contacts[pair->count++]) = known;
