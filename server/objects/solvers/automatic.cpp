@@ -24,7 +24,7 @@ constexpr double kFast = 0.05;
 /// Bodies that joints hold and that turn further than this in a step (rad) are advanced in parts of kTurnOfPart: a top of 300 rad/s on a
 /// ball joint gained ten thousand times its energy in a second with one step of 1/60 s after the other.
 constexpr double kMostTurn = 0.2, kTurnOfPart = 0.1;
-constexpr double kMostTurnParts = 4000, kOfTurn = 4;
+constexpr double kMostTurnParts = 4000;
 constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 /// Of a larger group than `kManySize`, parts of |h lambda| = 0.4 cost less than implicit steps while they are at most so many: an implicit
 /// step takes about as many evaluations as there are numbers, and the cube of that in products.
@@ -103,8 +103,6 @@ public:
         if (found.too_much)
         {
             if (at_once) take_back_runge_kutta4(h_, system_, slopes);
-            // What turns fast changes its forces as fast, whether anything is stiff or not.
-            if (turns && stiffness_ <= kOfTurn * spin_) return advance_in_parts(std::min(spin_ / kTurnOfPart, kMostTurnParts));
             return are_only_contacts() ? advance_over_a_switch() : advance_stiff();
         }
         if (turns) return advance_in_parts(std::min(spin_ / kTurnOfPart, kMostTurnParts));
@@ -301,7 +299,7 @@ private:
             case Method::Radau5:
                 return stiff;
             case Method::RungeKutta4Parts:
-                if (spin_ > kMostTurn && stiffness_ <= kOfTurn * spin_)
+                if (spin_ > kMostTurn && system_.is_constrained() && !(stiffness_ > 0.5))
                     return "h |w| = " + number(spin_) + " is above " + number(kMostTurn) + ", of bodies that joints hold";
                 if (are_only_contacts()) return stiff + kOfContacts;
                 return stiff + "; a group of " + std::to_string(FlatSystem(system_).size()) +
